@@ -1,0 +1,59 @@
+#pragma once
+
+/// The one exception of the program and its codes. The symbolic name of a code is the stable contract on the wire.
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace fvd {
+
+enum class ErrorCode {
+  kInternal,            ///< a bug or an exception nobody translated
+  kBadInput,            ///< a file or argument the user gave cannot be used
+  kBadConfig,           ///< the configuration was refused
+  kBadRecipe,           ///< the recipe was refused
+  kUnknownRecipe,
+  kUnknownJob,
+  kNotReady,            ///< the machine is in a state that does not take jobs
+  kBusy,                ///< another job is running
+  kSeqConflict,         ///< same sequence number, different request
+  kSeqStale,            ///< sequence number older than the window that is remembered
+  kJobFailed,           ///< the job ended without a result
+  kTimeout,
+  kAborted,
+  kInterrupted,         ///< the daemon stopped or died while the job ran
+  kShuttingDown,
+  kCameraDisconnected,  ///< no reply from the camera, control lost, or not open
+  kCameraFramesLost,    ///< a slice could not be had within the retries
+  kCameraTimeout,       ///< no frame at all before the deadline
+  kCameraSettings,      ///< the camera refused a setting or reads back another value
+  kStageDisconnected,   ///< no reply from the drive, or the link is gone
+  kStageLimit,          ///< a target outside the configured or the drive's limits
+  kStageNotHomed,
+  kStagePosition,       ///< the axis did not settle at its target
+  kStageAlarm,          ///< the drive raised an alarm
+  kBadSlice,            ///< slice of another size, format or with an unusable z
+  kSliceLost,           ///< the slice queue refused a slice: computation fell behind
+  kFocusRange,          ///< the surface is not inside the scanned range
+  kTooFewValid,         ///< fewer valid points than the recipe asks for
+  kMemoryBudget,        ///< the job would need more memory than it may use
+  kStorageFull,
+  kStorageWrite,
+  kDatabase,
+};
+
+/// The stable name of a code, e.g. "camera_disconnected".
+[[nodiscard]] std::string_view error_name(ErrorCode code) noexcept;
+
+/// what() says what failed, where, and what to do. Context is added with std::throw_with_nested.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+
+ private:
+  ErrorCode code_;
+};
+
+}  // namespace fvd

@@ -1,0 +1,23 @@
+#pragma once
+
+/// What a recipe may choose about the focus core.
+
+#include <string_view>
+
+namespace fvd {
+
+/// How a sub-slice height is taken from the peak triple.
+enum class PeakMethod {
+  kNearest,      ///< z of the sharpest slice
+  kParabola,     ///< vertex of the parabola through the triple
+  kLogParabola,  ///< vertex of the parabola through the logarithms (Gaussian peak; Nayar and Nakagawa 1994)
+};
+
+[[nodiscard]] std::string_view peak_method_name(PeakMethod method) noexcept;  ///< "nearest", "parabola", "log_parabola"
+
+struct FocusSettings {
+  int window_px = 9;             ///< side of the square window of the sum, odd, 3..63
+  double min_prominence = 0.5;   ///< (peak - minimum) / peak of the focus curve, 0..1; below it a point is a hole
+};
+
+}  // namespace fvd

@@ -1,0 +1,51 @@
+#pragma once
+
+/// The product's core: slices in, height map out, memory independent of the number of slices.
+
+#include <cstddef>
+#include <memory>
+
+#include "core/focus/focus_settings.hpp"
+#include "core/focus/height_map.hpp"
+#include "core/image.hpp"
+
+namespace fvd {
+
+class WorkerPool;
+
+/// Keeps per pixel the peak of the focus curve with its two neighbours, the peak's slice index, and the curve's
+/// minimum. Never a slice or a sharpness plane.
+/// context: one thread at a time; the work is spread over the pool's threads inside push() and finish().
+class StreamingFocusStack {
+ public:
+  static constexpr int kMaxSlices = 65535;
+
+  /// Allocates everything it will ever need. width, height >= 1. pool outlives the stack.
+  /// Throws Error kBadInput for a window outside 3..63 or even.
+  StreamingFocusStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool);
+  ~StreamingFocusStack();
+  StreamingFocusStack(StreamingFocusStack&&) noexcept;
+  StreamingFocusStack& operator=(StreamingFocusStack&&) noexcept;
+
+  /// Adds one slice at its measured z. Throws Error kBadSlice if size or format differ, z is not finite, or the stack
+  /// is full; the stack is unchanged then. Allocates nothing but the z list's reserved entry.
+  void push(const ImageView& slice, double z_um);
+
+  [[nodiscard]] int slices() const noexcept;
+
+  /// Bytes of per-pixel state; the same before the first and after the last slice.
+  [[nodiscard]] double state_bytes_per_pixel() const noexcept;
+
+  /// Bytes a scan of this size will need in all: state, scratch and one height map. Known before the scan.
+  [[nodiscard]] static std::size_t memory_bytes(int width, int height, PixelFormat format,
+                                                const FocusSettings& settings, int threads);
+
+  /// Heights from the state; may be called with several methods. Throws Error kBadSlice with fewer than one slice.
+  [[nodiscard]] HeightMap finish(PeakMethod method) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fvd

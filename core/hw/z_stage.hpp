@@ -1,0 +1,98 @@
+#pragma once
+
+/// The Z stage as the scan needs it: absolute moves that end settled, and the position measured over an exposure.
+/// No word of any fieldbus here; high-end stages speak other protocols.
+
+#include <chrono>
+#include <stop_token>
+#include <string>
+
+#include "core/hw/clock.hpp"
+#include "core/units.hpp"
+
+namespace fvd {
+
+/// Where the measured position comes from. kNone: step counting, the accuracy is not observable.
+enum class FeedbackSource { kNone, kMotorEncoder, kLinearScale };
+
+struct StageInfo {
+  std::string name;     ///< the drive profile's name
+  std::string address;  ///< e.g. "127.0.0.1:502 unit 1"
+  FeedbackSource feedback = FeedbackSource::kNone;
+  Micrometers step_quantum;         ///< smallest commandable step
+  Micrometers feedback_resolution;  ///< smallest step of the measured position
+  Micrometers min;                  ///< lowest target allowed, take-up included
+  Micrometers max;                  ///< highest target allowed
+  Micrometers take_up;              ///< overshoot below the first target that loads the backlash
+  bool simulated = false;
+};
+
+struct StageStatus {
+  bool enabled = false;
+  bool homed = false;
+  bool moving = false;
+  bool in_position = false;
+  bool alarm = false;
+  int alarm_code = 0;
+  std::string alarm_text;
+  Micrometers position;  ///< measured
+};
+
+/// Definition of "arrived": |measured - target| <= window, not moving and in position, for `samples` consecutive
+/// samples that span at least `dwell`.
+struct SettleCriterion {
+  Micrometers window{0.5};
+  int samples = 3;
+  std::chrono::milliseconds dwell{15};
+  std::chrono::milliseconds timeout{3000};  ///< from the start of the move
+};
+
+/// How one move went.
+struct MoveRecord {
+  Micrometers target;            ///< as asked for
+  Micrometers target_quantised;  ///< as the drive can represent it
+  StageCounts target_counts;
+  Micrometers position;  ///< measured, last sample of the settle criterion
+  HostTime started{};
+  HostTime settled{};
+  int polls = 0;
+};
+
+/// Mean of the measured positions inside a time window.
+struct PositionMean {
+  Micrometers mean;
+  Micrometers sd;   ///< 0 with fewer than two samples
+  int samples = 0;  ///< samples inside the window; 0 = interpolated from the nearest before and after it
+};
+
+/// A connected axis. Constructing one connects and identifies the drive (throws Error kStageDisconnected).
+/// context: one thread at a time, except stop(), connected() and mean_position().
+class ZStage {
+ public:
+  virtual ~ZStage() = default;
+
+  [[nodiscard]] virtual StageInfo info() const = 0;
+
+  /// Throws Error kStageDisconnected.
+  [[nodiscard]] virtual StageStatus status() = 0;
+
+  /// Enables the drive and finds the reference; returns when homed and at rest.
+  /// Throws Error kStageDisconnected, kStageAlarm, kTimeout, kAborted.
+  virtual void home(std::stop_token stop) = 0;
+
+  /// Moves to an absolute position and returns when settled. A stop request halts the axis.
+  /// Throws Error kStageLimit (nothing moved), kStageNotHomed, kStageAlarm, kStagePosition (not settled in time),
+  /// kStageDisconnected, kAborted.
+  virtual MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) = 0;
+
+  /// The measured position over [from, to]; waits at most for one sample at or after `to`.
+  /// Throws Error kStageDisconnected.
+  [[nodiscard]] virtual PositionMean mean_position(HostTime from, HostTime to) = 0;
+
+  /// Halts the axis ahead of everything else that is queued. context: any thread.
+  virtual void stop() noexcept = 0;
+
+  [[nodiscard]] virtual bool connected() const noexcept = 0;
+};
+
+}  // namespace fvd

@@ -1,0 +1,108 @@
+#pragma once
+
+/// Two-dimensional data: row 0 on top, x right, y down; strides in elements so that rows may be padded.
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fvd {
+
+/// A borrowed plane of shape [height][width]. Does not own; the owner outlives it.
+template <typename T>
+struct PlaneView {
+  T* data = nullptr;
+  int width = 0;
+  int height = 0;
+  std::ptrdiff_t row_stride = 0;  ///< elements from one row to the next, >= width
+
+  [[nodiscard]] T* row(int y) const {
+    assert(y >= 0 && y < height);
+    return data + y * row_stride;
+  }
+  [[nodiscard]] T& at(int x, int y) const { return row(y)[x]; }
+  operator PlaneView<const T>() const { return {data, width, height, row_stride}; }
+};
+
+/// An owned plane of shape [height][width], rows contiguous. Moves are cheap; copies are explicit through clone().
+template <typename T>
+class Plane {
+ public:
+  Plane() = default;
+  Plane(int width, int height, T fill = T{})
+      : width_(width), height_(height), data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+  Plane(Plane&&) noexcept = default;
+  Plane& operator=(Plane&&) noexcept = default;
+  Plane(const Plane&) = delete;
+  Plane& operator=(const Plane&) = delete;
+  ~Plane() = default;
+
+  [[nodiscard]] Plane clone() const {
+    Plane copy;
+    copy.width_ = width_;
+    copy.height_ = height_;
+    copy.data_ = data_;
+    return copy;
+  }
+
+  [[nodiscard]] int width() const noexcept { return width_; }
+  [[nodiscard]] int height() const noexcept { return height_; }
+  [[nodiscard]] bool empty() const noexcept { return data_.empty(); }
+  [[nodiscard]] T* row(int y) { return data_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
+  [[nodiscard]] const T* row(int y) const { return data_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
+  [[nodiscard]] T& at(int x, int y) { return row(y)[x]; }
+  [[nodiscard]] const T& at(int x, int y) const { return row(y)[x]; }
+  [[nodiscard]] std::span<T> pixels() { return data_; }
+  [[nodiscard]] std::span<const T> pixels() const { return data_; }
+  [[nodiscard]] PlaneView<T> view() { return {data_.data(), width_, height_, width_}; }
+  [[nodiscard]] PlaneView<const T> view() const { return {data_.data(), width_, height_, width_}; }
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<T> data_;
+};
+
+/// GenICam PFNC names of the formats fvd measures with. More than 8 bits means 16-bit little-endian, LSB aligned.
+enum class PixelFormat { kMono8, kMono10, kMono12, kMono16 };
+
+[[nodiscard]] constexpr int significant_bits(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kMono8: return 8;
+    case PixelFormat::kMono10: return 10;
+    case PixelFormat::kMono12: return 12;
+    case PixelFormat::kMono16: return 16;
+  }
+  return 8;
+}
+[[nodiscard]] constexpr int bytes_per_pixel(PixelFormat format) { return format == PixelFormat::kMono8 ? 1 : 2; }
+[[nodiscard]] constexpr int max_grey_level(PixelFormat format) { return (1 << significant_bits(format)) - 1; }
+
+/// A borrowed grey image of either depth; the form in which slices travel.
+struct ImageView {
+  PixelFormat format = PixelFormat::kMono8;
+  int width = 0;
+  int height = 0;
+  std::ptrdiff_t row_stride_bytes = 0;  ///< a multiple of the pixel's size
+  const std::byte* data = nullptr;      ///< aligned to the pixel's size
+
+  /// The pixels as std::uint8_t (Mono8) or std::uint16_t (all others). The type must match the format.
+  template <typename T>
+  [[nodiscard]] PlaneView<const T> as() const {
+    assert(static_cast<int>(sizeof(T)) == bytes_per_pixel(format));
+    return {reinterpret_cast<const T*>(data), width, height,
+            row_stride_bytes / static_cast<std::ptrdiff_t>(sizeof(T))};
+  }
+};
+
+/// The image view of a plane of 8-bit or 16-bit pixels.
+template <typename T>
+[[nodiscard]] ImageView image_view(PlaneView<T> plane, PixelFormat format) {
+  assert(static_cast<int>(sizeof(T)) == bytes_per_pixel(format));
+  return {format, plane.width, plane.height, plane.row_stride * static_cast<std::ptrdiff_t>(sizeof(T)),
+          reinterpret_cast<const std::byte*>(plane.data)};
+}
+
+}  // namespace fvd

@@ -1,0 +1,64 @@
+#pragma once
+
+/// A queue between two threads with a fixed number of places.
+
+#include <cassert>
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+namespace fvd {
+
+/// First in, first out; never grows. context: thread-safe.
+template <typename T>
+class BoundedQueue {
+ public:
+  explicit BoundedQueue(std::size_t capacity) : ring_(capacity) { assert(capacity > 0); }
+
+  /// Never blocks. False, and `item` untouched, when the queue is full or closed: the caller decides what a loss means.
+  [[nodiscard]] bool try_push(T&& item) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (closed_ || count_ == ring_.size()) return false;
+      ring_[(first_ + count_) % ring_.size()] = std::move(item);
+      ++count_;
+    }
+    changed_.notify_one();
+    return true;
+  }
+
+  /// Waits for an item. Nothing once the queue is closed and empty, or as soon as stop is requested.
+  [[nodiscard]] std::optional<T> pop(std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, stop, [this] { return count_ > 0 || closed_; });
+    if (count_ == 0 || stop.stop_requested()) return std::nullopt;
+    std::optional<T> item(std::move(*ring_[first_]));
+    ring_[first_].reset();
+    first_ = (first_ + 1) % ring_.size();
+    --count_;
+    return item;
+  }
+
+  /// No more items come; what is inside can still be popped.
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      closed_ = true;
+    }
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::vector<std::optional<T>> ring_;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace fvd

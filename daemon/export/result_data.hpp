@@ -1,0 +1,55 @@
+#pragma once
+
+/// All that goes into a result directory.
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/focus/focus_settings.hpp"
+#include "core/focus/height_map.hpp"
+#include "core/metrology/stage_accuracy.hpp"
+#include "core/scan/frame_ledger.hpp"
+#include "core/scan/step_log.hpp"
+
+namespace fvd {
+
+/// Wall-clock durations of the job's phases in ms.
+struct PhaseTimes {
+  double prepare_ms = 0.0;  ///< devices, homing, take-up
+  double scan_ms = 0.0;     ///< first move to last frame
+  double finish_ms = 0.0;   ///< last frame to height map
+};
+
+struct ResultData {
+  std::string software_version;
+  std::chrono::system_clock::time_point created;
+  bool simulated = false;
+
+  std::string job_id;
+  std::optional<std::int64_t> seq;  ///< absent for offline processing
+  std::string part_id;
+  std::string recipe_id;
+  std::string recipe_sha256;
+  std::string source;               ///< camera and stage, or the folder of recorded slices
+
+  FocusSettings focus;
+  PeakMethod peak = PeakMethod::kParabola;
+  std::optional<double> pixel_pitch_x_um;  ///< absent = unknown: files then carry pixels
+  std::optional<double> pixel_pitch_y_um;
+  double state_bytes_per_pixel = 0.0;
+
+  HeightMap map;
+  std::vector<std::pair<PeakMethod, HeightMap>> extra_maps;
+
+  int slices_planned = 0;
+  FrameCounts frames;
+  StepLog steps;
+  StepSummary step_summary;
+  PhaseTimes times;
+};
+
+}  // namespace fvd

@@ -1,0 +1,1 @@
+# target_sources(fvd_sim PRIVATE ...) of the simulated stage
