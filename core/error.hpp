@@ -9,20 +9,20 @@
 namespace fvd {
 
 enum class ErrorCode {
-  kInternal,            ///< a bug or an exception nobody translated
-  kBadInput,            ///< a file or argument the user gave cannot be used
-  kBadConfig,           ///< the configuration was refused
-  kBadRecipe,           ///< the recipe was refused
+  kInternal,   ///< a bug or an exception nobody translated
+  kBadInput,   ///< a file or argument the user gave cannot be used
+  kBadConfig,  ///< the configuration was refused
+  kBadRecipe,  ///< the recipe was refused
   kUnknownRecipe,
   kUnknownJob,
-  kNotReady,            ///< the machine is in a state that does not take jobs
-  kBusy,                ///< another job is running
-  kSeqConflict,         ///< same sequence number, different request
-  kSeqStale,            ///< sequence number older than the window that is remembered
-  kJobFailed,           ///< the job ended without a result
+  kNotReady,     ///< the machine is in a state that does not take jobs
+  kBusy,         ///< another job is running
+  kSeqConflict,  ///< same sequence number, different request
+  kSeqStale,     ///< sequence number older than the window that is remembered
+  kJobFailed,    ///< the job ended without a result
   kTimeout,
   kAborted,
-  kInterrupted,         ///< the daemon stopped or died while the job ran
+  kInterrupted,  ///< the daemon stopped or died while the job ran
   kShuttingDown,
   kCameraDisconnected,  ///< no reply from the camera, control lost, or not open
   kCameraFramesLost,    ///< a slice could not be had within the retries
@@ -31,13 +31,13 @@ enum class ErrorCode {
   kStageDisconnected,   ///< no reply from the drive, or the link is gone
   kStageLimit,          ///< a target outside the configured or the drive's limits
   kStageNotHomed,
-  kStagePosition,       ///< the axis did not settle at its target
-  kStageAlarm,          ///< the drive raised an alarm
-  kBadSlice,            ///< slice of another size, format or with an unusable z
-  kSliceLost,           ///< the slice queue refused a slice: computation fell behind
-  kFocusRange,          ///< the surface is not inside the scanned range
-  kTooFewValid,         ///< fewer valid points than the recipe asks for
-  kMemoryBudget,        ///< the job would need more memory than it may use
+  kStagePosition,  ///< the axis did not settle at its target
+  kStageAlarm,     ///< the drive raised an alarm
+  kBadSlice,       ///< slice of another size, format or with an unusable z
+  kSliceLost,      ///< the slice queue refused a slice: computation fell behind
+  kFocusRange,     ///< the surface is not inside the scanned range
+  kTooFewValid,    ///< fewer valid points than the recipe asks for
+  kMemoryBudget,   ///< the job would need more memory than it may use
   kStorageFull,
   kStorageWrite,
   kDatabase,

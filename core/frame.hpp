@@ -1,6 +1,7 @@
 #pragma once
 
-/// One exposure as the camera delivered it. The pixels live in the camera's pool; the frame gives its slot back when it dies.
+/// One exposure as the camera delivered it. The pixels live in the camera's pool; the frame gives its slot back when it
+/// dies.
 
 #include <cstdint>
 #include <memory>
@@ -37,9 +38,9 @@ enum class FrameStatus {
 
 struct Frame {
   FrameStatus status = FrameStatus::kIncomplete;
-  ImageView image;             ///< valid while the lease is held and status is kOk
-  std::uint64_t id = 0;        ///< camera's block id, unwrapped to 64 bit; meaningless unless kOk
-  HostTime exposure_start{};   ///< camera time mapped to the host clock; meaningless unless kOk
+  ImageView image;            ///< valid while the lease is held and status is kOk
+  std::uint64_t id = 0;       ///< camera's block id, unwrapped to 64 bit; meaningless unless kOk
+  HostTime exposure_start{};  ///< camera time mapped to the host clock; meaningless unless kOk
   HostTime exposure_end{};
   FrameLease lease;
 };

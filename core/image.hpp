@@ -32,7 +32,9 @@ class Plane {
  public:
   Plane() = default;
   Plane(int width, int height, T fill = T{})
-      : width_(width), height_(height), data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+      : width_(width),
+        height_(height),
+        data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
   Plane(Plane&&) noexcept = default;
   Plane& operator=(Plane&&) noexcept = default;
   Plane(const Plane&) = delete;
@@ -70,10 +72,14 @@ enum class PixelFormat { kMono8, kMono10, kMono12, kMono16 };
 
 [[nodiscard]] constexpr int significant_bits(PixelFormat format) {
   switch (format) {
-    case PixelFormat::kMono8: return 8;
-    case PixelFormat::kMono10: return 10;
-    case PixelFormat::kMono12: return 12;
-    case PixelFormat::kMono16: return 16;
+    case PixelFormat::kMono8:
+      return 8;
+    case PixelFormat::kMono10:
+      return 10;
+    case PixelFormat::kMono12:
+      return 12;
+    case PixelFormat::kMono16:
+      return 16;
   }
   return 8;
 }
@@ -92,8 +98,7 @@ struct ImageView {
   template <typename T>
   [[nodiscard]] PlaneView<const T> as() const {
     assert(static_cast<int>(sizeof(T)) == bytes_per_pixel(format));
-    return {reinterpret_cast<const T*>(data), width, height,
-            row_stride_bytes / static_cast<std::ptrdiff_t>(sizeof(T))};
+    return {reinterpret_cast<const T*>(data), width, height, row_stride_bytes / static_cast<std::ptrdiff_t>(sizeof(T))};
   }
 };
 

@@ -12,8 +12,14 @@ struct Micrometers {
   double value = 0.0;
 
   constexpr auto operator<=>(const Micrometers&) const = default;
-  constexpr Micrometers& operator+=(Micrometers other) { value += other.value; return *this; }
-  constexpr Micrometers& operator-=(Micrometers other) { value -= other.value; return *this; }
+  constexpr Micrometers& operator+=(Micrometers other) {
+    value += other.value;
+    return *this;
+  }
+  constexpr Micrometers& operator-=(Micrometers other) {
+    value -= other.value;
+    return *this;
+  }
 };
 
 constexpr Micrometers operator+(Micrometers a, Micrometers b) { return {a.value + b.value}; }

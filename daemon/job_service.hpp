@@ -30,14 +30,14 @@ struct JobStatus {
   std::string job_id;
   JobRequest request;
   JobState state = JobState::kProcessing;
-  std::string phase;            ///< "preparing", "acquiring", "computing", "storing", "" when ended
-  bool acquired = false;        ///< the part may be moved
+  std::string phase;      ///< "preparing", "acquiring", "computing", "storing", "" when ended
+  bool acquired = false;  ///< the part may be moved
   int slices_done = 0;
   int slices_planned = 0;
   FrameCounts frames;
   std::optional<ErrorCode> error;  ///< why it failed or was aborted
   std::string error_message;
-  bool acknowledged = false;    ///< result.ack was received
+  bool acknowledged = false;  ///< result.ack was received
 };
 
 /// A job by id or by sequence number.
@@ -45,12 +45,12 @@ using JobKey = std::variant<std::string, std::int64_t>;
 
 struct MachineStatus {
   ScanState state = ScanState::kPreoperational;
-  std::string recipe;               ///< prepared recipe, empty = none
-  std::optional<JobStatus> job;     ///< the running or the latest job
-  int results_waiting = 0;          ///< completed and not acknowledged
+  std::string recipe;            ///< prepared recipe, empty = none
+  std::optional<JobStatus> job;  ///< the running or the latest job
+  int results_waiting = 0;       ///< completed and not acknowledged
   bool simulated = false;
-  std::int64_t epoch = 0;           ///< counts the daemon's starts
-  std::optional<ErrorCode> error;   ///< why the state is kError
+  std::int64_t epoch = 0;          ///< counts the daemon's starts
+  std::optional<ErrorCode> error;  ///< why the state is kError
   std::string error_message;
 };
 
@@ -85,7 +85,8 @@ class JobService {
   /// Returns how many remain. Repeating it changes nothing. Throws Error kUnknownJob, kBusy while the job runs.
   virtual int acknowledge(const JobKey& key) = 0;
 
-  /// Loads and checks a recipe and makes it the prepared one. Throws Error kUnknownRecipe, kBadRecipe, kStageLimit, kBusy.
+  /// Loads and checks a recipe and makes it the prepared one. Throws Error kUnknownRecipe, kBadRecipe, kStageLimit,
+  /// kBusy.
   virtual void prepare(const std::string& recipe_id) = 0;
 
   [[nodiscard]] virtual std::vector<std::string> recipe_ids() const = 0;

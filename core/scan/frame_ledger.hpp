@@ -6,19 +6,57 @@
 
 namespace fvd {
 
-/// expected == ok + incomplete + missing + stale + underrun, at all times between two calls of FrameLedger.
+/// expected == ok + incomplete + missing + stale + underrun, whenever it can be looked at.
 struct FrameCounts {
   std::uint64_t expected = 0;    ///< triggers sent, plus frames that came without one
   std::uint64_t ok = 0;          ///< accepted as a slice
   std::uint64_t incomplete = 0;  ///< delivered with missing packets or of the wrong geometry
   std::uint64_t missing = 0;     ///< nothing delivered before the deadline
-  std::uint64_t stale = 0;       ///< delivered, but not exposed after the stage settled, late or repeated
+  std::uint64_t stale = 0;       ///< delivered, but late, repeated, or not exposed after the stage settled
   std::uint64_t underrun = 0;    ///< lost because no buffer of the pool was free
 
-  [[nodiscard]] bool balanced() const {
-    return expected == ok + incomplete + missing + stale + underrun;
-  }
+  [[nodiscard]] bool balanced() const { return expected == ok + incomplete + missing + stale + underrun; }
   bool operator==(const FrameCounts&) const = default;
+};
+
+/// Books the fate of frames. A trigger is booked when its fate is known, so the books balance after every call.
+/// context: one thread.
+class FrameLedger {
+ public:
+  void ok() { close(counts_.ok); }
+  void incomplete() { close(counts_.incomplete); }
+  void missing() { close(counts_.missing); }
+  void underrun() { close(counts_.underrun); }
+
+  /// A good frame turned up that no open trigger is waiting for: the late frame of a trigger that was booked as
+  /// missing, or one that nobody asked for.
+  void stale() { late(counts_.stale); }
+
+  /// A damaged frame turned up while a trigger booked as missing has not been explained. False if there is none: the
+  /// damaged frame then belongs to the open trigger.
+  [[nodiscard]] bool explain_missing_by_incomplete() {
+    if (counts_.missing == 0) return false;
+    late(counts_.incomplete);
+    return true;
+  }
+
+  [[nodiscard]] const FrameCounts& counts() const { return counts_; }
+
+ private:
+  void close(std::uint64_t& account) {
+    ++counts_.expected;
+    ++account;
+  }
+  void late(std::uint64_t& account) {
+    if (counts_.missing > 0) {
+      --counts_.missing;
+    } else {
+      ++counts_.expected;
+    }
+    ++account;
+  }
+
+  FrameCounts counts_;
 };
 
 }  // namespace fvd

@@ -4,12 +4,18 @@ namespace fvd {
 
 std::string_view scan_state_name(ScanState state) noexcept {
   switch (state) {
-    case ScanState::kPreoperational: return "preoperational";
-    case ScanState::kInitialized: return "initialized";
-    case ScanState::kReady: return "ready";
-    case ScanState::kExecuting: return "executing";
-    case ScanState::kError: return "error";
-    case ScanState::kHalted: return "halted";
+    case ScanState::kPreoperational:
+      return "preoperational";
+    case ScanState::kInitialized:
+      return "initialized";
+    case ScanState::kReady:
+      return "ready";
+    case ScanState::kExecuting:
+      return "executing";
+    case ScanState::kError:
+      return "error";
+    case ScanState::kHalted:
+      return "halted";
   }
   return "error";
 }

@@ -12,7 +12,7 @@ namespace fvd {
 /// when they are back, but never moves on its own.
 enum class ScanState { kPreoperational, kInitialized, kReady, kExecuting, kError, kHalted };
 inline constexpr std::array kAllScanStates{ScanState::kPreoperational, ScanState::kInitialized, ScanState::kReady,
-                                           ScanState::kExecuting, ScanState::kError, ScanState::kHalted};
+                                           ScanState::kExecuting,      ScanState::kError,       ScanState::kHalted};
 
 enum class ScanEvent { kDevicesUp, kDevicesDown, kRecipePrepared, kJobStarted, kJobEnded, kHalt };
 inline constexpr std::array kAllScanEvents{ScanEvent::kDevicesUp,  ScanEvent::kDevicesDown, ScanEvent::kRecipePrepared,
@@ -55,7 +55,8 @@ inline constexpr std::array kAllScanEvents{ScanEvent::kDevicesUp,  ScanEvent::kD
       if (event == E::kDevicesUp) return S::kInitialized;
       if (event == E::kDevicesDown) return S::kError;
       return std::nullopt;
-    case S::kHalted: return std::nullopt;
+    case S::kHalted:
+      return std::nullopt;
   }
   return std::nullopt;
 }

@@ -1,0 +1,104 @@
+#include "core/scan/scan_runner.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/scan/slice_capture.hpp"
+
+namespace fvd {
+
+namespace {
+
+double milliseconds(HostClock::duration duration) {
+  return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+StepRecord record_move(int index, Micrometers target, const MoveRecord& move) {
+  StepRecord step;
+  step.index = index;
+  step.commanded_um = target.value;
+  step.quantised_um = move.target_quantised.value;
+  step.commanded_counts = move.target_counts.value;
+  step.move_ms = milliseconds(move.settled - move.started);
+  step.settle_polls = move.polls;
+  return step;
+}
+
+void record_exposure(StepRecord& step, const CapturedFrame& captured, const PositionMean& position) {
+  step.measured_um = position.mean.value;
+  step.measured_sd_um = position.sd.value;
+  step.position_samples = position.samples;
+  step.error_um = step.measured_um - step.quantised_um;
+  step.frame_id = captured.frame.id;
+  step.triggers = captured.triggers;
+  step.exposure_start = captured.frame.exposure_start;
+}
+
+Error too_many_lost(int index, Micrometers target, int lost, const ScanPlan& plan) {
+  std::ostringstream message;
+  message << "no good frame of slice " << index << " at " << target.value << " um within " << 1 + plan.frame_retries
+          << " triggers; " << lost << " slice(s) lost, the recipe allows " << plan.allowed_lost_slices
+          << ": check the camera's link and its packet counters";
+  return {ErrorCode::kCameraFramesLost, message.str()};
+}
+
+}  // namespace
+
+void ScanRunner::take_up(const ScanPlan& plan, std::stop_token stop) {
+  const Micrometers distance = deps_.stage.info().take_up;
+  if (distance.value <= 0) return;
+  // The move below the first slice only has to end below it: an axis with backlash comes to rest outside the window
+  // that slices are held to when it arrives from above.
+  SettleCriterion wide = plan.settle;
+  wide.window = std::max(plan.settle.window, distance * 0.5);
+  deps_.stage.move_to(plan.start - distance, wide, stop);
+}
+
+void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
+                     std::stop_token stop) {
+  check_plan(plan, deps_.stage.info());
+  if (!deps_.stage.status().homed) {
+    throw Error(ErrorCode::kStageNotHomed, "the stage has no reference: home it before the scan");
+  }
+  // With no feedback the position is not observable; the commanded one is all there is.
+  const bool measured_z = deps_.stage.info().feedback != FeedbackSource::kNone;
+  FrameLedger ledger;
+  SliceCapture capture(deps_.camera, deps_.clock, ledger);
+  const std::stop_callback wake(stop, [this] { deps_.camera.interrupt(); });
+  report.steps.reserve(static_cast<std::size_t>(plan.slices));
+  int lost = 0;
+  try {
+    take_up(plan, stop);
+    for (int index = 0; index < plan.slices; ++index) {
+      const Micrometers target = plan.target(index);
+      const MoveRecord move = deps_.stage.move_to(target, plan.settle, stop);
+      StepRecord step = record_move(index, target, move);
+      auto captured = capture.capture(move.settled, plan.frame_retries, stop);
+      report.frames = ledger.counts();
+      if (!captured) {
+        if (++lost > plan.allowed_lost_slices) throw too_many_lost(index, target, lost, plan);
+        step.measured = false;
+        step.triggers = 1 + plan.frame_retries;
+      } else {
+        record_exposure(step, *captured,
+                        deps_.stage.mean_position(captured->frame.exposure_start, captured->frame.exposure_end));
+        const double z_um = measured_z ? step.measured_um : step.quantised_um;
+        if (!deps_.sink.try_push({std::move(captured->frame), z_um})) {
+          throw Error(ErrorCode::kSliceLost, "slice " + std::to_string(index) +
+                                                 " was refused by the full slice queue: the computation is slower than "
+                                                 "the scan; use more threads, a larger queue or a smaller window");
+        }
+      }
+      report.steps.push_back(step);
+      if (on_slice) on_slice(report);
+    }
+  } catch (...) {
+    report.frames = ledger.counts();
+    deps_.stage.stop();
+    throw;
+  }
+}
+
+}  // namespace fvd

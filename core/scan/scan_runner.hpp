@@ -1,0 +1,49 @@
+#pragma once
+
+/// The scan: move, settle, expose, measure, hand on. Knows interfaces only.
+
+#include <functional>
+#include <stop_token>
+
+#include "core/hw/camera.hpp"
+#include "core/hw/clock.hpp"
+#include "core/hw/z_stage.hpp"
+#include "core/scan/frame_ledger.hpp"
+#include "core/scan/scan_plan.hpp"
+#include "core/scan/slice_sink.hpp"
+#include "core/scan/step_log.hpp"
+
+namespace fvd {
+
+/// The books of a scan, complete up to the moment it ended, however it ended.
+struct ScanReport {
+  StepLog steps;
+  FrameCounts frames;
+};
+
+struct ScanDependencies {
+  Camera& camera;  ///< configured
+  ZStage& stage;   ///< homed
+  Clock& clock;
+  SliceSink& sink;
+};
+
+/// context: run() on one thread; stop requests from any.
+class ScanRunner {
+ public:
+  explicit ScanRunner(const ScanDependencies& dependencies) : deps_(dependencies) {}
+
+  /// Runs the plan from the take-up move to the last slice. `report` is kept up to date slice by slice, and
+  /// `on_slice`, if set, is called after each, on this thread. On any error the stage is stopped before it is reported.
+  /// Throws Error kStageLimit (before anything moves), kStageNotHomed, kCameraFramesLost, kSliceLost, kAborted, and
+  /// what camera and stage throw.
+  void run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
+           std::stop_token stop);
+
+ private:
+  void take_up(const ScanPlan& plan, std::stop_token stop);
+
+  ScanDependencies deps_;
+};
+
+}  // namespace fvd

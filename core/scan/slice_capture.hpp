@@ -1,0 +1,42 @@
+#pragma once
+
+/// One trustworthy frame per height: triggers, waits, judges, retries.
+
+#include <optional>
+#include <stop_token>
+
+#include "core/hw/camera.hpp"
+#include "core/hw/clock.hpp"
+#include "core/scan/frame_ledger.hpp"
+
+namespace fvd {
+
+/// A frame that was exposed after the stage settled, and what it took to get it.
+struct CapturedFrame {
+  Frame frame;
+  int triggers = 1;
+};
+
+/// Never takes "the next buffer" for the answer to its trigger: a frame counts only if it is complete, newer than every
+/// frame accepted before, and exposed after the stage settled. All others are booked and given back.
+/// context: the scan's thread.
+class SliceCapture {
+ public:
+  /// References outlive the capture.
+  SliceCapture(Camera& camera, Clock& clock, FrameLedger& ledger) : camera_(camera), clock_(clock), ledger_(ledger) {}
+
+  /// The first acceptable frame exposed at or after `settled`, within 1 + retries triggers; nothing if all were lost.
+  /// Throws Error kAborted after a stop request, kCameraDisconnected.
+  [[nodiscard]] std::optional<CapturedFrame> capture(HostTime settled, int retries, std::stop_token stop);
+
+ private:
+  void drain();
+  [[nodiscard]] std::optional<Frame> trigger_once(HostTime settled, std::stop_token stop);
+
+  Camera& camera_;
+  Clock& clock_;
+  FrameLedger& ledger_;
+  std::optional<std::uint64_t> last_id_;
+};
+
+}  // namespace fvd
