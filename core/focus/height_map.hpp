@@ -11,17 +11,18 @@ namespace fvd {
 /// Why a point is a hole; reasons add up. 0 = valid.
 namespace mask_reason {
 inline constexpr std::uint8_t kLowProminence = 1U << 0U;  ///< no texture: the focus curve has no peak worth the name
-inline constexpr std::uint8_t kFirstSlice = 1U << 1U;     ///< sharpest at the first slice: the surface may lie below the range
-inline constexpr std::uint8_t kLastSlice = 1U << 2U;      ///< sharpest at the last slice: it may lie above
-inline constexpr std::uint8_t kNotBracketed = 1U << 3U;   ///< the neighbours do not enclose a maximum
-inline constexpr std::uint8_t kSaturated = 1U << 4U;      ///< a pixel at full scale inside the window at the peak
+inline constexpr std::uint8_t kFirstSlice =
+    1U << 1U;  ///< sharpest at the first slice: the surface may lie below the range
+inline constexpr std::uint8_t kLastSlice = 1U << 2U;     ///< sharpest at the last slice: it may lie above
+inline constexpr std::uint8_t kNotBracketed = 1U << 3U;  ///< the neighbours do not enclose a maximum
+inline constexpr std::uint8_t kSaturated = 1U << 4U;     ///< a pixel at full scale inside the window at the peak
 }  // namespace mask_reason
 
 /// All planes have shape [height][width] of the slices.
 struct HeightMap {
-  Plane<float> height_m;       ///< metres, NaN exactly where mask != 0
-  Plane<std::uint8_t> mask;    ///< 0 valid, else mask_reason bits
-  Plane<float> prominence;     ///< 0..1
+  Plane<float> height_m;     ///< metres, NaN exactly where mask != 0
+  Plane<std::uint8_t> mask;  ///< 0 valid, else mask_reason bits
+  Plane<float> prominence;   ///< 0..1
   PixelFormat texture_format = PixelFormat::kMono8;
   Plane<std::uint16_t> texture;  ///< all-in-focus: grey level at the peak slice, 0..max_grey_level(texture_format)
 };

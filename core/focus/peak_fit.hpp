@@ -1,0 +1,31 @@
+#pragma once
+
+/// The sub-slice position of a focus curve's peak from three samples at uneven heights.
+
+#include <cstdint>
+#include <optional>
+
+#include "core/focus/focus_settings.hpp"
+
+namespace fvd {
+
+/// Three neighbouring samples of a focus curve, the middle one the largest. Lengths in um.
+struct PeakTriple {
+  double z_left_um = 0.0;
+  double z_peak_um = 0.0;
+  double z_right_um = 0.0;
+  std::uint32_t left = 0;
+  std::uint32_t peak = 0;
+  std::uint32_t right = 0;
+};
+
+/// z of the peak in um, always between the neighbours' z. Nothing if the samples do not enclose a maximum
+/// (a neighbour above the peak, or both equal to it) or their z do not run one way.
+///
+/// With d1 = z_left - z_peak, d3 = z_right - z_peak, a = g(left) - g(peak), b = g(right) - g(peak):
+///   z = z_peak + (a d3^2 - b d1^2) / (2 (a d3 - b d1)),
+/// the vertex of the parabola through the points; g is the identity (kParabola) or the logarithm (kLogParabola, exact
+/// for a Gaussian curve). A sample of 0 counts as half a count under the logarithm.
+[[nodiscard]] std::optional<double> fit_peak_um(PeakMethod method, const PeakTriple& triple) noexcept;
+
+}  // namespace fvd

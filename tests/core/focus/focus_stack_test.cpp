@@ -1,0 +1,260 @@
+/// The streaming stack against its twin that keeps everything, and against what is known.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/focus/simple_focus_stack.hpp"
+#include "core/focus/streaming_focus_stack.hpp"
+#include "core/pipeline/worker_pool.hpp"
+#include "gtest/gtest.h"
+
+namespace fvd {
+namespace {
+
+/// A synthetic scan: texture whose contrast falls with the distance from the surface, plus noise.
+struct Scan {
+  PixelFormat format = PixelFormat::kMono8;
+  int width = 0;
+  int height = 0;
+  std::vector<std::vector<std::byte>> slices;
+  std::vector<double> z_um;
+
+  [[nodiscard]] ImageView slice(std::size_t k) const {
+    return {format, width, height, static_cast<std::ptrdiff_t>(width) * bytes_per_pixel(format), slices[k].data()};
+  }
+};
+
+enum class Surface { kTilted, kStepped, kRandom };
+
+double surface_um(Surface surface, int x, int y) {
+  switch (surface) {
+    case Surface::kTilted:
+      return 10.0 + 0.8 * x + 0.3 * y;
+    case Surface::kStepped:
+      return x % 20 < 10 ? 20.0 : 45.0;
+    case Surface::kRandom:
+      return 30.0;
+  }
+  return 0.0;
+}
+
+Scan make_scan(PixelFormat format, Surface surface, int width, int height, int count, unsigned seed) {
+  Scan scan{format, width, height, {}, {}};
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> jitter(-1.5, 1.5);
+  std::vector<double> texture(static_cast<std::size_t>(width * height));
+  for (auto& value : texture) value = normal(random);
+  const double unit = format == PixelFormat::kMono8 ? 1.0 : 256.0;
+  for (int k = 0; k < count; ++k) {
+    scan.z_um.push_back(5.0 * k + jitter(random));
+    std::vector<std::byte> bytes(texture.size() * static_cast<std::size_t>(bytes_per_pixel(format)));
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const auto i = static_cast<std::size_t>(y * width + x);
+        const double defocus = (scan.z_um.back() - surface_um(surface, x, y)) / 12.0;
+        const double contrast = surface == Surface::kRandom ? 30.0 : 30.0 * std::exp(-defocus * defocus);
+        const double noise = surface == Surface::kRandom ? 30.0 * normal(random) : normal(random);
+        const double level = std::clamp((128.0 + contrast * texture[i] + noise) * unit, 0.0, 256.0 * unit - 1.0);
+        if (format == PixelFormat::kMono8) {
+          bytes[i] = static_cast<std::byte>(static_cast<std::uint8_t>(level));
+        } else {
+          const auto wide = static_cast<std::uint16_t>(level);
+          std::memcpy(&bytes[2 * i], &wide, sizeof(wide));
+        }
+      }
+    }
+    scan.slices.push_back(std::move(bytes));
+  }
+  return scan;
+}
+
+void expect_identical(const HeightMap& a, const HeightMap& b) {
+  ASSERT_EQ(a.height_m.pixels().size(), b.height_m.pixels().size());
+  EXPECT_EQ(std::memcmp(a.height_m.pixels().data(), b.height_m.pixels().data(), a.height_m.pixels().size_bytes()), 0);
+  EXPECT_TRUE(std::ranges::equal(a.mask.pixels(), b.mask.pixels()));
+  EXPECT_TRUE(std::ranges::equal(a.prominence.pixels(), b.prominence.pixels()));
+  EXPECT_TRUE(std::ranges::equal(a.texture.pixels(), b.texture.pixels()));
+  EXPECT_EQ(a.texture_format, b.texture_format);
+}
+
+HeightMap stream(const Scan& scan, const FocusSettings& settings, PeakMethod method, int threads) {
+  WorkerPool pool(threads);
+  StreamingFocusStack stack(scan.width, scan.height, scan.format, settings, pool);
+  for (std::size_t k = 0; k < scan.slices.size(); ++k) stack.push(scan.slice(k), scan.z_um[k]);
+  return stack.finish(method);
+}
+
+struct Case {
+  PixelFormat format;
+  Surface surface;
+  int width;
+  int height;
+  int slices;
+  int window;
+};
+
+class AStreamingStack : public testing::TestWithParam<Case> {};
+
+TEST_P(AStreamingStack, EqualsTheOneThatKeepsEverything) {
+  const Case c = GetParam();
+  const Scan scan = make_scan(c.format, c.surface, c.width, c.height, c.slices, 7);
+  const FocusSettings settings{.window_px = c.window, .min_prominence = 0.3};
+  SimpleFocusStack simple(settings);
+  for (std::size_t k = 0; k < scan.slices.size(); ++k) simple.push(scan.slice(k), scan.z_um[k]);
+  for (const PeakMethod method : kAllPeakMethods) {
+    const HeightMap expected = simple.finish(method);
+    for (const int threads : {1, 2, 5}) {
+      SCOPED_TRACE(std::string(peak_method_name(method)) + ", threads " + std::to_string(threads));
+      expect_identical(stream(scan, settings, method, threads), expected);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OnEverySurface, AStreamingStack,
+                         testing::Values(Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 15, 9},
+                                         Case{PixelFormat::kMono8, Surface::kStepped, 64, 17, 12, 5},
+                                         Case{PixelFormat::kMono8, Surface::kRandom, 40, 23, 9, 3},
+                                         Case{PixelFormat::kMono16, Surface::kTilted, 37, 29, 15, 7},
+                                         Case{PixelFormat::kMono16, Surface::kRandom, 33, 11, 21, 31},
+                                         Case{PixelFormat::kMono12, Surface::kStepped, 20, 20, 8, 9},
+                                         Case{PixelFormat::kMono8, Surface::kTilted, 1, 1, 5, 9},
+                                         Case{PixelFormat::kMono8, Surface::kTilted, 3, 2, 5, 63},
+                                         Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 1, 3},
+                                         Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 2, 3}));
+
+TEST(StreamingFocusStack, MarksHolesWithNaNAndNothingElse) {
+  const HeightMap map =
+      stream(make_scan(PixelFormat::kMono8, Surface::kRandom, 50, 40, 9, 1), {}, PeakMethod::kParabola, 2);
+  int holes = 0;
+  for (std::size_t i = 0; i < map.mask.pixels().size(); ++i) {
+    EXPECT_EQ(std::isnan(map.height_m.pixels()[i]), map.mask.pixels()[i] != 0);
+    holes += map.mask.pixels()[i] != 0 ? 1 : 0;
+  }
+  EXPECT_GT(holes, 1900) << "noise without a surface has no peak";
+}
+
+TEST(StreamingFocusStack, FollowsATiltedSurface) {
+  const HeightMap map =
+      stream(make_scan(PixelFormat::kMono16, Surface::kTilted, 60, 40, 20, 3), {}, PeakMethod::kLogParabola, 2);
+  double squares = 0.0;
+  int valid = 0;
+  for (int y = 8; y < 32; ++y) {
+    for (int x = 8; x < 52; ++x) {
+      if (map.mask.at(x, y) != 0) continue;
+      const double error = static_cast<double>(map.height_m.at(x, y)) * 1e6 - surface_um(Surface::kTilted, x, y);
+      squares += error * error;
+      ++valid;
+    }
+  }
+  ASSERT_GT(valid, 1000);
+  EXPECT_LT(std::sqrt(squares / valid), 1.0);
+}
+
+TEST(StreamingFocusStack, NeedsTheSameMemoryForFewAndForManySlices) {
+  const Scan scan = make_scan(PixelFormat::kMono8, Surface::kTilted, 64, 48, 3, 5);
+  WorkerPool pool(1);
+  StreamingFocusStack stack(scan.width, scan.height, scan.format, {}, pool);
+  const double empty = stack.state_bytes_per_pixel();
+  for (int k = 0; k < 21; ++k) stack.push(scan.slice(static_cast<std::size_t>(k % 3)), k);
+  const double after_21 = stack.state_bytes_per_pixel();
+  for (int k = 21; k < 2000; ++k) stack.push(scan.slice(static_cast<std::size_t>(k % 3)), k);
+  EXPECT_EQ(after_21, empty);
+  EXPECT_EQ(stack.state_bytes_per_pixel(), after_21);
+  EXPECT_EQ(stack.slices(), 2000);
+  EXPECT_EQ(after_21, 24.0);
+}
+
+TEST(StreamingFocusStack, TakesNoMoreThanItsIndexCanCount) {
+  const Scan scan = make_scan(PixelFormat::kMono8, Surface::kRandom, 1, 1, 2, 5);
+  WorkerPool pool(1);
+  StreamingFocusStack stack(1, 1, PixelFormat::kMono8, {.window_px = 3, .min_prominence = 0.0}, pool);
+  for (int k = 0; k < StreamingFocusStack::kMaxSlices; ++k) stack.push(scan.slice(0), k);
+  EXPECT_THROW(stack.push(scan.slice(0), 1e6), Error);
+  EXPECT_EQ(stack.slices(), StreamingFocusStack::kMaxSlices);
+}
+
+/// A stack of 3 x 3 slices of uniform contrast per slice.
+HeightMap of_contrasts(const std::vector<int>& contrasts, int base = 100) {
+  WorkerPool pool(1);
+  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .min_prominence = 0.5}, pool);
+  double z_um = 0.0;
+  for (const int contrast : contrasts) {
+    Plane<std::uint8_t> slice(3, 3, static_cast<std::uint8_t>(base));
+    slice.at(1, 1) = static_cast<std::uint8_t>(base + contrast);
+    stack.push(image_view(slice.view(), PixelFormat::kMono8), z_um);
+    z_um += 10.0;
+  }
+  return stack.finish(PeakMethod::kParabola);
+}
+
+TEST(StreamingFocusStack, TellsAPeakAtTheFirstSlice) {
+  EXPECT_EQ(of_contrasts({90, 40, 10}).mask.at(1, 1), mask_reason::kFirstSlice);
+}
+
+TEST(StreamingFocusStack, TellsAPeakAtTheLastSlice) {
+  EXPECT_EQ(of_contrasts({10, 40, 90}).mask.at(1, 1), mask_reason::kLastSlice);
+}
+
+TEST(StreamingFocusStack, TellsAFlatCurveAsLowProminence) {
+  EXPECT_EQ(of_contrasts({80, 90, 80}).mask.at(1, 1), mask_reason::kLowProminence);
+  EXPECT_NE(of_contrasts({0, 0, 0}).mask.at(1, 1) & mask_reason::kLowProminence, 0);
+}
+
+TEST(StreamingFocusStack, TellsSaturationAtThePeakOnly) {
+  EXPECT_EQ(of_contrasts({10, 155, 10}).mask.at(1, 1), mask_reason::kSaturated);
+  EXPECT_EQ(of_contrasts({10, 154, 10}).mask.at(1, 1), 0);
+}
+
+TEST(StreamingFocusStack, TakesTheFirstOfEqualPeaks) {
+  const HeightMap map = of_contrasts({10, 90, 90, 10});
+  EXPECT_NEAR(static_cast<double>(map.height_m.at(1, 1)), 15e-6, 1e-10) << "half way to the equal neighbour";
+}
+
+TEST(StreamingFocusStack, KeepsTheGreyLevelOfThePeakSlice) {
+  EXPECT_EQ(of_contrasts({10, 90, 20}).texture.at(1, 1), 190);
+}
+
+TEST(StreamingFocusStack, RefusesAMapWithoutSlices) {
+  WorkerPool pool(1);
+  const StreamingFocusStack stack(4, 4, PixelFormat::kMono8, {}, pool);
+  EXPECT_THROW((void)stack.finish(PeakMethod::kParabola), Error);
+}
+
+TEST(StreamingFocusStack, RefusesSlicesThatDoNotFitAndStaysAsItWas) {
+  WorkerPool pool(1);
+  StreamingFocusStack stack(4, 4, PixelFormat::kMono8, {}, pool);
+  const Plane<std::uint8_t> other(5, 4);
+  const Plane<std::uint16_t> wide(4, 4);
+  const Plane<std::uint8_t> good(4, 4);
+  EXPECT_THROW(stack.push(image_view(other.view(), PixelFormat::kMono8), 0), Error);
+  EXPECT_THROW(stack.push(image_view(wide.view(), PixelFormat::kMono16), 0), Error);
+  EXPECT_THROW(stack.push(image_view(good.view(), PixelFormat::kMono8), std::nan("")), Error);
+  EXPECT_EQ(stack.slices(), 0);
+}
+
+TEST(StreamingFocusStack, RefusesBadSettings) {
+  WorkerPool pool(1);
+  for (const int window : {-1, 0, 1, 2, 8, 64, 65}) {
+    EXPECT_THROW(StreamingFocusStack(4, 4, PixelFormat::kMono8, {.window_px = window, .min_prominence = 0.5}, pool),
+                 Error)
+        << window;
+  }
+  EXPECT_THROW(StreamingFocusStack(4, 4, PixelFormat::kMono8, {.window_px = 9, .min_prominence = 1.5}, pool), Error);
+  EXPECT_THROW(StreamingFocusStack(0, 4, PixelFormat::kMono8, {}, pool), Error);
+}
+
+TEST(StreamingFocusStack, StatesItsMemoryBeforehand) {
+  const auto small = StreamingFocusStack::memory_bytes(2048, 2048, PixelFormat::kMono8, {}, 2);
+  const auto pixels = 2048.0 * 2048.0;
+  EXPECT_GT(static_cast<double>(small), 24 * pixels);
+  EXPECT_LT(static_cast<double>(small), 40 * pixels);
+}
+
+}  // namespace
+}  // namespace fvd

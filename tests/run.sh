@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds, runs every test. Arguments go to ctest, e.g. tests/run.sh -L unit
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/support/setup.sh"
+
+fvd_install_packages
+fvd_build
+ctest --test-dir "$FVD_BUILD" --output-on-failure --no-tests=error -j2 "$@"

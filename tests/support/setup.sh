@@ -1,0 +1,67 @@
+# Sourced by tests/run.sh and sim/demo.sh: the Debian packages and the build. Sets FVD_ROOT and FVD_BUILD.
+#
+# FVD_BUILD_DIR   build folder (default: build)
+# FVD_SANITIZE    sanitizers for every target, e.g. address,undefined or thread
+
+FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
+
+fvd_packages=(
+  ca-certificates cmake g++ iproute2 ninja-build pkg-config
+  libaravis-dev libbenchmark-dev libboost-dev libcli11-dev libeigen3-dev libgmock-dev libgtest-dev libmodbus-dev
+  libopencv-dev libspdlog-dev libsqlite3-dev libsystemd-dev libtiff-dev libusb-1.0-0-dev libvalijson-dev
+  nlohmann-json3-dev
+)
+
+fvd_say() { printf '%s\n' "$*" >&2; }
+
+fvd_missing_packages() {
+  local package
+  for package in "${fvd_packages[@]}"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || printf '%s ' "$package"
+  done
+}
+
+# Installs what is missing, once and quietly; nothing to do means no network and no root are needed.
+fvd_install_packages() {
+  local missing runner log
+  command -v dpkg-query >/dev/null || { fvd_say "this is not a Debian system: install the equivalents of: ${fvd_packages[*]}"; return 1; }
+  missing=$(fvd_missing_packages)
+  [ -n "$missing" ] || return 0
+  if [ "$(id -u)" -eq 0 ]; then
+    runner=(env)
+  elif command -v sudo >/dev/null; then
+    runner=(sudo)
+  else
+    fvd_say "packages are missing and neither root nor sudo is at hand; ask an administrator for: apt-get install $missing"
+    return 1
+  fi
+  fvd_say "installing Debian packages: $missing"
+  log=$(mktemp)
+  # shellcheck disable=SC2086  # the list is meant to be split
+  if ! { "${runner[@]}" apt-get update -qq &&
+         "${runner[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing; } >"$log" 2>&1; then
+    tail -n 20 "$log" >&2
+    fvd_say "installing failed; the whole log is in $log"
+    return 1
+  fi
+  rm -f "$log"
+}
+
+# fvd_build [TARGET ...]: configures once and builds the targets, or everything. Copies of this script on one build
+# folder wait for each other.
+fvd_build() {
+  local log="$FVD_BUILD/build.log" targets=()
+  [ $# -eq 0 ] || targets=(--target "$@")
+  mkdir -p "$FVD_BUILD" || return 1
+  exec 9>"$FVD_BUILD/.lock" && flock 9
+  fvd_say "building in $FVD_BUILD (the first time takes some minutes)"
+  if ! { cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" &&
+         cmake --build "$FVD_BUILD" "${targets[@]}"; } >"$log" 2>&1; then
+    grep -E -A12 'error|Error|FAILED' "$log" | head -n 60 >&2
+    fvd_say "the build failed; the whole log is in $log"
+    exec 9>&-
+    return 1
+  fi
+  exec 9>&-
+}
