@@ -1,0 +1,195 @@
+#include "config/field_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "config/strict_json.hpp"
+
+namespace fvd {
+
+namespace {
+
+using nlohmann::json;
+
+/// Levenshtein distance, for "did you mean".
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+std::string hint(const std::string& name, const std::set<std::string, std::less<>>& known) {
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(name, a) < edit_distance(name, b);
+  });
+  if (nearest == known.end() || edit_distance(name, *nearest) > 1 + name.size() / 3) return "";
+  return "; did you mean '" + *nearest + "'?";
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "\"" : ", \"") + name + "\"";
+  return text;
+}
+
+std::string shown(const json& value) {
+  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+}
+
+std::string range_text(IntegerRange range) {
+  return "an integer within " + std::to_string(range.min) + ".." + std::to_string(range.max);
+}
+
+std::string range_text(NumberRange range) {
+  std::ostringstream text;
+  if (range.above_min) {
+    text << "a number above " << range.min << " and up to " << range.max;
+  } else {
+    text << "a number within " << range.min << ".." << range.max;
+  }
+  return text.str();
+}
+
+std::string escaped(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == '~') {
+      text += "~0";
+    } else if (c == '/') {
+      text += "~1";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+bool accepts(const std::vector<std::string>& accepted, const json& value) {
+  return value.is_string() && std::find(accepted.begin(), accepted.end(), value.get<std::string>()) != accepted.end();
+}
+
+}  // namespace
+
+FieldReader::FieldReader(const json& object, Problems& problems, std::string pointer)
+    : object_(object), problems_(problems), pointer_(std::move(pointer)) {
+  if (!object_.is_object()) problems_.push_back({pointer_, shown(object_) + " is not an object { }"});
+}
+
+void FieldReader::finish() {
+  if (!object_.is_object()) return;
+  for (const auto& [name, value] : object_.items()) {
+    if (known_.contains(name) || (pointer_.empty() && name == "$schema")) continue;
+    report(name, "unknown key" + hint(name, known_));
+  }
+}
+
+void FieldReader::report(std::string_view name, const std::string& message) {
+  problems_.push_back({pointer_ + "/" + escaped(name), message});
+}
+
+void FieldReader::refuse(std::string_view name, const json& value, const std::string& accepted) {
+  report(name, shown(value) + " is not accepted; expected " + accepted);
+}
+
+const json* FieldReader::find(std::string_view name) {
+  known_.emplace(name);
+  if (!object_.is_object()) return nullptr;
+  const auto found = object_.find(std::string(name));
+  return found == object_.end() ? nullptr : &*found;
+}
+
+void FieldReader::group(std::string_view name, std::string_view /*meaning*/,
+                        const std::function<void(Fields&)>& members) {
+  static const json kEmpty = json::object();
+  const json* value = find(name);
+  FieldReader inner(value != nullptr ? *value : kEmpty, problems_, pointer_ + "/" + escaped(name));
+  members(inner);
+  inner.finish();
+}
+
+void FieldReader::integer64(std::string_view name, std::int64_t& value, IntegerRange range,
+                            std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  const bool fits = found->is_number_integer() && !(found->is_number_unsigned() && found->get<std::uint64_t>() > INT64_MAX);
+  if (!fits || found->get<std::int64_t>() < range.min || found->get<std::int64_t>() > range.max) {
+    return refuse(name, *found, range_text(range));
+  }
+  value = found->get<std::int64_t>();
+}
+
+void FieldReader::number(std::string_view name, double& value, NumberRange range, std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  const double number = found->is_number() ? found->get<double>() : std::nan("");
+  const bool above = range.above_min ? number > range.min : number >= range.min;
+  if (!above || !(number <= range.max)) return refuse(name, *found, range_text(range));
+  value = number;
+}
+
+void FieldReader::boolean(std::string_view name, bool& value, std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  if (!found->is_boolean()) return refuse(name, *found, "true or false");
+  value = found->get<bool>();
+}
+
+void FieldReader::text(std::string_view name, std::string& value, std::size_t max_length,
+                       std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  if (!found->is_string() || found->get_ref<const std::string&>().size() > max_length) {
+    return refuse(name, *found, "a text of at most " + std::to_string(max_length) + " bytes");
+  }
+  value = found->get<std::string>();
+}
+
+void FieldReader::choice(std::string_view name, std::string& value, const std::vector<std::string>& accepted,
+                         std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  if (!accepts(accepted, *found)) return refuse(name, *found, "one of " + joined(accepted));
+  value = found->get<std::string>();
+}
+
+void FieldReader::choices(std::string_view name, std::vector<std::string>& values,
+                          const std::vector<std::string>& accepted, std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  const std::string expected = "a list without repetitions of " + joined(accepted);
+  if (!found->is_array()) return refuse(name, *found, expected);
+  std::vector<std::string> read;
+  for (const json& item : *found) {
+    if (!accepts(accepted, item) || std::find(read.begin(), read.end(), item.get<std::string>()) != read.end()) {
+      return refuse(name, *found, expected);
+    }
+    read.push_back(item.get<std::string>());
+  }
+  values = std::move(read);
+}
+
+void FieldReader::require(std::string_view name) {
+  if (find(name) == nullptr && object_.is_object()) report(name, "is missing and has no default");
+}
+
+void read_document(std::string_view json_text, const std::function<void(Fields&)>& describe, Problems& problems) {
+  const auto document = parse_strict_json(json_text, problems);
+  if (!document) return;
+  FieldReader reader(*document, problems);
+  describe(reader);
+  reader.finish();
+}
+
+}  // namespace fvd

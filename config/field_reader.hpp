@@ -1,0 +1,48 @@
+#pragma once
+
+/// Fills a described structure from JSON and collects every problem instead of stopping at the first.
+
+#include <set>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "config/fields.hpp"
+#include "config/problem.hpp"
+
+namespace fvd {
+
+/// Fields that are absent or wrong keep their value. Unknown keys are problems, with the nearest known name.
+class FieldReader final : public Fields {
+ public:
+  /// Both outlive the reader. pointer: where the object stands in its document.
+  FieldReader(const nlohmann::json& object, Problems& problems, std::string pointer = "");
+  /// Reports unknown keys: call when all fields are described.
+  void finish();
+
+  void group(std::string_view name, std::string_view meaning, const std::function<void(Fields&)>& members) override;
+  void integer64(std::string_view name, std::int64_t& value, IntegerRange range, std::string_view meaning) override;
+  void number(std::string_view name, double& value, NumberRange range, std::string_view meaning) override;
+  void boolean(std::string_view name, bool& value, std::string_view meaning) override;
+  void text(std::string_view name, std::string& value, std::size_t max_length, std::string_view meaning) override;
+  void choice(std::string_view name, std::string& value, const std::vector<std::string>& accepted,
+              std::string_view meaning) override;
+  void choices(std::string_view name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
+               std::string_view meaning) override;
+  void require(std::string_view name) override;
+
+ private:
+  [[nodiscard]] const nlohmann::json* find(std::string_view name);
+  void refuse(std::string_view name, const nlohmann::json& value, const std::string& accepted);
+  void report(std::string_view name, const std::string& message);
+
+  const nlohmann::json& object_;
+  Problems& problems_;
+  std::string pointer_;
+  std::set<std::string, std::less<>> known_;
+};
+
+/// Reads a whole document: problems of syntax, type, range and names, all at once.
+void read_document(std::string_view json_text, const std::function<void(Fields&)>& describe, Problems& problems);
+
+}  // namespace fvd

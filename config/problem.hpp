@@ -1,0 +1,27 @@
+#pragma once
+
+/// What is wrong with a document, and where.
+
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace fvd {
+
+struct Problem {
+  std::string pointer;  ///< JSON pointer (RFC 6901), e.g. "/stage/min_um"; empty = the whole document
+  std::string message;  ///< says the value and what would be accepted
+
+  bool operator==(const Problem&) const = default;
+};
+
+using Problems = std::vector<Problem>;
+
+/// One line a problem: "<source>: <pointer>: <message>".
+[[nodiscard]] std::string to_text(const Problems& problems, const std::string& source);
+
+/// Throws Error `code` with all problems if there are any.
+void throw_if_any(const Problems& problems, ErrorCode code, const std::string& source);
+
+}  // namespace fvd
