@@ -123,7 +123,8 @@ void FieldReader::integer64(std::string_view name, std::int64_t& value, IntegerR
                             std::string_view /*meaning*/) {
   const json* found = find(name);
   if (found == nullptr) return;
-  const bool fits = found->is_number_integer() && !(found->is_number_unsigned() && found->get<std::uint64_t>() > INT64_MAX);
+  const bool fits =
+      found->is_number_integer() && !(found->is_number_unsigned() && found->get<std::uint64_t>() > INT64_MAX);
   if (!fits || found->get<std::int64_t>() < range.min || found->get<std::int64_t>() > range.max) {
     return refuse(name, *found, range_text(range));
   }

@@ -17,7 +17,9 @@ class ValueWriter final : public Fields {
     members(inner);
     put(name, std::move(inner.object));
   }
-  void integer64(std::string_view name, std::int64_t& value, IntegerRange, std::string_view) override { put(name, value); }
+  void integer64(std::string_view name, std::int64_t& value, IntegerRange, std::string_view) override {
+    put(name, value);
+  }
   void number(std::string_view name, double& value, NumberRange, std::string_view) override { put(name, value); }
   void boolean(std::string_view name, bool& value, std::string_view) override { put(name, value); }
   void text(std::string_view name, std::string& value, std::size_t, std::string_view) override { put(name, value); }
@@ -75,8 +77,8 @@ class SchemaWriter final : public Fields {
   }
   void choices(std::string_view name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
                std::string_view meaning) override {
-    put(name,
-        {{"type", "array"}, {"items", {{"enum", accepted}}}, {"uniqueItems", true}, {"default", values}}, meaning);
+    put(name, {{"type", "array"}, {"items", {{"enum", accepted}}}, {"uniqueItems", true}, {"default", values}},
+        meaning);
   }
   void require(std::string_view name) override {
     required.push_back(name);

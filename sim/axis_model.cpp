@@ -26,11 +26,11 @@ struct AxisModel::Impl {
     HostTime start{};
     MotionProfile profile{0.0};
     MotionLimits limits;
-    double load_before = 0.0;    // load position at the start, behind the backlash
-    double rest_before = 0.0;    // resting error carried in, um
-    double rest_error = 0.0;     // resting error after the move, um
-    double origin = 0.0;         // while it runs
-    double origin_after = 0.0;   // once it ended
+    double load_before = 0.0;   // load position at the start, behind the backlash
+    double rest_before = 0.0;   // resting error carried in, um
+    double rest_error = 0.0;    // resting error after the move, um
+    double origin = 0.0;        // while it runs
+    double origin_after = 0.0;  // once it ended
     bool homed_before = false;
     bool homed_after = false;
     bool rings = false;

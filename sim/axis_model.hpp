@@ -11,20 +11,20 @@ namespace fvd::sim {
 
 /// All errors of the axis, each 0 = absent. Lengths in um, frequencies in Hz.
 struct AxisParameters {
-  double steps_per_um = 100.0;            ///< commanded steps per um (electronic gear)
-  double encoder_resolution_um = 0.01;    ///< encoder quantum
-  double encoder_noise_um = 0.0;          ///< sd of each reading
-  double settle_noise_um = 0.0;           ///< sd of the true resting position about the target, drawn once a move
-  double ring_amplitude_um = 0.0;         ///< damped oscillation after a move
+  double steps_per_um = 100.0;          ///< commanded steps per um (electronic gear)
+  double encoder_resolution_um = 0.01;  ///< encoder quantum
+  double encoder_noise_um = 0.0;        ///< sd of each reading
+  double settle_noise_um = 0.0;         ///< sd of the true resting position about the target, drawn once a move
+  double ring_amplitude_um = 0.0;       ///< damped oscillation after a move
   double ring_frequency_hz = 70.0;
   double ring_decay_ms = 15.0;
-  double backlash_um = 0.0;               ///< lost motion on reversal; not seen by a motor encoder
-  double lead_error_um = 0.0;             ///< amplitude of the periodic screw error; not seen by a motor encoder
-  double lead_um = 1000.0;                ///< screw lead, the period of lead_error_um
-  double drift_um_per_min = 0.0;          ///< thermal drift of the true position
-  double start_latency_ms = 0.0;          ///< command to motion; IN-POS is stale meanwhile
-  double home_position_um = 0.0;          ///< where homing ends
-  double power_on_position_um = -200.0;   ///< true position before homing
+  double backlash_um = 0.0;              ///< lost motion on reversal; not seen by a motor encoder
+  double lead_error_um = 0.0;            ///< amplitude of the periodic screw error; not seen by a motor encoder
+  double lead_um = 1000.0;               ///< screw lead, the period of lead_error_um
+  double drift_um_per_min = 0.0;         ///< thermal drift of the true position
+  double start_latency_ms = 0.0;         ///< command to motion; IN-POS is stale meanwhile
+  double home_position_um = 0.0;         ///< where homing ends
+  double power_on_position_um = -200.0;  ///< true position before homing
   std::uint64_t seed = 1;
 };
 

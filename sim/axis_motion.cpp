@@ -41,9 +41,8 @@ MotionProfile MotionProfile::to(MotionState from, double target, const MotionLim
   const double distance = std::abs(target - from.position);
   const double initial = std::abs(from.velocity);
   const double sum = limits.acceleration + limits.deceleration;
-  const double reachable = std::sqrt((2.0 * limits.acceleration * limits.deceleration * distance +
-                                      limits.deceleration * initial * initial) /
-                                     sum);
+  const double reachable = std::sqrt(
+      (2.0 * limits.acceleration * limits.deceleration * distance + limits.deceleration * initial * initial) / sum);
   const double top = std::max(initial, std::min(limits.speed, reachable));
   const double speed_up = (top - initial) / limits.acceleration;
   profile.add(from, direction * limits.acceleration, speed_up);

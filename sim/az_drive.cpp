@@ -74,9 +74,8 @@ void AzDrive::refresh(HostTime now) {
   const bool homed = axis_.homed(now);
   const bool in_position = axis_.in_position(now);
   const bool alarm = alarm_ != 0;
-  const unsigned output = (homed ? bit::kHomeEnd : 0U) | (ready(now) ? bit::kReady : 0U) |
-                          (alarm ? bit::kAlarmA : 0U) | (moving ? bit::kBusy | bit::kMove : 0U) |
-                          (in_position ? bit::kInPosition : 0U);
+  const unsigned output = (homed ? bit::kHomeEnd : 0U) | (ready(now) ? bit::kReady : 0U) | (alarm ? bit::kAlarmA : 0U) |
+                          (moving ? bit::kBusy | bit::kMove : 0U) | (in_position ? bit::kInPosition : 0U);
   registers_[reg::kOutput + 1] = static_cast<std::uint16_t>(output);
   set_long(reg::kAlarm, alarm_);
   set_long(reg::kCommandPosition, axis_.command_steps(now));
@@ -124,7 +123,8 @@ void AzDrive::written(int address, std::size_t count, HostTime now) {
   }
   if (address > reg::kDirectLast || end <= reg::kDirectFirst) return;
   const std::int32_t trigger = long_at(reg::kDirectTrigger);
-  // Trigger 1 starts when it is written; -n keeps standing and starts whenever item n (counted back from the trigger) is.
+  // Trigger 1 starts when it is written; -n keeps standing and starts whenever item n (counted back from the trigger)
+  // is.
   const bool started_by_trigger = trigger == 1 && touches(reg::kDirectTrigger);
   const bool started_by_item =
       trigger <= -1 && trigger >= -7 && touches(reg::kDirectTrigger + 2 * trigger) && !touches(reg::kDirectTrigger);

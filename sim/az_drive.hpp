@@ -1,7 +1,7 @@
 #pragma once
 
-/// The registers of an Oriental Motor AZ drive (HM-60262-6E; addresses are PDU addresses, 32-bit values high word first)
-/// on top of a simulated axis.
+/// The registers of an Oriental Motor AZ drive (HM-60262-6E; addresses are PDU addresses, 32-bit values high word
+/// first) on top of a simulated axis.
 
 #include <array>
 #include <atomic>
@@ -33,8 +33,8 @@ class AzDrive final : public RegisterBank {
   [[nodiscard]] ModbusException write(int address, std::span<const std::uint16_t> values) override;
 
   // context: any thread.
-  void raise_alarm(int code);          ///< stops the axis, as the real drive does
-  void refuse_moves(int count);        ///< the next `count` moves are ignored without a word
+  void raise_alarm(int code);                                  ///< stops the axis, as the real drive does
+  void refuse_moves(int count);                                ///< the next `count` moves are ignored without a word
   [[nodiscard]] int moves() const noexcept { return moves_; }  ///< moves executed since power on
 
  private:

@@ -1,13 +1,5 @@
 #include "sim/modbus_tcp_server.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <sys/eventfd.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -18,6 +10,14 @@
 #include <stop_token>
 #include <thread>
 #include <vector>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "core/error.hpp"
 
@@ -154,9 +154,10 @@ struct ModbusTcpServer::Impl {
 
   bool answer(Client& client, const Bytes& frame, std::stop_token stop) {
     ++requests;
-    if (mute || frame[6] != unit || take(lost_requests)) return true;
+    const bool writes = frame[kHeaderBytes] != 3;
+    if (mute || frame[6] != unit || (writes && take(lost_writes))) return true;
     const Bytes reply = execute(std::span(frame).subspan(kHeaderBytes));
-    if (take(lost_replies)) return true;
+    if (writes && take(lost_write_replies)) return true;
     if (take(delayed_replies)) {
       std::mutex mutex;
       std::condition_variable_any never;
@@ -174,11 +175,16 @@ struct ModbusTcpServer::Impl {
   Bytes execute(std::span<const std::uint8_t> pdu) {
     const std::uint8_t function = pdu[0];
     switch (function) {
-      case 3: return pdu.size() == 5 ? read(function, word_at(pdu, 1), word_at(pdu, 3)) : bad_value(function);
-      case 6: return pdu.size() == 5 ? write_one(pdu) : bad_value(function);
-      case 16: return write_many(pdu);
-      case 23: return read_write(pdu);
-      default: return exception_reply(function, ModbusException::kIllegalFunction);
+      case 3:
+        return pdu.size() == 5 ? read(function, word_at(pdu, 1), word_at(pdu, 3)) : bad_value(function);
+      case 6:
+        return pdu.size() == 5 ? write_one(pdu) : bad_value(function);
+      case 16:
+        return write_many(pdu);
+      case 23:
+        return read_write(pdu);
+      default:
+        return exception_reply(function, ModbusException::kIllegalFunction);
     }
   }
 
@@ -238,8 +244,8 @@ struct ModbusTcpServer::Impl {
   std::atomic<bool> mute{false};
   std::atomic<int> delayed_replies{0};
   std::atomic<std::int64_t> delay_ms{0};
-  std::atomic<int> lost_replies{0};
-  std::atomic<int> lost_requests{0};
+  std::atomic<int> lost_write_replies{0};
+  std::atomic<int> lost_writes{0};
   std::jthread thread;  // last
 };
 
@@ -254,7 +260,7 @@ void ModbusTcpServer::delay_replies(int count, std::chrono::milliseconds delay) 
   impl_->delay_ms = delay.count();
   impl_->delayed_replies = count;
 }
-void ModbusTcpServer::lose_replies(int count) { impl_->lost_replies = count; }
-void ModbusTcpServer::lose_requests(int count) { impl_->lost_requests = count; }
+void ModbusTcpServer::lose_write_replies(int count) { impl_->lost_write_replies = count; }
+void ModbusTcpServer::lose_writes(int count) { impl_->lost_writes = count; }
 
 }  // namespace fvd::sim

@@ -39,10 +39,10 @@ class ModbusTcpServer {
   [[nodiscard]] std::uint64_t requests() const noexcept;
 
   // Faults. context: any thread.
-  void set_mute(bool mute);                             ///< takes requests, executes nothing, answers nothing
+  void set_mute(bool mute);  ///< takes requests, executes nothing, answers nothing
   void delay_replies(int count, std::chrono::milliseconds delay);  ///< the next `count` replies come late
-  void lose_replies(int count);                         ///< the next `count` requests are executed but not answered
-  void lose_requests(int count);                        ///< the next `count` requests are not executed and not answered
+  void lose_write_replies(int count);  ///< the next `count` writes are executed but not answered
+  void lose_writes(int count);         ///< the next `count` writes are not executed and not answered
 
  private:
   struct Impl;

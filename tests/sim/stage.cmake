@@ -1,1 +1,1 @@
-# tests of the simulated stage
+fvd_add_test(sim_stage_test LABELS unit LIBRARIES fvd::sim SOURCES axis_model_test.cpp)

@@ -1,0 +1,45 @@
+#pragma once
+
+/// The latest samples of an axis with their times.
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/hw/z_stage.hpp"
+
+namespace fvd {
+
+/// What one poll of the drive said.
+struct AxisSample {
+  HostTime time{};
+  Micrometers position;
+  bool enabled = false;
+  bool homed = false;
+  bool moving = false;
+  bool in_position = false;
+  bool alarm = false;
+  int alarm_code = 0;
+};
+
+/// A ring of fixed size, times increasing. context: one thread at a time.
+class PositionLog {
+ public:
+  explicit PositionLog(std::size_t capacity) : ring_(capacity) {}
+
+  void add(const AxisSample& sample);
+  [[nodiscard]] std::optional<AxisSample> latest() const;
+
+  /// Mean and sample standard deviation over [from, to]; interpolated to the window's middle, with 0 samples, from the
+  /// nearest neighbours when none lies inside. The log is not empty.
+  [[nodiscard]] PositionMean mean(HostTime from, HostTime to) const;
+
+ private:
+  [[nodiscard]] const AxisSample& at(std::size_t age) const;  // 0 = newest
+
+  std::vector<AxisSample> ring_;
+  std::size_t next_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace fvd
