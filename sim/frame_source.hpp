@@ -17,7 +17,7 @@ struct ExposureRequest {
   int offset_y = 0;
   int width = 0;
   int height = 0;
-  HostTime start{};             ///< exposure start and end on the host clock, both in the past
+  HostTime start{};  ///< exposure start and end on the host clock, both in the past
   HostTime end{};
   double gain_db = 0.0;
   std::uint64_t exposure_index = 0;  ///< counts exposures since the camera started: seeds the noise

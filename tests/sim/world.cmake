@@ -1,1 +1,2 @@
-# tests of the simulated world
+fvd_add_test(sim_world_test LABELS sim LIBRARIES fvd::sim SOURCES renderer_test.cpp surface_test.cpp)
+target_compile_definitions(sim_world_test PRIVATE FVD_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

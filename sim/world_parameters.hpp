@@ -1,0 +1,35 @@
+#pragma once
+
+/// A simulated world as plain values.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace fvd::sim {
+
+enum class SurfaceKind { kChapter, kTilted, kSphere, kRough, kHeightMap };
+
+struct WorldParameters {
+  SurfaceKind surface = SurfaceKind::kChapter;
+  int width_px = 480;  ///< sensor; the chapter's surface needs exactly 480 x 360, a height map brings its own size
+  int height_px = 360;
+
+  double tilt_x_um_per_px = 0.05;  ///< kTilted: height grows by so much a pixel
+  double tilt_y_um_per_px = 0.0;
+  double base_um = 50.0;         ///< kTilted: height of the centre; kSphere: of the plane it stands on; kRough: mean
+  double radius_um = 1000.0;     ///< kSphere
+  double cap_height_um = 80.0;   ///< kSphere: apex above the plane
+  double pixel_pitch_um = 1.0;   ///< lateral scale of the sphere
+  double sq_um = 3.0;            ///< kRough: root mean square height, exact
+  double correlation_px = 12.0;  ///< kRough: standard deviation of the smoothing
+  std::filesystem::path height_map_file;  ///< kHeightMap: GSF
+
+  double defocus_px_per_um = 0.04;  ///< sigma of the blur per um of defocus
+  double readout_noise = 1.5;       ///< standard deviation in 8-bit grey levels
+  double contrast = 28.0;           ///< standard deviation of the texture in 8-bit grey levels
+  double poor_contrast = 0.03;      ///< of the texture-poor patch, as a fraction
+  std::uint64_t seed = 1;           ///< of texture, surface and noise
+};
+
+}  // namespace fvd::sim
