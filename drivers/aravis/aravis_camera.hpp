@@ -1,0 +1,16 @@
+#pragma once
+
+/// A GigE Vision or USB3 Vision camera through Aravis.
+
+#include <memory>
+
+#include "core/hw/camera.hpp"
+#include "drivers/driver_config.hpp"
+
+namespace fvd {
+
+/// Opens the camera and takes control of it. Throws Error kCameraDisconnected if it does not answer or another program
+/// controls it, kCameraSettings if it refuses the packet size.
+[[nodiscard]] std::unique_ptr<Camera> open_aravis_camera(const CameraConfig& config);
+
+}  // namespace fvd

@@ -1,0 +1,57 @@
+#pragma once
+
+/// GLib objects and errors as C++ expects them.
+
+#include <memory>
+#include <string>
+
+#include <arv.h>
+
+#include "core/error.hpp"
+
+namespace fvd {
+
+struct GObjectDeleter {
+  template <typename Object>
+  void operator()(Object* object) const {
+    g_object_unref(object);
+  }
+};
+/// Sole owner of one reference.
+template <typename Object>
+using GObjectPtr = std::unique_ptr<Object, GObjectDeleter>;
+
+/// Collects the GError of one call: pass out(), then check(). Aravis returns plausible defaults beside an error, so the
+/// error is what counts, never the value.
+class GErrorSlot {
+ public:
+  GErrorSlot() = default;
+  ~GErrorSlot() { g_clear_error(&error_); }
+  GErrorSlot(const GErrorSlot&) = delete;
+  GErrorSlot& operator=(const GErrorSlot&) = delete;
+
+  [[nodiscard]] GError** out() {
+    g_clear_error(&error_);
+    return &error_;
+  }
+  [[nodiscard]] bool failed() const { return error_ != nullptr; }
+  [[nodiscard]] std::string message() const { return error_ == nullptr ? "" : error_->message; }
+
+  /// True where the device did not answer, as against refusing.
+  [[nodiscard]] bool is_connection_loss() const {
+    return error_ != nullptr && error_->domain == ARV_DEVICE_ERROR &&
+           (error_->code == ARV_DEVICE_ERROR_TIMEOUT || error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
+            error_->code == ARV_DEVICE_ERROR_NOT_FOUND || error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR);
+  }
+
+  /// Throws Error kCameraDisconnected, or `refused` where the device answered, if the call failed.
+  void check(const std::string& what, ErrorCode refused = ErrorCode::kCameraSettings) const {
+    if (!failed()) return;
+    throw Error(is_connection_loss() ? ErrorCode::kCameraDisconnected : refused, what + ": " + message());
+  }
+
+ private:
+  GError* error_ = nullptr;
+};
+
+}  // namespace fvd

@@ -1,0 +1,11 @@
+#pragma once
+
+/// The GenICam description of the simulated camera: SFNC names over the registers of camera_registers.hpp.
+
+#include <string>
+
+namespace fvd::sim {
+
+[[nodiscard]] std::string genicam_xml();
+
+}  // namespace fvd::sim

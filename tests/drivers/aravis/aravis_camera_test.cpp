@@ -1,0 +1,302 @@
+/// The Aravis driver against the simulated camera: real GVCP and GVSP on a loopback address of its own.
+
+#include "drivers/aravis/aravis_camera.hpp"
+
+#include <cstring>
+#include <memory>
+#include <set>
+
+#include "core/error.hpp"
+#include "drivers/aravis/frame_counter.hpp"
+#include "gtest/gtest.h"
+#include "sim/frame_source.hpp"
+#include "sim/gige_camera_server.hpp"
+
+namespace fvd {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Pixels tell the exposure they belong to and where they lie.
+class CountingSource final : public sim::FrameSource {
+ public:
+  [[nodiscard]] int sensor_width() const override { return 320; }
+  [[nodiscard]] int sensor_height() const override { return 200; }
+  void render(const sim::ExposureRequest& request, std::span<std::byte> out) override {
+    for (int y = 0; y < request.height; ++y) {
+      for (int x = 0; x < request.width; ++x) {
+        const auto i =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) + static_cast<std::size_t>(x);
+        const unsigned value = expected(request.exposure_index, x + request.offset_x, y + request.offset_y);
+        if (request.format == PixelFormat::kMono8) {
+          out[i] = static_cast<std::byte>(value & 0xFFU);
+        } else {
+          const auto wide = static_cast<std::uint16_t>(value & static_cast<unsigned>(max_grey_level(request.format)));
+          std::memcpy(&out[2 * i], &wide, 2);
+        }
+      }
+    }
+  }
+  static unsigned expected(std::uint64_t exposure, int x, int y) {
+    return static_cast<unsigned>(exposure) * 37U + static_cast<unsigned>(x) * 3U + static_cast<unsigned>(y) * 5U;
+  }
+};
+
+class AnAravisCamera : public testing::Test {
+ protected:
+  void serve(std::uint16_t first_block_id = 1) {
+    server_.reset();
+    server_ = std::make_unique<sim::GigeCameraServer>(
+        source_, sim::GigeCameraOptions{.address = address_, .first_block_id = first_block_id});
+  }
+
+  [[nodiscard]] std::unique_ptr<Camera> open(int packet_size = 1500) const {
+    CameraConfig config;
+    config.address = address_;
+    config.packet_socket = false;
+    config.packet_size_bytes = packet_size;
+    return open_aravis_camera(config);
+  }
+
+  static CameraSettings settings() {
+    CameraSettings settings;
+    settings.exposure_us = 1000.0;
+    return settings;
+  }
+
+  /// Triggers once and returns the frame, if one comes.
+  static std::optional<Frame> shoot(Camera& camera) {
+    camera.trigger();
+    return camera.next_frame(HostClock::now() + camera.frame_deadline());
+  }
+
+  template <typename Action>
+  static ErrorCode error_of(Action action, std::string* message = nullptr) {
+    try {
+      action();
+    } catch (const Error& error) {
+      if (message != nullptr) *message = error.what();
+      return error.code();
+    }
+    ADD_FAILURE() << "no error";
+    return ErrorCode::kInternal;
+  }
+
+  /// The exposure the frame shows, checked in its corners and centre.
+  static bool shows(const Frame& frame, std::uint64_t exposure, int offset_x = 0, int offset_y = 0) {
+    const auto pixel = [&](int x, int y) {
+      return frame.image.format == PixelFormat::kMono8 ? static_cast<unsigned>(frame.image.as<std::uint8_t>().at(x, y))
+                                                       : frame.image.as<std::uint16_t>().at(x, y);
+    };
+    const auto mask = static_cast<unsigned>(max_grey_level(frame.image.format));
+    for (const int x : {0, frame.image.width / 2, frame.image.width - 1}) {
+      for (const int y : {0, frame.image.height / 2, frame.image.height - 1}) {
+        if (pixel(x, y) != (CountingSource::expected(exposure, x + offset_x, y + offset_y) & mask)) return false;
+      }
+    }
+    return true;
+  }
+
+  CountingSource source_;
+  std::string address_ = sim::free_camera_address();
+  std::unique_ptr<sim::GigeCameraServer> server_;
+};
+
+TEST_F(AnAravisCamera, TellsWhoItIs) {
+  serve();
+  const auto camera = open();
+  const CameraInfo info = camera->info();
+  EXPECT_EQ(info.vendor, "fvd");
+  EXPECT_EQ(info.model, "SimulatedCamera");
+  EXPECT_EQ(info.serial, "SIM01");
+  EXPECT_EQ(info.sensor_width, 320);
+  EXPECT_EQ(info.sensor_height, 200);
+  EXPECT_TRUE(info.simulated);
+}
+
+TEST_F(AnAravisCamera, DeliversEveryTriggeredFrameInOrder) {
+  serve();
+  const auto camera = open();
+  const CameraSettings effective = camera->configure(settings());
+  EXPECT_EQ(effective.width, 320);
+  EXPECT_EQ(effective.height, 200);
+  std::uint64_t last_id = 0;
+  for (std::uint64_t i = 1; i <= 100; ++i) {
+    const HostTime before = HostClock::now();
+    const auto frame = shoot(*camera);
+    ASSERT_TRUE(frame.has_value()) << i;
+    ASSERT_EQ(frame->status, FrameStatus::kOk) << i;
+    EXPECT_TRUE(shows(*frame, i)) << "exposure 0 was the warm-up";
+    EXPECT_GT(frame->id, last_id);
+    EXPECT_GE(frame->exposure_start, before - std::chrono::microseconds(200));
+    EXPECT_LE(frame->exposure_end, HostClock::now() + std::chrono::microseconds(200));
+    last_id = frame->id;
+  }
+  EXPECT_EQ(camera->health().underruns, 0U);
+}
+
+TEST_F(AnAravisCamera, DeliversSixteenBitAndRegionsWithLargePackets) {
+  serve();
+  const auto camera = open(8000);
+  for (const PixelFormat format : {PixelFormat::kMono16, PixelFormat::kMono12, PixelFormat::kMono8}) {
+    CameraSettings wanted = settings();
+    wanted.pixel_format = format;
+    wanted.width = 100;
+    wanted.height = 50;
+    wanted.offset_x = 33;
+    wanted.offset_y = 7;
+    const CameraSettings effective = camera->configure(wanted);
+    EXPECT_EQ(effective.width, 100);
+    const auto frame = shoot(*camera);
+    ASSERT_TRUE(frame && frame->status == FrameStatus::kOk);
+    EXPECT_EQ(frame->image.width, 100);
+    EXPECT_EQ(frame->image.format, format);
+    bool found = false;
+    for (std::uint64_t exposure = 0; exposure < 10; ++exposure) found = found || shows(*frame, exposure, 33, 7);
+    EXPECT_TRUE(found);
+  }
+}
+
+TEST_F(AnAravisCamera, KeepsCountingAcrossTheWrapOfBlockIds) {
+  serve(65530);
+  const auto camera = open();
+  camera->configure(settings());
+  std::uint64_t last = 0;
+  for (int i = 0; i < 12; ++i) {
+    const auto frame = shoot(*camera);
+    ASSERT_TRUE(frame && frame->status == FrameStatus::kOk);
+    EXPECT_TRUE(last == 0 || frame->id == last + 1) << frame->id << " after " << last;
+    last = frame->id;
+  }
+}
+
+TEST_F(AnAravisCamera, RecoversLostPacketsByResend) {
+  serve();
+  const auto camera = open();
+  camera->configure(settings());
+  server_->set_packet_loss(0.05);
+  for (int i = 0; i < 40; ++i) {
+    const auto frame = shoot(*camera);
+    ASSERT_TRUE(frame && frame->status == FrameStatus::kOk) << i;
+  }
+  EXPECT_GT(server_->packets_lost(), 10U);
+  EXPECT_GT(server_->packets_resent(), 10U);
+}
+
+TEST_F(AnAravisCamera, ReportsNothingForAFrameThatNeverComesAndGoesOn) {
+  serve();
+  const auto camera = open();
+  camera->configure(settings());
+  server_->drop_frames(1);
+  EXPECT_FALSE(shoot(*camera).has_value());
+  const auto frame = shoot(*camera);
+  ASSERT_TRUE(frame.has_value());
+  EXPECT_EQ(frame->status, FrameStatus::kOk);
+  server_->ignore_triggers(1);
+  EXPECT_FALSE(shoot(*camera).has_value());
+  EXPECT_TRUE(shoot(*camera).has_value());
+}
+
+TEST_F(AnAravisCamera, GivesALateFrameItsOwnTime) {
+  serve();
+  const auto camera = open();
+  camera->configure(settings());
+  server_->delay_frames(1, milliseconds(400));
+  const HostTime triggered = HostClock::now();
+  EXPECT_FALSE(shoot(*camera).has_value());
+  const auto late = camera->next_frame(HostClock::now() + milliseconds(500));
+  ASSERT_TRUE(late.has_value());
+  EXPECT_LT(late->exposure_start, triggered + milliseconds(100));
+}
+
+TEST_F(AnAravisCamera, RefusesFramesOfAnotherSize) {
+  serve();
+  const auto camera = open();
+  camera->configure(settings());
+  server_->cut_frames(1);
+  const auto frame = shoot(*camera);
+  ASSERT_TRUE(frame.has_value());
+  EXPECT_NE(frame->status, FrameStatus::kOk);
+  const auto next = shoot(*camera);
+  ASSERT_TRUE(next.has_value());
+  EXPECT_EQ(next->status, FrameStatus::kOk);
+}
+
+TEST_F(AnAravisCamera, RefusesSettingsOutOfRangeWithTheRange) {
+  serve();
+  const auto camera = open();
+  std::string message;
+  CameraSettings wrong = settings();
+  wrong.exposure_us = 1.0;
+  EXPECT_EQ(error_of([&] { camera->configure(wrong); }, &message), ErrorCode::kCameraSettings);
+  EXPECT_NE(message.find("ExposureTime"), std::string::npos) << message;
+  EXPECT_NE(message.find("10..1e+07"), std::string::npos) << message;
+  wrong = settings();
+  wrong.width = 5000;
+  EXPECT_EQ(error_of([&] { camera->configure(wrong); }, &message), ErrorCode::kCameraSettings);
+  EXPECT_NE(message.find("Width"), std::string::npos) << message;
+  wrong = settings();
+  wrong.width = 300;
+  wrong.offset_x = 100;
+  EXPECT_EQ(error_of([&] { camera->configure(wrong); }), ErrorCode::kCameraSettings);
+  EXPECT_NO_THROW(camera->configure(settings()));
+  EXPECT_TRUE(shoot(*camera).has_value());
+}
+
+TEST_F(AnAravisCamera, RefusesToShareControl) {
+  serve();
+  const auto first = open();
+  std::string message;
+  EXPECT_EQ(error_of([&] { (void)open(); }, &message), ErrorCode::kCameraDisconnected);
+  EXPECT_NE(message.find("another program"), std::string::npos) << message;
+}
+
+TEST_F(AnAravisCamera, NoticesADeadCameraAndWorksAgainOnceItIsBack) {
+  serve();
+  auto camera = open();
+  camera->configure(settings());
+  ASSERT_TRUE(shoot(*camera).has_value());
+  server_.reset();
+  const HostTime died = HostClock::now();
+  EXPECT_EQ(error_of([&] {
+              for (int i = 0; i < 4; ++i) (void)shoot(*camera);
+            }),
+            ErrorCode::kCameraDisconnected);
+  EXPECT_LT(HostClock::now() - died, std::chrono::seconds(4));
+  EXPECT_FALSE(camera->connected());
+  serve();
+  auto again = open();
+  again->configure(settings());
+  EXPECT_TRUE(shoot(*again).has_value());
+  camera.reset();
+}
+
+TEST_F(AnAravisCamera, SaysWhereItFoundNoCamera) {
+  std::string message;
+  EXPECT_EQ(error_of([&] { (void)open(); }, &message), ErrorCode::kCameraDisconnected);
+  EXPECT_NE(message.find(address_), std::string::npos);
+}
+
+TEST_F(AnAravisCamera, EndsAWaitWhenInterrupted) {
+  serve();
+  const auto camera = open();
+  camera->configure(settings());
+  camera->interrupt();
+  EXPECT_FALSE(camera->next_frame(HostClock::now() + std::chrono::hours(1)).has_value());
+}
+
+TEST(FrameCounter, UnwrapsAcrossTheEndAndTellsLateFrames) {
+  FrameCounter counter;
+  EXPECT_EQ(counter.unwrap(65534), 65534U);
+  EXPECT_EQ(counter.unwrap(65535), 65535U);
+  EXPECT_EQ(counter.unwrap(1), 65536U);
+  EXPECT_EQ(counter.unwrap(3), 65538U);
+  EXPECT_EQ(counter.unwrap(2), 65537U) << "late";
+  EXPECT_EQ(counter.unwrap(65535), 65535U) << "late from before the wrap";
+  EXPECT_EQ(counter.unwrap(4), 65539U);
+  counter.restart();
+  EXPECT_GT(counter.unwrap(1), 65539U) << "a restart at the camera does not turn time back";
+}
+
+}  // namespace
+}  // namespace fvd
