@@ -72,4 +72,11 @@ std::string_view error_name(ErrorCode code) noexcept {
   return "internal";
 }
 
+ErrorCode error_from_name(std::string_view name) noexcept {
+  for (int code = 0; code <= static_cast<int>(kLastErrorCode); ++code) {
+    if (error_name(static_cast<ErrorCode>(code)) == name) return static_cast<ErrorCode>(code);
+  }
+  return ErrorCode::kInternal;
+}
+
 }  // namespace fvd

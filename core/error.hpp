@@ -40,11 +40,14 @@ enum class ErrorCode {
   kMemoryBudget,   ///< the job would need more memory than it may use
   kStorageFull,
   kStorageWrite,
-  kDatabase,
+  kDatabase,  ///< the last: see kLastErrorCode
 };
+inline constexpr ErrorCode kLastErrorCode = ErrorCode::kDatabase;
 
 /// The stable name of a code, e.g. "camera_disconnected".
 [[nodiscard]] std::string_view error_name(ErrorCode code) noexcept;
+/// The code of a name; kInternal for one that is none.
+[[nodiscard]] ErrorCode error_from_name(std::string_view name) noexcept;
 
 /// what() says what failed, where, and what to do. Context is added with std::throw_with_nested.
 class Error : public std::runtime_error {

@@ -11,12 +11,12 @@
 namespace fvd {
 
 struct CameraConfig {
-  std::string driver = "aravis";  ///< "aravis" or "replay"
-  std::string address;            ///< IP address, or vendor-model-serial; addresses open without a broadcast
-  int packet_size_bytes = 1500;   ///< GevSCPSPacketSize, 576..16000; not above the interface's MTU
-  bool packet_socket = true;      ///< receive through AF_PACKET where CAP_NET_RAW allows; off on loopback
-  int frame_margin_ms = 300;      ///< added to exposure and readout before a frame counts as missing, 10..10000
-  bool simulated = false;         ///< stamped into every result; a camera that calls itself simulated sets it too
+  std::string driver = "aravis";     ///< "aravis" or "replay"
+  std::string address;               ///< IP address, or vendor-model-serial; addresses open without a broadcast
+  int packet_size_bytes = 1500;      ///< GevSCPSPacketSize, 576..16000; not above the interface's MTU
+  bool packet_socket = true;         ///< receive through AF_PACKET where CAP_NET_RAW allows; off on loopback
+  int frame_margin_ms = 300;         ///< added to exposure and readout before a frame counts as missing, 10..10000
+  bool simulated = false;            ///< stamped into every result; a camera that calls itself simulated sets it too
   std::filesystem::path replay_dir;  ///< driver "replay": folder of recorded slices
 };
 
@@ -25,16 +25,19 @@ struct StageConfig {
   std::filesystem::path profile;      ///< drive profile, JSON
   std::string address = "127.0.0.1";  ///< Modbus TCP host
   int port = 502;
-  int unit = 1;                       ///< Modbus unit id, 0..247
+  int unit = 1;  ///< Modbus unit id, 0..247
   std::chrono::milliseconds response_timeout{200};
-  Micrometers min{-1000.0};           ///< software limits, take-up included
+  Micrometers min{-1000.0};  ///< software limits, take-up included
   Micrometers max{1000.0};
-  Micrometers take_up{20.0};          ///< overshoot below the first slice, >= 3x backlash
+  Micrometers take_up{20.0};  ///< overshoot below the first slice, >= 3x backlash
   double speed_um_per_s = 1000.0;
   double acceleration_um_per_s2 = 20000.0;
   bool simulated = false;
-  double replay_start_um = 0.0;       ///< driver "replay": z of the first slice, and the step
+  std::filesystem::path replay_dir;  ///< driver "replay": folder of recorded slices, the camera's
+  double replay_start_um = 0.0;      ///< driver "replay": z of the first slice, and the step
   double replay_step_um = 10.0;
+  std::filesystem::path replay_z_file;  ///< driver "replay": z of each slice, one number a line; takes the step's place
+  std::string replay_z_unit = "um";     ///< unit of that file: um, mm or m
 };
 
 }  // namespace fvd

@@ -80,7 +80,11 @@ wait_for "$work/run/rpc.json" "$fvd_pid" "$work/fvd.log"
 rpc_port=$(json_value "$work/run/rpc.json" port)
 echo "   camera $camera:3956 (GigE Vision), stage 127.0.0.1:$port (Modbus TCP), fvd 127.0.0.1:$rpc_port (JSON-RPC)"
 fvdctl=("$FVD_BUILD/daemon/ctl/fvdctl" --runtime-dir "$work/run")
-"${fvdctl[@]}" wait-ready --timeout-s 20
+deadline=$((SECONDS + 20))
+until "${fvdctl[@]}" rpc system.state | grep -q '"ready": *true'; do
+  [ "$SECONDS" -lt "$deadline" ] || { echo "fvd did not become ready; its log is $work/fvd.log" >&2; exit 69; }
+  sleep 0.1
+done
 
 echo "== one trigger, as a PLC sends it"
 request='{"jsonrpc":"2.0","id":1,"method":"job.start","params":{"seq":1,"part_id":"demo-part","recipe":"'$recipe'"}}'

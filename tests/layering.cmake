@@ -27,7 +27,7 @@ forbid("Aravis stays in its driver" "arv" daemon)
 forbid("Aravis stays in its driver" "arv" drivers EXCEPT "^drivers/aravis/")
 forbid("libmodbus stays in its driver" "modbus/" drivers EXCEPT "^drivers/modbus/")
 forbid("JSON in drivers is for drive profiles" "nlohmann" drivers EXCEPT "^drivers/modbus/drive_profile")
-forbid("JSON in sim is for its configuration and figures" "nlohmann" sim EXCEPT "^sim/(.*config|evaluat|fvd_sim_main|truth)")
+forbid("JSON in sim is for its configuration and figures" "nlohmann" sim EXCEPT "^sim/(.*config|evaluate)")
 
 if(offences)
   message(FATAL_ERROR "layering:${offences}")

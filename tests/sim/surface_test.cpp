@@ -10,7 +10,7 @@
 #include "gtest/gtest.h"
 #include "sim/gsf_reader.hpp"
 #include "sim/world_config.hpp"
-#include "tests/support/temporary_directory.hpp"
+#include "tests/support/scratch_dir.hpp"
 
 namespace fvd::sim {
 namespace {
@@ -78,7 +78,7 @@ std::filesystem::path gsf(const std::filesystem::path& directory, const std::str
 }
 
 TEST(GsfReader, ReadsHeightsInMetresWhateverThePadding) {
-  const TemporaryDirectory directory;
+  const test::ScratchDir directory;
   for (const std::string extra : {"", "T = a\n", "T = ab\n", "T = abc\n"}) {
     const auto heights = read_gsf_um(gsf(directory.path(), "Gwyddion Simple Field 1.0\nXRes = 3\nYRes = 2\n" + extra));
     ASSERT_EQ(heights.width(), 3);
@@ -88,7 +88,7 @@ TEST(GsfReader, ReadsHeightsInMetresWhateverThePadding) {
 }
 
 TEST(GsfReader, RefusesEveryKindOfBadFile) {
-  const TemporaryDirectory directory;
+  const test::ScratchDir directory;
   const std::string good = "Gwyddion Simple Field 1.0\nXRes = 3\nYRes = 2\n";
   const auto refused = [&](const std::string& header, std::size_t floats = 6, float value = 1.0F) {
     try {
@@ -121,7 +121,7 @@ TEST(WorldConfig, ReadsEveryShippedFile) {
 }
 
 TEST(WorldConfig, ReportsAllMistakesWithTheirPlace) {
-  const TemporaryDirectory directory;
+  const test::ScratchDir directory;
   const auto file = directory.path() / "world.json";
   std::ofstream(file) << R"({"surface": "moon", "width_px": 5, "tilt_x_um_per_px": "steep", "sead": 1})";
   try {

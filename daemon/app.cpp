@@ -1,0 +1,33 @@
+#include "daemon/app.hpp"
+
+#include "core/error.hpp"
+#include "daemon/export/atomic_directory.hpp"
+#include "drivers/driver_table.hpp"
+
+namespace fvd {
+
+namespace {
+
+std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
+  std::error_code error;
+  std::filesystem::create_directories(paths.state_dir / "results", error);
+  if (error) {
+    throw Error(ErrorCode::kStorageWrite, "cannot make " + (paths.state_dir / "results").string() + ": " +
+                                              error.message() + "; see /paths/state_dir");
+  }
+  remove_abandoned_directories(paths.state_dir / "results");
+  return paths.state_dir;
+}
+
+}  // namespace
+
+App::App(const Config& config)
+    : config_(config),
+      store_(prepared_state_dir(config_.paths) / "fvd.sqlite"),
+      engine_(config_, {store_, clock_, [this] { return open_camera(config_.camera); },
+                        [this] { return open_stage(config_.stage); }}),
+      rpc_(config_.rpc, config_.paths.runtime_dir, engine_) {}
+
+App::~App() { engine_.shut_down(); }
+
+}  // namespace fvd

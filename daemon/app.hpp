@@ -1,0 +1,37 @@
+#pragma once
+
+/// The daemon as a whole: owns everything; the order of the members is the order of start, its reverse that of stop.
+
+#include <string>
+
+#include "core/hw/clock.hpp"
+#include "daemon/config.hpp"
+#include "daemon/engine.hpp"
+#include "daemon/rpc/rpc_server.hpp"
+#include "daemon/store/job_store.hpp"
+
+namespace fvd {
+
+/// context: made and destroyed on the main thread, with the signals it waits for blocked.
+class App {
+ public:
+  /// Opens the store, starts the engine and listens. Throws Error kDatabase, kStorageWrite, kBadConfig.
+  explicit App(const Config& config);
+  /// Ordered stop: the job is aborted, the stage halted, then connections close.
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+
+  /// Where clients connect, e.g. 127.0.0.1:7411.
+  [[nodiscard]] int rpc_port() const { return rpc_.port(); }
+  [[nodiscard]] Engine& engine() { return engine_; }
+
+ private:
+  Config config_;
+  SystemClock clock_;
+  JobStore store_;
+  Engine engine_;
+  RpcServer rpc_;
+};
+
+}  // namespace fvd

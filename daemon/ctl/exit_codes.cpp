@@ -1,0 +1,55 @@
+#include "daemon/ctl/exit_codes.hpp"
+
+namespace fvd::ctl {
+
+int exit_code(ErrorCode code) noexcept {
+  switch (code) {
+    case ErrorCode::kBadInput:
+    case ErrorCode::kBadConfig:
+    case ErrorCode::kBadRecipe:
+    case ErrorCode::kUnknownRecipe:
+    case ErrorCode::kUnknownJob:
+    case ErrorCode::kBadSlice:
+    case ErrorCode::kMemoryBudget:
+      return kExitBadData;
+    case ErrorCode::kStorageFull:
+    case ErrorCode::kStorageWrite:
+      return kExitIo;
+    case ErrorCode::kNotReady:
+    case ErrorCode::kBusy:
+    case ErrorCode::kTimeout:
+    case ErrorCode::kShuttingDown:
+      return kExitUnavailable;
+    case ErrorCode::kJobFailed:
+      return kExitJobFailed;
+    default:
+      return kExitInternal;
+  }
+}
+
+int exit_code_of_rpc(int code) noexcept {
+  switch (code) {
+    case -32602:  // invalid parameters
+    case 1005:    // unknown recipe
+    case 1006:    // invalid recipe
+    case 1007:    // unknown job
+    case 1009:    // sequence number taken by another request
+    case 1010:    // sequence number too old
+    case 1203:    // too large
+      return kExitBadData;
+    case 1001:  // not ready
+    case 1002:  // busy
+    case 1011:  // timeout
+    case 1013:  // shutting down
+      return kExitUnavailable;
+    case 1131:  // storage full
+    case 1132:  // storage write failed
+    case 1133:  // database failed
+      return kExitIo;
+    default:
+      break;
+  }
+  return code >= 1000 ? kExitJobFailed : kExitInternal;
+}
+
+}  // namespace fvd::ctl

@@ -1,0 +1,22 @@
+#pragma once
+
+/// Exit codes of fvdctl, after sysexits.h.
+
+#include "core/error.hpp"
+
+namespace fvd::ctl {
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitJobFailed = 1;     ///< the job failed or was aborted
+inline constexpr int kExitUsage = 64;        ///< wrong arguments
+inline constexpr int kExitBadData = 65;      ///< a file, parameter, job or recipe that cannot be used
+inline constexpr int kExitUnavailable = 69;  ///< no daemon, no answer in time, or it takes no jobs now
+inline constexpr int kExitInternal = 70;     ///< a bug on either side
+inline constexpr int kExitIo = 74;           ///< a file could not be read or written
+
+[[nodiscard]] int exit_code(ErrorCode code) noexcept;
+
+/// For the error code of a JSON-RPC reply.
+[[nodiscard]] int exit_code_of_rpc(int code) noexcept;
+
+}  // namespace fvd::ctl

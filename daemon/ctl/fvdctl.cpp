@@ -1,0 +1,202 @@
+#include "daemon/ctl/fvdctl.hpp"
+
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "core/error.hpp"
+#include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/job_commands.hpp"
+#include "daemon/ctl/process_command.hpp"
+#include "daemon/ctl/rpc_client.hpp"
+#include "daemon/version.hpp"
+
+namespace fvd::ctl {
+
+namespace {
+
+/// The options of all commands; CLI11 fills them.
+struct Arguments {
+  std::string address;
+  std::string runtime_dir = "/run/fvd";
+  std::string job;
+  std::string seq = "auto";
+  StartOptions start;
+  bool watch = false;
+  std::string format = "compact";
+  std::string method;
+  std::string params = "{}";
+  ProcessArguments process;
+};
+
+RpcClient connect(const Arguments& arguments) {
+  return RpcClient(arguments.address.empty() ? read_endpoint(arguments.runtime_dir)
+                                             : parse_endpoint(arguments.address));
+}
+
+void print(std::ostream& out, const Json& json) {
+  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
+}
+
+/// Says how a job ended; the reason of a failure goes to err.
+int report_end(const Json& status, const Terminal& terminal) {
+  const int code = job_exit_code(status);
+  if (code == kExitOk) return code;
+  const auto text = [&status](const char* key) {
+    return status.contains(key) && status[key].is_string() ? status[key].get<std::string>() : std::string("unknown");
+  };
+  terminal.err << "fvdctl: job " << text("job_id") << " " << text("state") << ": " << text("error") << ": "
+               << text("error_message") << std::endl;
+  return code;
+}
+
+int state(const Arguments& arguments, const Terminal& terminal) {
+  RpcClient client = connect(arguments);
+  print(terminal.out, client.call("system.state"));
+  return kExitOk;
+}
+
+int start(Arguments& arguments, const Terminal& terminal) {
+  if (arguments.seq != "auto") {
+    arguments.start.seq = std::stoll(arguments.seq);  // digits only, checked by the parser
+  }
+  RpcClient client = connect(arguments);
+  const Json job = start_job(client, arguments.start);
+  print(terminal.out, job);
+  if (!arguments.watch) return kExitOk;
+  return report_end(watch_job(client, job_key(client, job.value("job_id", "")), terminal.out, terminal.out_is_terminal),
+                    terminal);
+}
+
+int wait(const Arguments& arguments, const Terminal& terminal) {
+  RpcClient client = connect(arguments);
+  const Json status = wait_for_job(client, job_key(client, arguments.job));
+  print(terminal.out, status);
+  return report_end(status, terminal);
+}
+
+int watch(const Arguments& arguments, const Terminal& terminal) {
+  RpcClient client = connect(arguments);
+  return report_end(watch_job(client, job_key(client, arguments.job), terminal.out, terminal.out_is_terminal),
+                    terminal);
+}
+
+int result(const Arguments& arguments, const Terminal& terminal) {
+  RpcClient client = connect(arguments);
+  Json params = job_key(client, arguments.job);
+  params["format"] = arguments.format;
+  print(terminal.out, client.call("result.get", params));
+  return kExitOk;
+}
+
+int rpc(const Arguments& arguments, const Terminal& terminal) {
+  const Json params = Json::parse(arguments.params, nullptr, false);
+  if (!params.is_object() && !params.is_array()) {
+    throw Error(ErrorCode::kBadInput, "'" + arguments.params + "' is not a JSON object or array");
+  }
+  RpcClient client = connect(arguments);
+  constexpr std::chrono::seconds kTimeout{60};  // job.wait may hold its answer back for 30 s
+  print(terminal.out, client.call(arguments.method, params, kTimeout));
+  return kExitOk;
+}
+
+/// "auto" or 1..2^53-1.
+std::string check_seq(const std::string& text) {
+  if (text == "auto") return {};
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  constexpr long long kMaxSeq = (1LL << 53U) - 1;
+  if (digits && text.size() <= 16 && std::stoll(text) >= 1 && std::stoll(text) <= kMaxSeq) return {};
+  return "--seq: '" + text + "' is neither auto nor a number from 1 to 2^53-1";
+}
+
+using Command = std::function<int()>;
+
+void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command& chosen) {
+  const auto command = [&app, &chosen](const char* name, const char* help, Command run) {
+    CLI::App* sub = app.add_subcommand(name, help);
+    sub->callback([&chosen, run = std::move(run)] { chosen = run; });
+    return sub;
+  };
+  const char* const job_help = "job id, or sequence number (digits); default: the latest job";
+
+  command("state", "print the state of the machine", [&] { return state(a, terminal); });
+
+  CLI::App* sub = command("start", "start a job", [&] { return start(a, terminal); });
+  sub->add_option("--seq", a.seq, "sequence number, the same number is the same job; auto: one after the latest")
+      ->check(CLI::Validator(check_seq, "N|auto"))
+      ->capture_default_str();
+  sub->add_option("--part", a.start.part_id, "part id")->required();
+  sub->add_option("--recipe", a.start.recipe, "recipe id; default: the prepared one");
+  sub->add_flag("--watch", a.watch, "follow the job to its end");
+
+  command("wait", "wait for the end of a job and print its status", [&] {
+    return wait(a, terminal);
+  })->add_option("job", a.job, job_help);
+  command("watch", "follow a job to its end", [&] { return watch(a, terminal); })->add_option("job", a.job, job_help);
+
+  sub = command("result", "print the result of a job", [&] { return result(a, terminal); });
+  sub->add_option("job", a.job, job_help);
+  sub->add_option("--format", a.format, "how much")->check(CLI::IsMember({"compact", "full"}))->capture_default_str();
+
+  sub = command("rpc", "call any method and print what it returns", [&] { return rpc(a, terminal); });
+  sub->add_option("method", a.method, "e.g. recipe.list")->required();
+  sub->add_option("params", a.params, "JSON object or array")->capture_default_str();
+
+  sub = command("process", "make a height map of recorded slices, without a daemon",
+                [&] { return run_process(a.process, terminal); });
+  add_process_options(*sub, a.process);
+}
+
+int fail(const Terminal& terminal, const std::string& message, int code) {
+  terminal.err << "fvdctl: " << message << std::endl;
+  return code;
+}
+
+int run(std::vector<std::string> arguments, const Terminal& terminal) {
+  Arguments values;
+  Command chosen;
+  CLI::App app("fvdctl: client of the focus-variation daemon fvd", "fvdctl");
+  app.set_version_flag("--version", std::string("fvdctl ") + kVersion);
+  app.require_subcommand(1);
+  CLI::Option* address = app.add_option("--address", values.address, "host:port of the daemon");
+  app.add_option("--runtime-dir", values.runtime_dir, "where the daemon's rpc.json tells its port")
+      ->excludes(address)
+      ->capture_default_str();
+  add_commands(app, values, terminal, chosen);
+  try {
+    std::reverse(arguments.begin(), arguments.end());  // the order CLI11 takes a vector in
+    app.parse(std::move(arguments));
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, terminal.out, terminal.err) == 0 ? kExitOk : kExitUsage;
+  }
+  return chosen();
+}
+
+}  // namespace
+
+int run_fvdctl(const std::vector<std::string>& arguments, const Terminal& terminal) noexcept {
+  try {
+    try {
+      return run(arguments, terminal);
+    } catch (const RpcError& error) {
+      std::string message = "the daemon refused: " + std::string(error.what());
+      if (!error.data().is_null()) message += " " + error.data().dump();
+      return fail(terminal, message + " (code " + std::to_string(error.code()) + ")", exit_code_of_rpc(error.code()));
+    } catch (const UsageError& error) {
+      return fail(terminal, error.what(), kExitUsage);
+    } catch (const Error& error) {
+      return fail(terminal, error.what(), exit_code(error.code()));
+    } catch (const std::bad_alloc&) {
+      return fail(terminal, "not enough memory", kExitInternal);
+    } catch (const std::exception& error) {
+      return fail(terminal, std::string("unexpected: ") + error.what(), kExitInternal);
+    }
+  } catch (...) {  // not even the message could be written
+    return kExitInternal;
+  }
+}
+
+}  // namespace fvd::ctl

@@ -1,0 +1,145 @@
+#include "daemon/ctl/line_socket.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <memory>
+#include <system_error>
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include "core/error.hpp"
+
+namespace fvd::ctl {
+
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+std::string errno_text(int error) { return std::generic_category().message(error); }
+
+/// True when the socket is ready; false at the deadline.
+bool wait_ready(int fd, short events, SteadyClock::time_point deadline) {
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - SteadyClock::now());
+    pollfd entry{fd, events, 0};
+    const int ready = ::poll(&entry, 1, static_cast<int>(std::max<std::int64_t>(0, left.count())));
+    if (ready > 0) return true;
+    if (ready == 0) return false;
+    if (errno != EINTR) throw Error(ErrorCode::kInternal, "poll: " + errno_text(errno));
+  }
+}
+
+struct AddressListDeleter {
+  void operator()(addrinfo* list) const noexcept { ::freeaddrinfo(list); }
+};
+using AddressList = std::unique_ptr<addrinfo, AddressListDeleter>;
+
+AddressList resolve(const RpcEndpoint& endpoint) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int error = ::getaddrinfo(endpoint.host.c_str(), std::to_string(endpoint.port).c_str(), &hints, &found);
+  if (error != 0) {
+    throw Error(ErrorCode::kNotReady, "cannot find host '" + endpoint.host + "': " + ::gai_strerror(error));
+  }
+  return AddressList(found);
+}
+
+/// The connected socket, or errno in `error`.
+UniqueFd connect_to(const addrinfo& address, SteadyClock::time_point deadline, int& error) {
+  UniqueFd fd(::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!fd.valid() || ::connect(fd.get(), address.ai_addr, address.ai_addrlen) == 0) {
+    error = fd.valid() ? 0 : errno;
+    return fd;
+  }
+  error = errno;
+  if (error == EINPROGRESS) {
+    if (!wait_ready(fd.get(), POLLOUT, deadline)) {
+      error = ETIMEDOUT;
+    } else {
+      socklen_t size = sizeof error;
+      if (::getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+    }
+  }
+  return error == 0 ? std::move(fd) : UniqueFd();
+}
+
+}  // namespace
+
+LineSocket::LineSocket(const RpcEndpoint& endpoint, std::chrono::milliseconds timeout) : endpoint_(endpoint) {
+  const auto deadline = SteadyClock::now() + timeout;
+  const AddressList addresses = resolve(endpoint);
+  int error = EHOSTUNREACH;
+  for (const addrinfo* address = addresses.get(); address != nullptr && !socket_.valid(); address = address->ai_next) {
+    socket_ = connect_to(*address, deadline, error);
+  }
+  if (!socket_.valid()) {
+    throw Error(ErrorCode::kNotReady,
+                "cannot connect to " + endpoint_.text() + ": " + errno_text(error) + ": is fvd running there?");
+  }
+  const int on = 1;  // requests are single small segments; waiting for more only adds latency
+  (void)::setsockopt(socket_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
+void LineSocket::send_line(std::string_view line, std::chrono::milliseconds timeout) {
+  const auto deadline = SteadyClock::now() + timeout;
+  const std::string bytes = std::string(line) + "\n";
+  std::string_view rest = bytes;
+  while (!rest.empty()) {
+    const ssize_t sent = ::send(socket_.get(), rest.data(), rest.size(), MSG_NOSIGNAL);
+    if (sent >= 0) {
+      rest.remove_prefix(static_cast<std::size_t>(sent));
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      if (!wait_ready(socket_.get(), POLLOUT, deadline)) {
+        throw Error(ErrorCode::kTimeout, endpoint_.text() + " did not take the request in time");
+      }
+    } else if (errno != EINTR) {
+      throw Error(ErrorCode::kNotReady, "sending to " + endpoint_.text() + " failed: " + errno_text(errno));
+    }
+  }
+}
+
+bool LineSocket::take_line(std::string& line) {
+  for (;;) {
+    const auto end = received_.find('\n', searched_);
+    if (end == std::string::npos) {
+      searched_ = received_.size();
+      return false;
+    }
+    line = received_.substr(0, end);
+    received_.erase(0, end + 1);
+    searched_ = 0;
+    while (!line.empty() && line.back() == '\r') line.pop_back();
+    if (!line.empty()) return true;
+  }
+}
+
+std::string LineSocket::receive_line(std::chrono::milliseconds timeout) {
+  const auto deadline = SteadyClock::now() + timeout;
+  std::string line;
+  char buffer[16384];
+  while (!take_line(line)) {
+    if (received_.size() > kMaxLineBytes) {
+      throw Error(ErrorCode::kBadInput, endpoint_.text() + " sends a reply without end: is it an fvd?");
+    }
+    if (!wait_ready(socket_.get(), POLLIN, deadline)) {
+      throw Error(ErrorCode::kTimeout,
+                  endpoint_.text() + " did not answer within " + std::to_string(timeout.count()) + " ms");
+    }
+    const ssize_t size = ::recv(socket_.get(), buffer, sizeof buffer, 0);
+    if (size > 0) {
+      received_.append(buffer, static_cast<std::size_t>(size));
+    } else if (size == 0) {
+      throw Error(ErrorCode::kNotReady, endpoint_.text() + " closed the connection before it answered");
+    } else if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
+      throw Error(ErrorCode::kNotReady, "receiving from " + endpoint_.text() + " failed: " + errno_text(errno));
+    }
+  }
+  return line;
+}
+
+}  // namespace fvd::ctl

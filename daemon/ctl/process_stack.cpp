@@ -1,0 +1,112 @@
+#include "daemon/ctl/process_stack.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "core/error.hpp"
+#include "core/focus/streaming_focus_stack.hpp"
+#include "core/pipeline/worker_pool.hpp"
+#include "daemon/version.hpp"
+#include "daemon/export/result_writer.hpp"
+#include "drivers/replay/recorded_stack.hpp"
+
+namespace fvd::ctl {
+
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+double milliseconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double, std::milli>(SteadyClock::now() - start).count();
+}
+
+/// What would only come out after minutes of computing otherwise.
+void check_options(const ProcessOptions& options) {
+  check_focus_settings(options.focus);
+  if (options.pixel_pitch_um && !(std::isfinite(*options.pixel_pitch_um) && *options.pixel_pitch_um > 0)) {
+    throw Error(ErrorCode::kBadInput,
+                "a pixel pitch of " + std::to_string(*options.pixel_pitch_um) + " um: it must be finite and above 0");
+  }
+  if (std::filesystem::exists(options.out)) {
+    throw Error(ErrorCode::kStorageWrite, options.out.string() + " exists already: give another name, or move it away");
+  }
+}
+
+StepRecord step_record(int index, double z_um) {
+  StepRecord step;
+  step.index = index;
+  step.commanded_um = z_um;
+  step.quantised_um = z_um;
+  step.measured_um = z_um;
+  step.frame_id = static_cast<std::uint64_t>(index) + 1;
+  return step;
+}
+
+void describe(ResultData& data, const ProcessOptions& options, const RecordedStack& stack) {
+  data.software_version = kVersion;
+  data.created = std::chrono::system_clock::now();
+  auto source = std::filesystem::absolute(options.source).lexically_normal();
+  if (!source.has_filename()) source = source.parent_path();  // a trailing slash
+  data.part_id = options.part_id.empty() ? source.filename().string() : options.part_id;
+  data.source = source.string() + ": " + stack.list().description;
+  data.focus = options.focus;
+  data.peak = options.peak;
+  data.pixel_pitch_x_um = options.pixel_pitch_um;
+  data.pixel_pitch_y_um = options.pixel_pitch_um;
+  data.slices_planned = stack.slices();
+}
+
+void push_slices(StreamingFocusStack& focus, const RecordedStack& stack, const std::vector<double>& z_um,
+                 ResultData& data, const std::function<void(int, int)>& on_slice) {
+  for (int index = 0; index < stack.slices(); ++index) {
+    const double z = z_um[static_cast<std::size_t>(index)];
+    focus.push(stack.read(index).view(), z);
+    data.steps.push_back(step_record(index, z));
+    ++data.frames.expected;
+    ++data.frames.ok;
+    if (on_slice) on_slice(index + 1, stack.slices());
+  }
+}
+
+void compute_maps(const StreamingFocusStack& focus, const ProcessOptions& options, ResultData& data) {
+  data.map = focus.finish(options.peak);
+  std::vector<PeakMethod> done{options.peak};
+  for (const PeakMethod method : options.extra_peaks) {
+    if (std::find(done.begin(), done.end(), method) != done.end()) continue;
+    done.push_back(method);
+    data.extra_maps.emplace_back(method, focus.finish(method));
+  }
+}
+
+}  // namespace
+
+ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice) {
+  const auto start = SteadyClock::now();
+  check_options(options);
+  const RecordedStack stack(options.source);
+  const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
+  StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), options.focus, pool);
+  ResultData data;
+  describe(data, options, stack);
+  data.state_bytes_per_pixel = focus.state_bytes_per_pixel();
+  data.times.prepare_ms = milliseconds_since(start);
+
+  const auto scan_start = SteadyClock::now();
+  push_slices(focus, stack, z_um, data, on_slice);
+  data.times.scan_ms = milliseconds_since(scan_start);
+
+  const auto finish_start = SteadyClock::now();
+  compute_maps(focus, options, data);
+  data.times.finish_ms = milliseconds_since(finish_start);
+  data.step_summary = summarize_steps(data.steps);
+
+  write_result(options.out, data);
+  return {stack.list().description,   stack.slices(), stack.width(), stack.height(), data.state_bytes_per_pixel,
+          summarize_heights(data.map)};
+}
+
+}  // namespace fvd::ctl

@@ -1,0 +1,42 @@
+#pragma once
+
+/// Recorded slices to a result directory, offline, through the same accumulator as the live scan.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/focus/focus_settings.hpp"
+#include "daemon/export/height_summary.hpp"
+#include "drivers/replay/slice_heights.hpp"
+
+namespace fvd::ctl {
+
+struct ProcessOptions {
+  std::filesystem::path source;  ///< folder of slices or multi-page TIFF
+  std::filesystem::path out;     ///< result directory, must not exist
+  ZSource z;
+  FocusSettings focus;
+  PeakMethod peak = PeakMethod::kParabola;
+  std::vector<PeakMethod> extra_peaks;
+  std::optional<double> pixel_pitch_um;  ///< > 0
+  int threads = 0;                       ///< 0 = one a core
+  std::string part_id;                   ///< empty = the name of the source
+};
+
+struct ProcessReport {
+  std::string slices_text;  ///< which files were taken for slices
+  int slices = 0;
+  int width = 0;
+  int height = 0;
+  double state_bytes_per_pixel = 0.0;
+  HeightSummary summary;
+};
+
+/// Reads one slice at a time; writes only after the last one was good. on_slice(done, total) follows each slice.
+/// Throws Error kBadInput naming the file, kStorageWrite, kStorageFull; nothing is left in `out` then.
+ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice);
+
+}  // namespace fvd::ctl

@@ -1,0 +1,109 @@
+#include "daemon/export/atomic_directory.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <iterator>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "daemon/export/durable_file.hpp"
+#include "daemon/export/storage_error.hpp"
+
+namespace fvd {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kTemporarySuffix = ".tmp";
+
+fs::path checked_final_dir(const fs::path& given) {
+  fs::path path = fs::absolute(given).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // a trailing slash
+  if (!path.has_filename()) throw Error(ErrorCode::kStorageWrite, "no directory can be made at " + given.string());
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) == 0) {
+    throw Error(ErrorCode::kStorageWrite, path.string() + " exists already: give another name, or move it away");
+  }
+  return path;
+}
+
+fs::path make_temporary(const fs::path& final_dir) {
+  for (int attempt = 0;; ++attempt) {
+    const std::string name = "." + final_dir.filename().string() + "." + std::to_string(::getpid()) + "-" +
+                             std::to_string(attempt) + std::string(kTemporarySuffix);
+    const fs::path path = final_dir.parent_path() / name;
+    if (::mkdir(path.c_str(), 0755) == 0) return path;
+    if (errno != EEXIST) throw storage_error(errno, "create directory", path);
+  }
+}
+
+void rename_to_new(const fs::path& from, const fs::path& to) {
+  // Plain rename() would replace an empty directory that appeared meanwhile.
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+  const bool unsupported = errno == EINVAL || errno == ENOSYS;
+  if (unsupported && !fs::exists(to) && ::rename(from.c_str(), to.c_str()) == 0) return;
+  throw storage_error(errno, "rename the finished directory to", to);
+}
+
+}  // namespace
+
+AtomicDirectory::AtomicDirectory(const fs::path& final_dir)
+    : final_dir_(checked_final_dir(final_dir)), temporary_(make_temporary(final_dir_)) {}
+
+AtomicDirectory::~AtomicDirectory() {
+  if (temporary_.empty()) return;
+  std::error_code ignored;
+  fs::remove_all(temporary_, ignored);
+}
+
+void AtomicDirectory::add_file(const fs::path& name, std::string_view bytes) {
+  const auto parts = std::distance(name.begin(), name.end());
+  const bool strange = std::any_of(name.begin(), name.end(),
+                                   [](const fs::path& part) { return part.empty() || part == "." || part == ".."; });
+  if (name.is_absolute() || strange || parts < 1 || parts > 2) {
+    throw Error(ErrorCode::kBadInput, "'" + name.string() + "' is not of the form file or folder/file");
+  }
+  if (const fs::path folder = name.parent_path();
+      !folder.empty() && std::find(folders_.begin(), folders_.end(), folder) == folders_.end()) {
+    if (::mkdir((temporary_ / folder).c_str(), 0755) != 0) {
+      throw storage_error(errno, "create directory", temporary_ / folder);
+    }
+    folders_.push_back(folder);
+  }
+  write_new_file(temporary_ / name, bytes);
+  files_.push_back({name.string(), bytes.size()});
+}
+
+void AtomicDirectory::commit() {
+  for (const auto& folder : folders_) sync_directory(temporary_ / folder);
+  sync_directory(temporary_);
+  rename_to_new(temporary_, final_dir_);
+  try {
+    sync_directory(final_dir_.parent_path());
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(final_dir_, ignored);
+    temporary_.clear();
+    throw;
+  }
+  temporary_.clear();
+}
+
+std::size_t remove_abandoned_directories(const fs::path& parent) {
+  std::size_t removed = 0;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(parent, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(".") || !name.ends_with(kTemporarySuffix) || !entry.is_directory()) continue;
+    std::error_code ignored;
+    if (fs::remove_all(entry.path(), ignored) > 0) ++removed;
+  }
+  return removed;
+}
+
+}  // namespace fvd

@@ -1,0 +1,25 @@
+#pragma once
+
+/// Gwyddion Simple Field 1.0: text header, 1 to 4 NUL bytes up to a multiple of 4, float32 little-endian row by row,
+/// top row first, NaN = hole (http://gwyddion.net/documentation/user-guide-en/gsf.html).
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image.hpp"
+
+namespace fvd {
+
+struct GsfHeader {
+  std::string title;
+  std::optional<double> pitch_x_um;  ///< both absent: lateral unit is px
+  std::optional<double> pitch_y_um;
+  std::vector<std::pair<std::string, std::string>> metadata;  ///< extra "Key = Value" lines
+};
+
+/// The bytes of the file. height_m: metres. Line breaks and control characters in texts become spaces.
+[[nodiscard]] std::string encode_gsf(const Plane<float>& height_m, const GsfHeader& header);
+
+}  // namespace fvd

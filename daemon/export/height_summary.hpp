@@ -1,0 +1,45 @@
+#pragma once
+
+/// A height map in a few numbers.
+
+#include <cstddef>
+#include <optional>
+
+#include "core/focus/height_map.hpp"
+
+namespace fvd {
+
+/// Over the valid points, in um.
+struct HeightValues {
+  double min_um = 0.0;
+  double max_um = 0.0;
+  double mean_um = 0.0;
+  double median_um = 0.0;
+  double low_um = 0.0;   ///< 0.5 % of the points lie below: the limits of a picture that outliers must not darken
+  double high_um = 0.0;  ///< 0.5 % lie above
+};
+
+/// Points that carry a reason; a point with two reasons counts in both.
+struct HoleCounts {
+  std::size_t low_prominence = 0;
+  std::size_t first_slice = 0;
+  std::size_t last_slice = 0;
+  std::size_t not_bracketed = 0;
+  std::size_t saturated = 0;
+};
+
+struct HeightSummary {
+  std::size_t points = 0;
+  std::size_t valid = 0;
+  HoleCounts holes;
+  std::optional<HeightValues> height;  ///< absent when every point is a hole
+
+  [[nodiscard]] double valid_fraction() const {
+    return points == 0 ? 0.0 : static_cast<double>(valid) / static_cast<double>(points);
+  }
+};
+
+/// Needs 4 bytes a pixel for the time of the call.
+[[nodiscard]] HeightSummary summarize_heights(const HeightMap& map);
+
+}  // namespace fvd

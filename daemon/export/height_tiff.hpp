@@ -1,0 +1,22 @@
+#pragma once
+
+/// Heights as a TIFF that every image program opens.
+
+#include <optional>
+#include <string>
+
+#include "core/image.hpp"
+
+namespace fvd {
+
+struct TiffTags {
+  std::string software;
+  std::string description;
+  std::optional<double> pitch_x_um;  ///< written as resolution in pixels per centimetre where known
+  std::optional<double> pitch_y_um;
+};
+
+/// The bytes of an uncompressed one-page TIFF: 32-bit IEEE float, metres, NaN = hole. Throws Error kInternal.
+[[nodiscard]] std::string encode_height_tiff(const Plane<float>& height_m, const TiffTags& tags);
+
+}  // namespace fvd

@@ -1,0 +1,43 @@
+#include "daemon/export/image_png.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/error.hpp"
+#include "daemon/export/png_bytes.hpp"
+
+namespace fvd {
+
+std::string png_bytes(const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  try {
+    if (!cv::imencode(".png", image, bytes)) throw Error(ErrorCode::kInternal, "OpenCV could not encode a PNG");
+  } catch (const cv::Exception& failure) {
+    throw Error(ErrorCode::kInternal, std::string("OpenCV could not encode a PNG: ") + failure.what());
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string encode_mask_png(const HeightMap& map) {
+  cv::Mat image(map.mask.height(), map.mask.width(), CV_8U);
+  std::transform(map.mask.pixels().begin(), map.mask.pixels().end(), image.begin<std::uint8_t>(),
+                 [](std::uint8_t mask) { return mask == 0 ? std::uint8_t{255} : mask; });
+  return png_bytes(image);
+}
+
+std::string encode_texture_png(const HeightMap& map) {
+  const bool narrow = map.texture_format == PixelFormat::kMono8;
+  cv::Mat image(map.texture.height(), map.texture.width(), narrow ? CV_8U : CV_16U);
+  if (narrow) {
+    std::transform(map.texture.pixels().begin(), map.texture.pixels().end(), image.begin<std::uint8_t>(),
+                   [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
+  } else {
+    std::copy(map.texture.pixels().begin(), map.texture.pixels().end(), image.begin<std::uint16_t>());
+  }
+  return png_bytes(image);
+}
+
+}  // namespace fvd

@@ -1,0 +1,160 @@
+#include "daemon/export/result_json.hpp"
+
+#include <cmath>
+#include <ctime>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/export/height_summary.hpp"
+
+namespace fvd {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json rounded(double value, int decimals) {
+  const double factor = std::pow(10.0, decimals);
+  const double result = std::round(value * factor) / factor;
+  return std::isfinite(result) ? Json(result) : Json(nullptr);
+}
+
+Json um(double value) { return rounded(value, 4); }
+Json ms(double value) { return rounded(value, 3); }
+
+std::string iso8601_utc(std::chrono::system_clock::time_point time) {
+  const auto millis = std::chrono::floor<std::chrono::milliseconds>(time);
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(millis);
+  const std::time_t t = std::chrono::system_clock::to_time_t(seconds);
+  std::tm utc{};
+  gmtime_r(&t, &utc);
+  char text[64];
+  const auto length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
+  const std::string fraction = std::to_string(1000 + (millis - seconds).count()).substr(1);
+  return std::string(text, length) + "." + fraction + "Z";
+}
+
+Json height_values(const HeightSummary& summary) {
+  Json json;
+  const auto& height = summary.height;
+  json["min_um"] = height ? um(height->min_um) : Json(nullptr);
+  json["max_um"] = height ? um(height->max_um) : Json(nullptr);
+  json["mean_um"] = height ? um(height->mean_um) : Json(nullptr);
+  json["median_um"] = height ? um(height->median_um) : Json(nullptr);
+  return json;
+}
+
+Json holes(const HoleCounts& counts) {
+  return {{"low_prominence", counts.low_prominence},
+          {"first_slice", counts.first_slice},
+          {"last_slice", counts.last_slice},
+          {"not_bracketed", counts.not_bracketed},
+          {"saturated", counts.saturated}};
+}
+
+Json values(const ResultData& data) {
+  const HeightSummary summary = summarize_heights(data.map);
+  Json json;
+  json["height"] = height_values(summary);
+  json["points"] = summary.points;
+  json["valid_points"] = summary.valid;
+  json["valid_fraction"] = rounded(summary.valid_fraction(), 6);
+  json["hole_points"] = holes(summary.holes);
+  return json;
+}
+
+Json focus(const ResultData& data) {
+  Json json;
+  json["width_px"] = data.map.height_m.width();
+  json["height_px"] = data.map.height_m.height();
+  json["pixel_pitch_x_um"] = data.pixel_pitch_x_um ? Json(*data.pixel_pitch_x_um) : Json(nullptr);
+  json["pixel_pitch_y_um"] = data.pixel_pitch_y_um ? Json(*data.pixel_pitch_y_um) : Json(nullptr);
+  json["window_px"] = data.focus.window_px;
+  json["min_prominence"] = data.focus.min_prominence;
+  json["peak"] = peak_method_name(data.peak);
+  Json extra = Json::array();
+  for (const auto& [method, map] : data.extra_maps) {
+    extra.push_back({{"peak", peak_method_name(method)}, {"height", height_values(summarize_heights(map))}});
+  }
+  json["extra_peaks"] = std::move(extra);
+  json["state_bytes_per_pixel"] = rounded(data.state_bytes_per_pixel, 3);
+  return json;
+}
+
+Json frames(const FrameCounts& counts) {
+  return {{"expected", counts.expected}, {"ok", counts.ok},       {"incomplete", counts.incomplete},
+          {"missing", counts.missing},   {"stale", counts.stale}, {"underrun", counts.underrun}};
+}
+
+Json slices(const ResultData& data) {
+  std::size_t measured = 0;
+  for (const StepRecord& step : data.steps) measured += step.measured ? 1 : 0;
+  return {{"planned", data.slices_planned}, {"measured", measured}};
+}
+
+Json steps(const StepSummary& summary) {
+  return {{"steps", summary.steps},
+          {"error_mean_um", um(summary.error_mean_um)},
+          {"error_sd_um", um(summary.error_sd_um)},
+          {"error_max_um", um(summary.error_max_um)},
+          {"increment_error_sd_um", um(summary.increment_error_sd_um)},
+          {"increment_error_max_um", um(summary.increment_error_max_um)},
+          {"move_median_ms", ms(summary.move_median_ms)},
+          {"move_max_ms", ms(summary.move_max_ms)}};
+}
+
+Json provenance(const ResultData& data) {
+  return {{"recipe", text_or_null(data.recipe_id)},
+          {"recipe_sha256", text_or_null(data.recipe_sha256)},
+          {"software_version", text_or_null(data.software_version)},
+          {"simulated", data.simulated},
+          {"created", iso8601_utc(data.created)},
+          {"source", text_or_null(data.source)}};
+}
+
+/// One entry a file; the files of a folder, e.g. recorded slices, share one.
+Json file_list(const std::vector<AtomicDirectory::File>& files) {
+  Json list = Json::array();
+  std::map<std::string, std::size_t> folders;  // name -> place in the list
+  for (const auto& file : files) {
+    const auto slash = file.name.find('/');
+    if (slash == std::string::npos) {
+      list.push_back({{"name", file.name}, {"size_bytes", file.size_bytes}});
+      continue;
+    }
+    const std::string folder = file.name.substr(0, slash + 1);
+    const auto [place, is_new] = folders.try_emplace(folder, list.size());
+    if (is_new) list.push_back({{"name", folder}, {"files", 0}, {"size_bytes", 0}});
+    Json& entry = list[place->second];
+    entry["files"] = entry["files"].get<std::uint64_t>() + 1;
+    entry["size_bytes"] = entry["size_bytes"].get<std::uint64_t>() + file.size_bytes;
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string result_json_text(const ResultData& data, const std::optional<WriteReport>& report) {
+  Json json;
+  json["job"] = {{"job_id", text_or_null(data.job_id)},
+                 {"seq", data.seq ? Json(*data.seq) : Json(nullptr)},
+                 {"part_id", text_or_null(data.part_id)},
+                 {"recipe", text_or_null(data.recipe_id)}};
+  json["values"] = values(data);
+  json["focus"] = focus(data);
+  json["frames"] = frames(data.frames);
+  json["slices"] = slices(data);
+  json["steps"] = steps(data.step_summary);
+  json["times"] = {{"prepare_ms", ms(data.times.prepare_ms)},
+                   {"scan_ms", ms(data.times.scan_ms)},
+                   {"finish_ms", ms(data.times.finish_ms)}};
+  if (report) json["times"]["write_ms"] = ms(report->write_ms);
+  json["provenance"] = provenance(data);
+  if (report) json["files"] = file_list(report->files);
+  return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace fvd

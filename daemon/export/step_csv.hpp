@@ -1,0 +1,15 @@
+#pragma once
+
+/// The step log as a table.
+
+#include <string>
+
+#include "core/scan/step_log.hpp"
+
+namespace fvd {
+
+/// CSV with a header row, units in the column names, one row a slice, decimal point, LF. exposure_start_ms counts from
+/// the first measured exposure. Measured columns of a lost slice are empty.
+[[nodiscard]] std::string step_csv(const StepLog& log);
+
+}  // namespace fvd

@@ -1,0 +1,49 @@
+#pragma once
+
+/// One measurement from the recipe to the height maps, on devices that are open.
+
+#include <cstddef>
+#include <functional>
+#include <stop_token>
+#include <string_view>
+
+#include "core/hw/camera.hpp"
+#include "core/hw/clock.hpp"
+#include "core/hw/z_stage.hpp"
+#include "core/pipeline/focus_worker.hpp"
+#include "core/pipeline/worker_pool.hpp"
+#include "core/scan/scan_plan.hpp"
+#include "core/scan/scan_runner.hpp"
+#include "daemon/export/result_data.hpp"
+#include "daemon/recipe.hpp"
+
+namespace fvd {
+
+[[nodiscard]] ScanPlan scan_plan(const Recipe& recipe);
+
+struct MeasurementDependencies {
+  Camera& camera;
+  ZStage& stage;
+  Clock& clock;
+  WorkerPool& pool;
+  std::size_t queue_slices;
+};
+
+/// What the caller wants to hear while it runs; each is called on the measurement's thread.
+struct MeasurementObserver {
+  std::function<void(std::string_view phase)> on_phase;  ///< "preparing", "acquiring", "computing"
+  std::function<void(const ScanReport& report)> on_slice;
+  std::function<void()> on_acquired;  ///< the part may be moved
+  FocusWorker::Tap tap;               ///< every slice, on the focus thread; may be empty
+};
+
+/// Configures the camera, homes the stage if it has no reference, scans, and computes. Fills of the result what it
+/// measured: maps, steps, frames, times, source, simulated; `result` holds steps and frames even when it throws.
+/// Throws what camera, stage and scan throw.
+void measure(const Recipe& recipe, const MeasurementDependencies& dependencies, const MeasurementObserver& observer,
+             ResultData& result, std::stop_token stop);
+
+/// Throws Error kFocusRange or kTooFewValid if fewer points are valid than the recipe asks for.
+void check_valid_points(const Recipe& recipe, const HeightMap& map);
+
+}  // namespace fvd

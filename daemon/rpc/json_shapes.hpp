@@ -1,0 +1,21 @@
+#pragma once
+
+/// Jobs and machine states as flat JSON objects in a fixed order of keys, as PLCs search them.
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/job_service.hpp"
+
+namespace fvd {
+
+/// At most about 500 bytes.
+[[nodiscard]] nlohmann::ordered_json job_status_json(const JobStatus& job);
+/// hb: counts up once a second.
+[[nodiscard]] nlohmann::ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb);
+/// At most 440 bytes: the main values of a result, picked from result.json.
+[[nodiscard]] nlohmann::ordered_json compact_result_json(const JobStatus& job, const std::string& result_text);
+/// At most 1400 bytes: the whole result.json without what is long, and where the files are.
+[[nodiscard]] nlohmann::ordered_json full_result_json(const JobStatus& job, const std::string& result_text,
+                                                      const std::string& directory);
+
+}  // namespace fvd

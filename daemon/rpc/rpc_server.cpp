@@ -1,0 +1,270 @@
+#include <utility>  // before Asio 1.74, which forgets it
+
+#include "daemon/rpc/rpc_server.hpp"
+
+#include <netinet/tcp.h>
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <deque>
+#include <fstream>
+#include <set>
+#include <string>
+#include <thread>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
+
+#include "core/error.hpp"
+#include "daemon/rpc/dispatcher.hpp"
+
+namespace fvd {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using ErrorCodeOf = boost::system::error_code;
+
+namespace {
+
+/// A client that lets this much pile up does not read; it is dropped rather than the memory filled.
+constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
+
+void tune(tcp::socket& socket) {
+  ErrorCodeOf ignored;
+  socket.set_option(tcp::no_delay(true), ignored);
+  socket.set_option(asio::socket_base::keep_alive(true), ignored);
+  const int fd = socket.native_handle();
+  const auto set = [fd](int option, int value) { ::setsockopt(fd, IPPROTO_TCP, option, &value, sizeof(value)); };
+  set(TCP_KEEPIDLE, 10);
+  set(TCP_KEEPINTVL, 5);
+  set(TCP_KEEPCNT, 3);
+  set(TCP_USER_TIMEOUT, 15000);
+}
+
+}  // namespace
+
+struct RpcServer::Impl {
+  class Session;
+
+  Impl(const RpcConfig& c, const std::filesystem::path& runtime_dir, JobService& s)
+      : config(c), service(s), dispatcher(s), acceptor(context), port_file(runtime_dir / "rpc.json") {
+    listen();
+    write_port_file();
+    accept();
+    service.on_change([this] { asio::post(context, [this] { resume_all(); }); });
+    thread = std::jthread([this] { context.run(); });
+    pthread_setname_np(thread.native_handle(), "fvd-rpc");
+  }
+
+  ~Impl() {
+    service.on_change({});
+    context.stop();
+    thread.join();
+    std::error_code ignored;
+    std::filesystem::remove(port_file, ignored);
+  }
+
+  void listen() {
+    ErrorCodeOf error;
+    const auto address = asio::ip::make_address(config.address, error);
+    if (!error) {
+      const tcp::endpoint endpoint(address, static_cast<unsigned short>(config.port));
+      acceptor.open(endpoint.protocol(), error);
+      if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+      if (!error) acceptor.bind(endpoint, error);
+      if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    }
+    if (error) {
+      throw Error(ErrorCode::kBadConfig, "cannot listen on " + config.address + ":" + std::to_string(config.port) + ": " +
+                                             error.message() + "; see /rpc/address and /rpc/port");
+    }
+    port = acceptor.local_endpoint().port();
+  }
+
+  void write_port_file() {
+    std::error_code error;
+    std::filesystem::create_directories(port_file.parent_path(), error);
+    const auto temporary = port_file.string() + ".tmp";
+    errno = 0;
+    std::ofstream out(temporary);
+    out << "{\"address\": \"" << config.address << "\", \"port\": " << port << ", \"pid\": " << ::getpid() << "}\n";
+    out.close();
+    if (!out || ::rename(temporary.c_str(), port_file.c_str()) != 0) {
+      throw Error(ErrorCode::kStorageWrite, "cannot write " + port_file.string() + ": " + std::strerror(errno) +
+                                                "; see /paths/runtime_dir");
+    }
+  }
+
+  void accept();
+  void resume_all();
+
+  const RpcConfig config;
+  JobService& service;
+  Dispatcher dispatcher;
+  asio::io_context context;
+  tcp::acceptor acceptor;
+  std::filesystem::path port_file;
+  int port = 0;
+  std::set<std::shared_ptr<Session>> sessions;  // network thread only
+  std::jthread thread;                          // last
+};
+
+/// One connection. Network thread only.
+class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
+ public:
+  Session(Impl& server, tcp::socket socket)
+      : server_(server), socket_(std::move(socket)), idle_(server.context), wait_(server.context) {}
+
+  void start() {
+    tune(socket_);
+    read();
+  }
+
+  void refuse() {
+    tune(socket_);
+    closing_ = true;
+    send(Dispatcher::too_many_connections());
+  }
+
+  /// A job changed: what waits for it may go on.
+  void resume(bool timed_out) {
+    if (!waiting_) return;
+    auto reply = server_.dispatcher.resume(*waiting_, timed_out);
+    if (!reply) return;
+    waiting_.reset();
+    wait_.cancel();
+    watch_idle();
+    send(std::move(*reply));
+    process();
+  }
+
+ private:
+  /// Starts the time of silence anew.
+  void watch_idle() {
+    idle_.expires_after(std::chrono::seconds(server_.config.idle_timeout_s));
+    idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+      // A request that waits for a job is no silence; its own timeout ends it.
+      if (!error && !self->waiting_) self->close();
+    });
+  }
+
+  void read() {
+    watch_idle();
+    socket_.async_read_some(asio::buffer(chunk_), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
+      if (error) return self->close();
+      self->input_.append(self->chunk_.data(), count);
+      self->process();
+      if (!self->closing_) self->read();
+    });
+  }
+
+  /// Handles the whole lines at hand, in order; stops at a request that has to wait.
+  void process() {
+    while (!waiting_ && !closing_) {
+      const std::size_t end = input_.find_first_of(std::string_view("\n\r\0", 3));
+      if (end == std::string::npos) break;
+      const std::string line = input_.substr(0, end);
+      input_.erase(0, end + 1);
+      if (line.size() > Dispatcher::kMaxLineBytes) return refuse_line();
+      if (line.find_first_not_of(" \t") == std::string::npos) continue;
+      Handled handled = server_.dispatcher.handle(line);
+      if (handled.reply) send(std::move(*handled.reply));
+      if (handled.waiting) begin_wait(std::move(*handled.waiting));
+    }
+    // What piles up behind a waiting request is bounded as well.
+    const std::size_t limit = waiting_ ? kMaxUnsentBytes : Dispatcher::kMaxLineBytes;
+    if (input_.size() > limit) refuse_line();
+  }
+
+  void refuse_line() {
+    closing_ = true;
+    send(Dispatcher::too_long());
+  }
+
+  void begin_wait(WaitingRequest waiting) {
+    const auto timeout = waiting.timeout;
+    waiting_ = std::move(waiting);
+    wait_.expires_after(timeout);
+    wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+      if (!error) self->resume(true);
+    });
+    resume(false);
+  }
+
+  void send(std::string line) {
+    line += '\n';
+    unsent_bytes_ += line.size();
+    unsent_.push_back(std::move(line));
+    if (unsent_bytes_ > kMaxUnsentBytes) return close();
+    if (unsent_.size() == 1) write();
+  }
+
+  void write() {
+    asio::async_write(socket_, asio::buffer(unsent_.front()), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
+      if (error) return self->close();
+      self->unsent_bytes_ -= count;
+      self->unsent_.pop_front();
+      if (!self->unsent_.empty()) return self->write();
+      if (self->closing_) self->close();
+    });
+  }
+
+  void close() {
+    closing_ = true;
+    waiting_.reset();
+    ErrorCodeOf ignored;
+    idle_.cancel();
+    wait_.cancel();
+    socket_.shutdown(tcp::socket::shutdown_both, ignored);
+    socket_.close(ignored);
+    server_.sessions.erase(shared_from_this());
+  }
+
+  Impl& server_;
+  tcp::socket socket_;
+  asio::steady_timer idle_;
+  asio::steady_timer wait_;
+  std::array<char, 4096> chunk_{};
+  std::string input_;
+  std::deque<std::string> unsent_;
+  std::size_t unsent_bytes_ = 0;
+  std::optional<WaitingRequest> waiting_;
+  bool closing_ = false;
+};
+
+void RpcServer::Impl::accept() {
+  acceptor.async_accept([this](ErrorCodeOf error, tcp::socket socket) {
+    if (!error) {
+      const auto session = std::make_shared<Session>(*this, std::move(socket));
+      const bool room = sessions.size() < static_cast<std::size_t>(config.max_connections);
+      sessions.insert(session);
+      if (room) {
+        session->start();
+      } else {
+        session->refuse();
+      }
+    }
+    accept();
+  });
+}
+
+void RpcServer::Impl::resume_all() {
+  // A copy: a session may close, and so leave the set, while it is resumed.
+  const auto all = sessions;
+  for (const auto& session : all) session->resume(false);
+}
+
+RpcServer::RpcServer(const RpcConfig& config, const std::filesystem::path& runtime_dir, JobService& service)
+    : impl_(std::make_unique<Impl>(config, runtime_dir, service)) {}
+RpcServer::~RpcServer() = default;
+
+int RpcServer::port() const noexcept { return impl_->port; }
+
+}  // namespace fvd

@@ -1,0 +1,37 @@
+#include "drivers/replay/recorded_stack.hpp"
+
+#include <string>
+
+#include "core/error.hpp"
+
+namespace fvd {
+
+namespace {
+
+std::string shape_text(int width, int height, PixelFormat format) {
+  return std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
+         std::to_string(significant_bits(format)) + " bit";
+}
+
+}  // namespace
+
+RecordedStack::RecordedStack(const std::filesystem::path& source) : list_(find_slices(source)) {
+  const SliceImage first = read_slice(list_.slices.front());
+  width_ = first.width;
+  height_ = first.height;
+  format_ = first.format;
+}
+
+SliceImage RecordedStack::read(int index) const {
+  const SliceLocation& location = list_.slices.at(static_cast<std::size_t>(index));
+  SliceImage slice = read_slice(location);
+  if (slice.width != width_ || slice.height != height_ || slice.format != format_) {
+    throw Error(ErrorCode::kBadInput, "slice " + location.name() + " in " + location.file.parent_path().string() +
+                                          " has " + shape_text(slice.width, slice.height, slice.format) +
+                                          ", the first slice " + list_.slices.front().name() + " has " +
+                                          shape_text(width_, height_, format_) + ": all must be equal");
+  }
+  return slice;
+}
+
+}  // namespace fvd

@@ -1,0 +1,38 @@
+#pragma once
+
+/// A recorded focus stack: slices on disk, read one at a time.
+
+#include <filesystem>
+
+#include "core/image.hpp"
+#include "drivers/replay/slice_files.hpp"
+#include "drivers/replay/slice_image.hpp"
+
+namespace fvd {
+
+/// Holds names, never pixels. All slices have the size and format of the first.
+/// context: const functions are thread-safe.
+class RecordedStack {
+ public:
+  /// source: a folder of slices or a multi-page TIFF, see find_slices() for which files count. Reads the first slice.
+  /// Throws Error kBadInput, naming the file: see find_slices(), read_slice().
+  explicit RecordedStack(const std::filesystem::path& source);
+
+  [[nodiscard]] const SliceList& list() const noexcept { return list_; }
+  [[nodiscard]] int slices() const noexcept { return static_cast<int>(list_.slices.size()); }
+  [[nodiscard]] int width() const noexcept { return width_; }
+  [[nodiscard]] int height() const noexcept { return height_; }
+  [[nodiscard]] PixelFormat format() const noexcept { return format_; }
+
+  /// Decodes one slice, 0 <= index < slices(). Throws Error kBadInput naming the file: see read_slice(); also for
+  /// another size or format than the first slice's.
+  [[nodiscard]] SliceImage read(int index) const;
+
+ private:
+  SliceList list_;
+  int width_ = 0;
+  int height_ = 0;
+  PixelFormat format_ = PixelFormat::kMono8;
+};
+
+}  // namespace fvd

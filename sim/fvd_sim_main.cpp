@@ -1,0 +1,133 @@
+/// fvd-sim: a simulated microscope on real protocols, and the comparison of what fvd made of it with the truth.
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "core/error.hpp"
+#include "sim/evaluate.hpp"
+#include "sim/plant.hpp"
+#include "sim/world_config.hpp"
+
+namespace fvd::sim {
+namespace {
+
+struct Arguments {
+  std::filesystem::path world;
+  std::filesystem::path plant;
+  std::string camera_address = "127.0.0.1";
+  std::string stage_address = "127.0.0.1";
+  int stage_port = 1502;
+  double packet_loss = 0.0;
+  std::optional<std::uint64_t> seed;
+  std::filesystem::path ready_file;
+  std::filesystem::path folder;
+  bool json = false;
+};
+
+/// The chapter's world and plant unless files say otherwise.
+WorldParameters world_of(const Arguments& arguments) {
+  WorldParameters world = arguments.world.empty() ? WorldParameters{} : load_world(arguments.world);
+  if (arguments.seed) world.seed = *arguments.seed;
+  return world;
+}
+
+AxisParameters plant_of(const Arguments& arguments) {
+  AxisParameters plant{.encoder_noise_um = 0.01, .settle_noise_um = 0.02, .start_latency_ms = 3.0};
+  if (!arguments.plant.empty()) plant = load_plant(arguments.plant);
+  if (arguments.seed) plant.seed = *arguments.seed;
+  return plant;
+}
+
+void write_ready_file(const std::filesystem::path& file, const Plant& plant, const Arguments& arguments) {
+  if (file.empty()) return;
+  const auto temporary = file.string() + ".tmp";
+  std::ofstream out(temporary);
+  out << "{\"camera_address\": \"" << plant.camera_address() << "\", \"stage_address\": \"" << arguments.stage_address
+      << "\", \"stage_port\": " << plant.stage_port() << ", \"pid\": " << ::getpid() << "}\n";
+  out.close();
+  if (!out || ::rename(temporary.c_str(), file.c_str()) != 0) {
+    throw Error(ErrorCode::kStorageWrite, "cannot write " + file.string());
+  }
+}
+
+int run(const Arguments& arguments) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+  Plant plant({.world = world_of(arguments),
+               .axis = plant_of(arguments),
+               .camera_address = arguments.camera_address,
+               .stage_address = arguments.stage_address,
+               .stage_port = arguments.stage_port});
+  plant.camera().set_packet_loss(arguments.packet_loss);
+  std::cout << "camera " << plant.camera_address() << ":3956 (GigE Vision), " << plant.world().sensor_width() << " x "
+            << plant.world().sensor_height() << " pixels; stage " << arguments.stage_address << ':' << plant.stage_port()
+            << " unit 1 (Modbus TCP); " << (plant.world().memory_bytes() >> 20U) << " MiB" << std::endl;
+  write_ready_file(arguments.ready_file, plant, arguments);
+  int received = 0;
+  sigwait(&signals, &received);
+  std::cout << "frames sent " << plant.camera().frames() << ", packets lost " << plant.camera().packets_lost()
+            << ", packets resent " << plant.camera().packets_resent() << ", Modbus requests " << plant.stage().requests()
+            << std::endl;
+  return 0;
+}
+
+int main_of(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"fvd-sim: a simulated microscope on GigE Vision and Modbus TCP", "fvd-sim"};
+  app.require_subcommand(1);
+  const auto add_world = [&](CLI::App* command) {
+    command->add_option("--world", arguments.world, "world file; default: the chapter's surface")->check(CLI::ExistingFile);
+    command->add_option("--seed", arguments.seed, "of texture, noise and axis errors");
+  };
+  auto* running = app.add_subcommand("run", "serve camera and stage until SIGTERM");
+  add_world(running);
+  running->add_option("--plant", arguments.plant, "axis file; default: nearly perfect")->check(CLI::ExistingFile);
+  running->add_option("--camera-address", arguments.camera_address, "loopback address, or auto for a free one")->capture_default_str();
+  running->add_option("--stage-address", arguments.stage_address, "address of the Modbus server")->capture_default_str();
+  running->add_option("--stage-port", arguments.stage_port, "its port, 0 = any free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  running->add_option("--packet-loss", arguments.packet_loss, "fraction of stream packets that are lost")->check(CLI::Range(0.0, 0.9));
+  running->add_option("--ready-file", arguments.ready_file, "written once both serve: addresses and pid as JSON");
+  auto* truth = app.add_subcommand("truth", "write the world's true heights");
+  add_world(truth);
+  truth->add_option("folder", arguments.folder, "existing folder")->required()->check(CLI::ExistingDirectory);
+  auto* compare = app.add_subcommand("evaluate", "compare a result of fvd with the truth");
+  add_world(compare);
+  compare->add_option("result", arguments.folder, "result directory")->required()->check(CLI::ExistingDirectory);
+  compare->add_flag("--json", arguments.json, "print the figures as one JSON object in the last line");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 64;
+  }
+  if (*running) return run(arguments);
+  if (*truth) {
+    write_truth(world_of(arguments), arguments.folder);
+  } else {
+    evaluate(world_of(arguments), arguments.folder, arguments.json, std::cout);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace fvd::sim
+
+int main(int argc, char** argv) {
+  try {
+    return fvd::sim::main_of(argc, argv);
+  } catch (const fvd::Error& error) {
+    std::cerr << "fvd-sim: " << error.what() << '\n';
+    return error.code() == fvd::ErrorCode::kBadConfig ? 78 : 65;
+  } catch (const std::exception& error) {
+    std::cerr << "fvd-sim: " << error.what() << '\n';
+    return 70;
+  }
+}

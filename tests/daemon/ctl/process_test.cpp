@@ -1,0 +1,171 @@
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/focus/streaming_focus_stack.hpp"
+#include "core/pipeline/worker_pool.hpp"
+#include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/fvdctl.hpp"
+#include "daemon/export/recorded_slices.hpp"
+#include "tests/support/scratch_dir.hpp"
+#include "tests/support/stack_folder.hpp"
+
+namespace fvd::ctl {
+namespace {
+
+using test::ScratchDir;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+Outcome process(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "process");
+  std::ostringstream out;
+  std::ostringstream err;
+  const int code = run_fvdctl(arguments, {out, err, false, false});
+  return {code, out.str(), err.str()};
+}
+
+cv::Mat read_float(const fs::path& path) { return cv::imread(path.string(), cv::IMREAD_UNCHANGED); }
+
+TEST(Process, MakesAHeightMapOfRecordedSlices) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 11, 4.0);
+  const Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--z-start-um", "-7", "--extra-peak", "nearest",
+                                   "--pixel-pitch-um", "2", "--out", scratch / "out"});
+  ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("s*.png (11 files), 40 x 30 pixels"));
+  EXPECT_THAT(outcome.err, HasSubstr("slice 11/11"));
+  const cv::Mat height = read_float(scratch / "out/height.tiff");
+  ASSERT_EQ(height.type(), CV_32FC1);
+  for (int y = 0; y < height.rows; ++y) {
+    for (int x = 0; x < height.cols; ++x) ASSERT_NEAR(static_cast<double>(height.at<float>(y, x)), 33e-6, 0.5e-6);
+  }
+  EXPECT_EQ(read_float(scratch / "out/height_nearest.tiff").at<float>(7, 7), 33e-6F);
+  const auto result = nlohmann::json::parse(test::read_text(scratch / "out/result.json"));
+  EXPECT_EQ(result["frames"]["ok"], 11);
+  EXPECT_EQ(result["slices"]["measured"], 11);
+  EXPECT_EQ(result["focus"]["pixel_pitch_x_um"], 2.0);
+  EXPECT_EQ(result["job"]["part_id"], "in");
+  EXPECT_THAT(result["provenance"]["source"].get<std::string>(), HasSubstr("s*.png"));
+}
+
+TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
+  const ScratchDir scratch;
+  WorkerPool pool(2);
+  StreamingFocusStack live(40, 30, PixelFormat::kMono12, {}, pool);
+  {
+    AtomicDirectory directory(scratch / "job");
+    SliceRecorder recorder(directory);
+    for (int i = 0; i < 9; ++i) {
+      const cv::Mat image = test::pattern_slice(i, 3.7, CV_16UC1) / 16;
+      const PlaneView<const std::uint16_t> pixels{image.ptr<std::uint16_t>(), 40, 30, 40};
+      const double z_um = 10.0 * i + std::sin(i) / 7.0;  // no number that a short decimal could hold
+      live.push(image_view(pixels, PixelFormat::kMono12), z_um);
+      recorder.add(image_view(pixels, PixelFormat::kMono12), z_um);
+    }
+    recorder.finish("test");
+    directory.commit();
+  }
+  const HeightMap expected = live.finish(PeakMethod::kLogParabola);
+
+  const Outcome outcome = process({scratch / "job/slices", "--z-file", scratch / "job/slices/z.txt", "--peak",
+                                   "log_parabola", "--out", scratch / "out"});
+
+  ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
+  const cv::Mat height = read_float(scratch / "out/height.tiff");
+  int valid = 0;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const float z = expected.height_m.at(x, y);
+      if (std::isnan(z)) {
+        ASSERT_TRUE(std::isnan(height.at<float>(y, x)));
+      } else {
+        ASSERT_EQ(height.at<float>(y, x), z);
+        ++valid;
+      }
+    }
+  }
+  EXPECT_GT(valid, 1000);
+}
+
+/// What goes wrong, which file the message must name, and the exit code.
+struct BadStack {
+  const char* what;
+  void (*spoil)(const fs::path& folder);
+  const char* named;
+};
+
+class ABadStack : public testing::TestWithParam<BadStack> {};
+
+TEST_P(ABadStack, IsRefusedByNameAndLeavesNothing) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 6, 3.0);
+  GetParam().spoil(scratch / "in");
+  const Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--out", scratch / "out"});
+  EXPECT_EQ(outcome.code, kExitBadData);
+  EXPECT_THAT(outcome.err, HasSubstr(GetParam().named));
+  EXPECT_THAT(scratch.entries(), testing::ElementsAre("in"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Folder, ABadStack,
+    testing::Values(BadStack{"LastSliceOfAnotherSize",
+                             [](const fs::path& folder) {
+                               cv::imwrite((folder / "s5.png").string(), test::pattern_slice(5, 3, CV_8UC1, 39, 30));
+                             },
+                             "s5.png"},
+                    BadStack{"LastSliceOfAnotherDepth",
+                             [](const fs::path& folder) {
+                               cv::imwrite((folder / "s5.png").string(), test::pattern_slice(5, 3, CV_16UC1));
+                             },
+                             "s5.png"},
+                    BadStack{"TruncatedSlice",
+                             [](const fs::path& folder) {
+                               test::write_text(folder / "s4.png", test::read_text(folder / "s4.png").substr(0, 300));
+                             },
+                             "s4.png"},
+                    BadStack{"NoImage", [](const fs::path& folder) { test::write_text(folder / "s2.png", "text"); },
+                             "s2.png"},
+                    BadStack{"MissingSlice", [](const fs::path& folder) { fs::remove(folder / "s2.png"); },
+                             "s1.png is followed by s3.png"},
+                    BadStack{"OneSlice",
+                             [](const fs::path& folder) {
+                               for (int i = 1; i < 6; ++i) fs::remove(folder / ("s" + std::to_string(i) + ".png"));
+                             },
+                             "only one slice"},
+                    BadStack{"EmptyFolder",
+                             [](const fs::path& folder) {
+                               fs::remove_all(folder);
+                               fs::create_directory(folder);
+                             },
+                             "no slices in"}),
+    [](const auto& stack) { return stack.param.what; });
+
+TEST(Process, RefusesWhatItWouldOnlyFindOutLater) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 3, 1.0);
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{scratch / "in", "--z-step-um", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return process(arguments);
+  };
+  EXPECT_EQ(with({"--out", scratch / "in"}).code, kExitIo) << "exists";
+  EXPECT_EQ(with({"--out", scratch / "nowhere/out"}).code, kExitIo);
+  EXPECT_EQ(with({"--out", scratch / "out", "--window", "8"}).code, kExitBadData);
+  EXPECT_EQ(with({"--out", scratch / "out", "--min-prominence", "1.5"}).code, kExitBadData);
+  EXPECT_EQ(with({"--out", scratch / "out", "--pixel-pitch-um", "-1"}).code, kExitBadData);
+  EXPECT_THAT(scratch.entries(), testing::ElementsAre("in"));
+}
+
+}  // namespace
+}  // namespace fvd::ctl

@@ -1,0 +1,142 @@
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <tiffio.h>
+#include <tiffio.hxx>
+
+#include "daemon/export/axis_ticks.hpp"
+#include "daemon/export/height_tiff.hpp"
+#include "daemon/export/image_png.hpp"
+#include "daemon/export/preview.hpp"
+#include "tests/daemon/export/sample_result.hpp"
+
+namespace fvd {
+namespace {
+
+cv::Mat decode(const std::string& bytes) {
+  const std::vector<unsigned char> data(bytes.begin(), bytes.end());
+  return cv::imdecode(data, cv::IMREAD_UNCHANGED);
+}
+
+TEST(HeightTiff, ReadsBackExactlyWithItsHoles) {
+  HeightMap map = test::sample_map(300, 200);
+  test::make_hole(map, 3, 2, mask_reason::kLowProminence);
+  const cv::Mat image = decode(encode_height_tiff(map.height_m, {"fvd", "d", 2.0, 2.0}));
+  ASSERT_EQ(image.type(), CV_32FC1);
+  ASSERT_EQ(image.size(), cv::Size(300, 200));
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      if (x == 3 && y == 2) {
+        EXPECT_TRUE(std::isnan(image.at<float>(y, x)));
+      } else {
+        ASSERT_EQ(image.at<float>(y, x), map.height_m.at(x, y)) << x << "," << y;
+      }
+    }
+  }
+}
+
+TEST(HeightTiff, SaysWhatItHolds) {
+  std::istringstream bytes(encode_height_tiff(test::sample_map().height_m, {"fvd 1.2.3", "metres", 2.0, 4.0}));
+  TIFF* tiff = TIFFStreamOpen("test", &bytes);
+  ASSERT_NE(tiff, nullptr);
+  const char* text = nullptr;
+  EXPECT_EQ(TIFFGetField(tiff, TIFFTAG_SOFTWARE, &text), 1);
+  EXPECT_STREQ(text, "fvd 1.2.3");
+  EXPECT_EQ(TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text), 1);
+  EXPECT_STREQ(text, "metres");
+  std::uint16_t value = 0;
+  TIFFGetField(tiff, TIFFTAG_SAMPLEFORMAT, &value);
+  EXPECT_EQ(value, SAMPLEFORMAT_IEEEFP);
+  TIFFGetField(tiff, TIFFTAG_COMPRESSION, &value);
+  EXPECT_EQ(value, COMPRESSION_NONE);
+  TIFFGetField(tiff, TIFFTAG_RESOLUTIONUNIT, &value);
+  EXPECT_EQ(value, RESUNIT_CENTIMETER);
+  float resolution = 0;
+  TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &resolution);
+  EXPECT_FLOAT_EQ(resolution, 5000.0F);
+  TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &resolution);
+  EXPECT_FLOAT_EQ(resolution, 2500.0F);
+  TIFFClose(tiff);
+}
+
+TEST(MaskPng, Is255WhereValidAndTheReasonsElsewhere) {
+  HeightMap map = test::sample_map();
+  test::make_hole(map, 1, 2, mask_reason::kLastSlice | mask_reason::kLowProminence);
+  const cv::Mat image = decode(encode_mask_png(map));
+  ASSERT_EQ(image.type(), CV_8UC1);
+  EXPECT_EQ(image.at<std::uint8_t>(0, 0), 255);
+  EXPECT_EQ(image.at<std::uint8_t>(2, 1), mask_reason::kLastSlice | mask_reason::kLowProminence);
+}
+
+TEST(TexturePng, KeepsTheGreyLevelsOfTheCamera) {
+  HeightMap map = test::sample_map();
+  const cv::Mat narrow = decode(encode_texture_png(map));
+  ASSERT_EQ(narrow.type(), CV_8UC1);
+  EXPECT_EQ(narrow.at<std::uint8_t>(2, 5), 25);
+
+  map.texture_format = PixelFormat::kMono12;
+  map.texture.at(0, 0) = 4095;
+  const cv::Mat wide = decode(encode_texture_png(map));
+  ASSERT_EQ(wide.type(), CV_16UC1);
+  EXPECT_EQ(wide.at<std::uint16_t>(0, 0), 4095) << "not stretched";
+}
+
+cv::Mat preview_of(const HeightMap& map) {
+  return decode(encode_preview_png(map, summarize_heights(map), {"title", "subtitle", true, 2.0}));
+}
+
+TEST(Preview, PaintsHolesInNeutralGreyAndHeightsInColour) {
+  HeightMap map = test::sample_map(400, 300);
+  for (int x = 0; x < 200; ++x) {
+    for (int y = 0; y < 300; ++y) test::make_hole(map, x, y, mask_reason::kLowProminence);
+  }
+  const cv::Mat page = preview_of(map);
+  ASSERT_EQ(page.type(), CV_8UC3);
+  const auto hole = page.at<cv::Vec3b>(84 + 150, 24 + 100);
+  EXPECT_EQ(hole[0], hole[1]);
+  EXPECT_EQ(hole[1], hole[2]);
+  const auto surface = page.at<cv::Vec3b>(84 + 150, 24 + 300);
+  EXPECT_TRUE(surface[0] != surface[1] || surface[1] != surface[2]);
+  EXPECT_NE(page.at<cv::Vec3b>(84 + 2, 24 + 300), page.at<cv::Vec3b>(84 + 297, 24 + 300)) << "heights differ";
+}
+
+TEST(Preview, FitsMapsOfAnySize) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 700}, {5000, 40}, {3000, 2000}, {60, 45}}) {
+    const cv::Mat page = preview_of(test::sample_map(width, height));
+    EXPECT_GE(page.cols, 400) << width;
+    EXPECT_LE(page.cols, 1620) << width;
+    EXPECT_GE(page.rows, 200) << width;
+    EXPECT_LE(page.rows, 1150) << width;
+  }
+}
+
+TEST(Preview, DrawsAMapWithoutAnyValidPointAndAFlatOne) {
+  HeightMap holes = test::sample_map(30, 20);
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 30; ++x) test::make_hole(holes, x, y, mask_reason::kLowProminence);
+  }
+  EXPECT_FALSE(preview_of(holes).empty());
+  HeightMap flat = test::sample_map(30, 20);
+  for (float& z : flat.height_m.pixels()) z = 1e-4F;
+  EXPECT_FALSE(preview_of(flat).empty());
+}
+
+TEST(AxisTicks, AreRoundAndInsideTheRange) {
+  const AxisTicks ticks = axis_ticks(-7.3, 162.0, 8);
+  ASSERT_EQ(ticks.values, (std::vector<double>{0, 20, 40, 60, 80, 100, 120, 140, 160}));
+  EXPECT_EQ(ticks.decimals, 0);
+  EXPECT_EQ(fixed_text(ticks.values.back(), ticks.decimals), "160");
+}
+
+TEST(AxisTicks, HaveTheDecimalsThatTellThemApart) {
+  const AxisTicks ticks = axis_ticks(1.0, 1.1, 6);
+  ASSERT_EQ(ticks.values.size(), 6U);
+  EXPECT_EQ(ticks.decimals, 2);
+  EXPECT_EQ(fixed_text(ticks.values[1], ticks.decimals), "1.02");
+  EXPECT_EQ(fixed_text(-0.001, 2), "0.00");
+}
+
+}  // namespace
+}  // namespace fvd

@@ -1,0 +1,133 @@
+#include "daemon/export/result_writer.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "daemon/export/result_json.hpp"
+#include "daemon/export/step_csv.hpp"
+#include "tests/daemon/export/sample_result.hpp"
+#include "tests/support/expect_error.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+using test::ScratchDir;
+
+TEST(ResultWriter, WritesEveryFileAndNothingElse) {
+  const ScratchDir scratch;
+  ResultData data = test::sample_result();
+  data.extra_maps.emplace_back(PeakMethod::kNearest, test::sample_map());
+  write_result(scratch / "job", data);
+
+  EXPECT_THAT(scratch.entries(), testing::ElementsAre("job"));
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(scratch / "job")) {
+    names.insert(entry.path().filename().string());
+  }
+  EXPECT_THAT(names, testing::ElementsAre("height.gsf", "height.tiff", "height_nearest.tiff", "mask.png", "preview.png",
+                                          "result.json", "step_log.csv", "texture.png"));
+}
+
+TEST(ResultWriter, ListsTheFilesWithTheirTrueSizes) {
+  const ScratchDir scratch;
+  AtomicDirectory directory(scratch / "job");
+  directory.add_file("slices/slice_0.pgm", "abc");
+  directory.add_file("slices/z.txt", "12345");
+  write_result(directory, test::sample_result());
+  directory.commit();
+
+  const json result = json::parse(test::read_text(scratch / "job/result.json"));
+  ASSERT_EQ(result["files"].size(), 7U);
+  EXPECT_EQ(result["files"][0], json({{"name", "slices/"}, {"files", 2}, {"size_bytes", 8}}));
+  for (const auto& file : result["files"]) {
+    if (file["name"] == "slices/") continue;
+    EXPECT_EQ(file["size_bytes"], std::filesystem::file_size(scratch / "job" / file["name"].get<std::string>()));
+  }
+  EXPECT_GE(result["times"]["write_ms"].get<double>(), 0.0);
+}
+
+TEST(ResultWriter, LeavesNothingWhenTheTargetExists) {
+  const ScratchDir scratch;
+  std::filesystem::create_directory(scratch / "job");
+  test::expect_error(ErrorCode::kStorageWrite, {"job", "exists"},
+                     [&] { write_result(scratch / "job", test::sample_result()); });
+  EXPECT_THAT(scratch.entries(), testing::ElementsAre("job"));
+  EXPECT_TRUE(std::filesystem::is_empty(scratch / "job"));
+}
+
+TEST(ResultJson, TellsValuesFramesAndOrigin) {
+  const json result = json::parse(result_json_text(test::sample_result()));
+  EXPECT_EQ(result["job"], json({{"job_id", "J7"}, {"seq", 4711}, {"part_id", "part-42"}, {"recipe", "chapter"}}));
+  EXPECT_EQ(result["values"]["height"],
+            json({{"min_um", 2.0}, {"max_um", 25.0}, {"mean_um", 14.0}, {"median_um", 13.5}}));
+  EXPECT_EQ(result["values"]["points"], 18);
+  EXPECT_EQ(result["values"]["valid_points"], 16);
+  EXPECT_NEAR(result["values"]["valid_fraction"].get<double>(), 16.0 / 18.0, 1e-6);
+  EXPECT_EQ(
+      result["values"]["hole_points"],
+      json({{"low_prominence", 1}, {"first_slice", 1}, {"last_slice", 0}, {"not_bracketed", 0}, {"saturated", 1}}));
+  EXPECT_EQ(result["focus"]["peak"], "log_parabola");
+  EXPECT_EQ(result["focus"]["pixel_pitch_y_um"], 4.0);
+  EXPECT_EQ(result["focus"]["state_bytes_per_pixel"], 24.0);
+  EXPECT_EQ(result["frames"],
+            json({{"expected", 4}, {"ok", 3}, {"incomplete", 1}, {"missing", 0}, {"stale", 0}, {"underrun", 0}}));
+  EXPECT_EQ(result["slices"], json({{"planned", 3}, {"measured", 2}}));
+  EXPECT_EQ(result["steps"]["error_max_um"], 0.0625);
+  EXPECT_EQ(result["times"], json({{"prepare_ms", 100.0}, {"scan_ms", 2000.0}, {"finish_ms", 5.0}}));
+  EXPECT_EQ(result["provenance"], json({{"recipe", "chapter"},
+                                        {"recipe_sha256", "abc"},
+                                        {"software_version", "1.2.3"},
+                                        {"simulated", true},
+                                        {"created", "2023-11-14T22:13:20.123Z"},
+                                        {"source", "camera and stage"}}));
+}
+
+TEST(ResultJson, HasNullWhereNothingIsKnown) {
+  ResultData data = test::sample_result();
+  data.job_id.clear();
+  data.seq.reset();
+  data.pixel_pitch_x_um.reset();
+  data.times.scan_ms = std::numeric_limits<double>::quiet_NaN();
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 6; ++x) test::make_hole(data.map, x, y, mask_reason::kLowProminence);
+  }
+  const std::string text = result_json_text(data);
+  const json result = json::parse(text);
+  EXPECT_TRUE(result["job"]["job_id"].is_null());
+  EXPECT_TRUE(result["job"]["seq"].is_null());
+  EXPECT_TRUE(result["focus"]["pixel_pitch_x_um"].is_null());
+  EXPECT_TRUE(result["times"]["scan_ms"].is_null());
+  EXPECT_TRUE(result["values"]["height"]["median_um"].is_null());
+  EXPECT_EQ(result["values"]["valid_fraction"], 0.0);
+  EXPECT_EQ(text.find(": nan"), std::string::npos);
+}
+
+TEST(ResultJson, SurvivesTextThatIsNotUtf8) {
+  ResultData data = test::sample_result();
+  data.source = "folder \xFF\xFE";
+  EXPECT_TRUE(json::accept(result_json_text(data)));
+}
+
+TEST(StepCsv, HasOneRowASliceUnderNamesWithUnits) {
+  const std::string csv = step_csv(test::sample_result().steps);
+  EXPECT_EQ(csv,
+            "index,measured,commanded_um,quantised_um,commanded_counts,move_ms,settle_polls,triggers,"
+            "measured_um,measured_sd_um,position_samples,error_um,frame_id,exposure_start_ms\n"
+            "0,1,0.000000,0.000000,0,12.500,4,1,0.062500,0.000000,2,0.062500,7,0.000\n"
+            "1,0,10.000000,10.000000,1000,12.500,4,4,,,,,,\n"
+            "2,1,20.000000,20.000000,2000,12.500,4,1,20.062500,0.000000,2,0.062500,9,40.000\n");
+}
+
+TEST(StepCsv, IsAHeaderAloneForAnEmptyLog) {
+  const std::string csv = step_csv({});
+  EXPECT_EQ(csv.find('\n'), csv.size() - 1);
+}
+
+}  // namespace
+}  // namespace fvd
