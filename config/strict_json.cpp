@@ -21,8 +21,9 @@ struct Refused {
   std::string message;
 };
 
-std::string position(std::string_view text, std::size_t byte) {
-  const auto before = text.substr(0, std::min(byte, text.size()));
+/// nlohmann counts the bytes read, the offending one included.
+std::string position(std::string_view text, std::size_t bytes_read) {
+  const auto before = text.substr(0, std::min(bytes_read > 0 ? bytes_read - 1 : 0, text.size()));
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
   const auto last_break = before.rfind('\n');
   const auto column = last_break == std::string_view::npos ? before.size() + 1 : before.size() - last_break;

@@ -24,9 +24,9 @@ struct PathsConfig {
 };
 
 struct ComputeConfig {
-  int threads = 0;                   ///< 0..256, 0 = one a core
-  int memory_budget_mib = 4096;      ///< 16..1048576; a job that needs more is refused
-  int queue_slices = 4;              ///< 1..64, slices between camera and computation
+  int threads = 0;               ///< 0..256, 0 = one a core
+  int memory_budget_mib = 4096;  ///< 16..1048576; a job that needs more is refused
+  int queue_slices = 4;          ///< 1..64, slices between camera and computation
 };
 
 struct LogConfig {

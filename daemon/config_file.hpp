@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/fields.hpp"
@@ -12,10 +13,10 @@
 
 namespace fvd {
 
-/// Every key with its range and meaning.
+/// Every key with its range and meaning: the one place that defines them.
 void describe(Config& config, Fields& fields);
 
-/// One "--set group.key=value": the value is JSON, or a text where that is no JSON.
+/// Each "group.key=value" as given to --set; the value is JSON, or a text where that is no JSON.
 using Overrides = std::vector<std::string>;
 
 struct LoadedConfig {
@@ -23,13 +24,21 @@ struct LoadedConfig {
   Problems problems;  ///< empty = usable
 };
 
-/// Reads the file, applies the overrides, checks ranges and what must fit together. Relative paths of profile and recipes
-/// are relative to the file, those of state_dir and runtime_dir to the current directory. Never throws.
-[[nodiscard]] LoadedConfig load_config(const std::filesystem::path& file, const Overrides& overrides);
+/// Text to structure: overrides are applied, then types, ranges and names are checked. Keys that are absent or refused
+/// have their default. base: the file's folder, against which profile, replay_dir and recipe_dir are taken if relative;
+/// state_dir and runtime_dir stay relative to the current directory. Never throws for bad input.
+[[nodiscard]] LoadedConfig parse_config(std::string_view json_text, const std::filesystem::path& base,
+                                        const Overrides& overrides = {});
+
+/// What must fit together or exist on this machine, beyond the range of a single key. No device is touched.
+[[nodiscard]] Problems check_config(const Config& config);
+
+/// Reads the file and does both; a file that cannot be read is a problem too.
+[[nodiscard]] LoadedConfig load_config(const std::filesystem::path& file, const Overrides& overrides = {});
 
 /// The configuration in force, as JSON text.
 [[nodiscard]] std::string config_text(Config config);
-/// The JSON schema of the file; config/fvd.schema.json is this text.
+/// JSON Schema of the file; config/fvd.schema.json is this text.
 [[nodiscard]] std::string config_schema_text();
 
 }  // namespace fvd

@@ -9,9 +9,9 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include "config/strict_json.hpp"
 #include "core/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
-#include "config/strict_json.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/recipe_book.hpp"
@@ -204,17 +204,13 @@ MachineStatus Engine::machine() const {
 }
 
 void Engine::on_change(std::function<void()> listener) {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(listener_mutex_);
   listener_ = std::move(listener);
 }
 
 void Engine::notify() {
-  std::function<void()> listener;
-  {
-    const std::lock_guard lock(mutex_);
-    listener = listener_;
-  }
-  if (listener) listener();
+  const std::lock_guard lock(listener_mutex_);
+  if (listener_) listener_();
 }
 
 void Engine::transition_locked(ScanEvent event) {

@@ -91,7 +91,7 @@ class Engine final : public JobService {
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  ScanState state_ = ScanState::kPreoperational;  // this and all below up to the listener: guarded by mutex_
+  ScanState state_ = ScanState::kPreoperational;  // this and all below up to the listener's mutex: guarded by mutex_
   std::optional<DeviceFacts> facts_;
   std::optional<DeviceFailure> failure_;
   std::optional<PendingJob> pending_;
@@ -99,7 +99,9 @@ class Engine final : public JobService {
   std::string prepared_recipe_;
   std::stop_source job_stop_;
   bool shutting_down_ = false;
-  std::function<void()> listener_;
+
+  std::mutex listener_mutex_;       // held while the listener runs: once on_change({}) returned, it is not called again
+  std::function<void()> listener_;  // guarded by listener_mutex_
 
   Reaper reaper_;
   DeviceSlot<Camera> camera_;  // engine thread only

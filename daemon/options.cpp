@@ -1,27 +1,54 @@
 #include "daemon/options.hpp"
 
+#include <ostream>
+
 #include <CLI/CLI.hpp>
 
+#include "daemon/exit_code.hpp"
+#include "daemon/recipe_book.hpp"
 #include "daemon/version.hpp"
 
 namespace fvd {
 
-ParsedOptions parse_options(int argc, char** argv) {
+ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   ParsedOptions parsed;
   Options& options = parsed.options;
-  CLI::App app{"fvd: focus-variation acquisition daemon", "fvd"};
+  CLI::App app("fvd: live focus-variation acquisition daemon", "fvd");
   app.set_version_flag("--version", std::string("fvd ") + kVersion);
-  app.add_option("--config", options.config_file, "configuration file")->capture_default_str();
-  app.add_option("--set", options.overrides, "override one key, e.g. --set rpc.port=0")->allow_extra_args(false);
-  app.add_flag("--check-config", options.check_config, "check the configuration and every recipe, print all problems, exit 0 or 78");
-  app.add_flag("--dump-config", options.dump_config, "print the configuration in force and exit");
-  app.add_flag("--print-schema", options.print_schema, "print the JSON schema of the configuration and exit");
+  app.add_option("--config", options.config_file, "configuration file")->capture_default_str()->type_name("FILE");
+  app.add_option("--set", options.overrides, "put a value over the file's, e.g. rpc.port=0; may be repeated")
+      ->type_name("GROUP.KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_flag("--check-config", options.check_config,
+               "say every problem of the configuration on stderr and exit: 0 = none, 78 = some");
+  app.add_flag("--dump-config", options.dump_config, "print the configuration in force as JSON and exit");
+  app.add_flag("--print-config-schema", options.print_config_schema, "print the configuration's JSON schema and exit");
+  app.add_flag("--print-recipe-schema", options.print_recipe_schema, "print the recipes' JSON schema and exit");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    parsed.exit = app.exit(error) == 0 ? exit_code::kOk : exit_code::kUsage;
+    parsed.exit = app.exit(error, out, err) == 0 ? exit_code::kOk : exit_code::kUsage;
   }
   return parsed;
+}
+
+StartUp start_up(const Options& options, std::ostream& out, std::ostream& err) {
+  StartUp result;
+  if (options.print_config_schema || options.print_recipe_schema) {
+    out << (options.print_config_schema ? config_schema_text() : recipe_schema_text());
+    result.exit = exit_code::kOk;
+    return result;
+  }
+  LoadedConfig loaded = load_config(options.config_file, options.overrides);
+  if (!loaded.problems.empty()) {
+    err << to_text(loaded.problems, options.config_file.string()) << std::endl;
+    result.exit = exit_code::kConfig;
+    return result;
+  }
+  if (options.dump_config) out << config_text(loaded.config);
+  if (options.dump_config || options.check_config) result.exit = exit_code::kOk;
+  result.config = std::move(loaded.config);
+  return result;
 }
 
 }  // namespace fvd

@@ -12,13 +12,13 @@
 namespace fvd {
 
 struct Recipe {
-  std::string id;           ///< file name without .json: [A-Za-z0-9_-]{1,32}
+  std::string id;  ///< file name without .json: [A-Za-z0-9_-]{1,32}
   std::string description;
-  std::string sha256;       ///< hex digest of the recipe's canonical JSON; stamped into results
+  std::string sha256;  ///< hex digest of the recipe's canonical JSON; stamped into results
 
-  double start_um = 0.0;    ///< z of the first slice
-  double step_um = 10.0;    ///< > 0, distance of slices
-  int slices = 21;          ///< 3..65535
+  double start_um = 0.0;  ///< z of the first slice
+  double step_um = 10.0;  ///< > 0, distance of slices
+  int slices = 21;        ///< 3..65535
   SettleCriterion settle;
   int frame_retries = 3;        ///< 0..100, further triggers for a slice whose frame was lost
   int allowed_lost_slices = 0;  ///< 0..slices - 3; more fail the job
@@ -28,7 +28,7 @@ struct Recipe {
   PeakMethod peak = PeakMethod::kLogParabola;
   std::vector<PeakMethod> extra_peaks;  ///< further height maps from the same scan, height_<method>.tiff
 
-  double pixel_pitch_x_um = 1.0;    ///< > 0, on the object
+  double pixel_pitch_x_um = 1.0;  ///< > 0, on the object
   double pixel_pitch_y_um = 1.0;
   double min_valid_fraction = 0.0;  ///< 0..1; fewer valid points fail the job
   bool record_slices = false;       ///< also keep the slices (PGM) and their z in the result's folder slices/

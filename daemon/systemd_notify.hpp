@@ -1,13 +1,17 @@
 #pragma once
 
-/// Tells systemd how the service is doing (sd_notify(3)); silent where systemd did not start it.
+/// Tells systemd how the service is doing (sd_notify(3)). Silent where systemd did not start it.
 
 #include <string>
 
 namespace fvd {
 
+/// READY=1: the port is open and the devices are there or their absence is known. status: one line for systemctl
+/// status.
 void notify_ready(const std::string& status);
+/// STATUS= alone.
 void notify_status(const std::string& status);
+/// STOPPING=1: the ordered stop has begun.
 void notify_stopping();
 
 }  // namespace fvd

@@ -10,7 +10,8 @@
 
 namespace fvd {
 
-/// Opens the camera. Throws Error kBadConfig for an unknown driver (the message lists the known ones), else what the driver throws.
+/// Opens the camera. Throws Error kBadConfig for an unknown driver (the message lists the known ones), else what the
+/// driver throws.
 [[nodiscard]] std::unique_ptr<Camera> open_camera(const CameraConfig& config);
 
 /// Connects the stage. Throws likewise.

@@ -45,7 +45,9 @@ struct RegionFigures {
   }
   [[nodiscard]] double bias_um() const { return valid > 0 ? sum / valid : std::nan(""); }
   [[nodiscard]] double rms_um() const { return valid > 0 ? std::sqrt(squares / valid) : std::nan(""); }
-  [[nodiscard]] double valid_fraction() const { return points > 0 ? static_cast<double>(valid) / points : std::nan(""); }
+  [[nodiscard]] double valid_fraction() const {
+    return points > 0 ? static_cast<double>(valid) / points : std::nan("");
+  }
 };
 using Figures = std::map<Region, RegionFigures>;
 
@@ -53,9 +55,10 @@ cv::Mat read_image(const std::filesystem::path& file, int type, const Surface& s
   const cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
   if (image.empty()) throw Error(ErrorCode::kBadInput, file.string() + " is missing or no image");
   if (image.type() != type || image.cols != surface.height_um.width() || image.rows != surface.height_um.height()) {
-    throw Error(ErrorCode::kBadInput, file.string() + " is " + std::to_string(image.cols) + " x " + std::to_string(image.rows) +
-                                          " pixels, or of another type; the world is " + std::to_string(surface.height_um.width()) +
-                                          " x " + std::to_string(surface.height_um.height()));
+    throw Error(ErrorCode::kBadInput, file.string() + " is " + std::to_string(image.cols) + " x " +
+                                          std::to_string(image.rows) + " pixels, or of another type; the world is " +
+                                          std::to_string(surface.height_um.width()) + " x " +
+                                          std::to_string(surface.height_um.height()));
   }
   return image;
 }
@@ -220,7 +223,8 @@ void evaluate(const WorldParameters& world, const std::filesystem::path& result_
     evaluation.print(out);
     if (with_json) out << evaluation.figures().dump() << '\n';
   } catch (const nlohmann::json::exception& error) {
-    throw Error(ErrorCode::kBadInput, (result_dir / "result.json").string() + " is not what fvd writes: " + error.what());
+    throw Error(ErrorCode::kBadInput,
+                (result_dir / "result.json").string() + " is not what fvd writes: " + error.what());
   }
 }
 

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include "core/error.hpp"
 #include "sim/evaluate.hpp"
@@ -69,14 +69,15 @@ int run(const Arguments& arguments) {
                .stage_port = arguments.stage_port});
   plant.camera().set_packet_loss(arguments.packet_loss);
   std::cout << "camera " << plant.camera_address() << ":3956 (GigE Vision), " << plant.world().sensor_width() << " x "
-            << plant.world().sensor_height() << " pixels; stage " << arguments.stage_address << ':' << plant.stage_port()
-            << " unit 1 (Modbus TCP); " << (plant.world().memory_bytes() >> 20U) << " MiB" << std::endl;
+            << plant.world().sensor_height() << " pixels; stage " << arguments.stage_address << ':'
+            << plant.stage_port() << " unit 1 (Modbus TCP); " << (plant.world().memory_bytes() >> 20U) << " MiB"
+            << std::endl;
   write_ready_file(arguments.ready_file, plant, arguments);
   int received = 0;
   sigwait(&signals, &received);
   std::cout << "frames sent " << plant.camera().frames() << ", packets lost " << plant.camera().packets_lost()
-            << ", packets resent " << plant.camera().packets_resent() << ", Modbus requests " << plant.stage().requests()
-            << std::endl;
+            << ", packets resent " << plant.camera().packets_resent() << ", Modbus requests "
+            << plant.stage().requests() << std::endl;
   return 0;
 }
 
@@ -85,16 +86,22 @@ int main_of(int argc, char** argv) {
   CLI::App app{"fvd-sim: a simulated microscope on GigE Vision and Modbus TCP", "fvd-sim"};
   app.require_subcommand(1);
   const auto add_world = [&](CLI::App* command) {
-    command->add_option("--world", arguments.world, "world file; default: the chapter's surface")->check(CLI::ExistingFile);
+    command->add_option("--world", arguments.world, "world file; default: the chapter's surface")
+        ->check(CLI::ExistingFile);
     command->add_option("--seed", arguments.seed, "of texture, noise and axis errors");
   };
   auto* running = app.add_subcommand("run", "serve camera and stage until SIGTERM");
   add_world(running);
   running->add_option("--plant", arguments.plant, "axis file; default: nearly perfect")->check(CLI::ExistingFile);
-  running->add_option("--camera-address", arguments.camera_address, "loopback address, or auto for a free one")->capture_default_str();
-  running->add_option("--stage-address", arguments.stage_address, "address of the Modbus server")->capture_default_str();
-  running->add_option("--stage-port", arguments.stage_port, "its port, 0 = any free one")->check(CLI::Range(0, 65535))->capture_default_str();
-  running->add_option("--packet-loss", arguments.packet_loss, "fraction of stream packets that are lost")->check(CLI::Range(0.0, 0.9));
+  running->add_option("--camera-address", arguments.camera_address, "loopback address, or auto for a free one")
+      ->capture_default_str();
+  running->add_option("--stage-address", arguments.stage_address, "address of the Modbus server")
+      ->capture_default_str();
+  running->add_option("--stage-port", arguments.stage_port, "its port, 0 = any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  running->add_option("--packet-loss", arguments.packet_loss, "fraction of stream packets that are lost")
+      ->check(CLI::Range(0.0, 0.9));
   running->add_option("--ready-file", arguments.ready_file, "written once both serve: addresses and pid as JSON");
   auto* truth = app.add_subcommand("truth", "write the world's true heights");
   add_world(truth);

@@ -19,8 +19,8 @@ void Plant::plug_camera() {
 }
 
 void Plant::plug_stage() {
-  stage_ = std::make_unique<ModbusTcpServer>(
-      drive_, ModbusTcpOptions{.address = options_.stage_address, .port = stage_port_});
+  stage_ = std::make_unique<ModbusTcpServer>(drive_,
+                                             ModbusTcpOptions{.address = options_.stage_address, .port = stage_port_});
   stage_port_ = stage_->port();
 }
 

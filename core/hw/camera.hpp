@@ -31,7 +31,7 @@ struct CameraInfo {
   std::string model;
   std::string serial;
   std::string address;
-  int sensor_width = 0;   ///< pixels, what a region of 0 x 0 means
+  int sensor_width = 0;  ///< pixels, what a region of 0 x 0 means
   int sensor_height = 0;
   bool simulated = false;
 };

@@ -35,6 +35,8 @@ int exit_code_of_rpc(int code) noexcept {
     case 1007:    // unknown job
     case 1009:    // sequence number taken by another request
     case 1010:    // sequence number too old
+    case 1015:    // invalid configuration
+    case 1016:    // invalid input
     case 1203:    // too large
       return kExitBadData;
     case 1001:  // not ready

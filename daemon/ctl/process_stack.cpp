@@ -8,8 +8,8 @@
 #include "core/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/pipeline/worker_pool.hpp"
-#include "daemon/version.hpp"
 #include "daemon/export/result_writer.hpp"
+#include "daemon/version.hpp"
 #include "drivers/replay/recorded_stack.hpp"
 
 namespace fvd::ctl {

@@ -34,7 +34,7 @@ struct ResultData {
   std::string part_id;
   std::string recipe_id;
   std::string recipe_sha256;
-  std::string source;               ///< camera and stage, or the folder of recorded slices
+  std::string source;  ///< camera and stage, or the folder of recorded slices
 
   FocusSettings focus;
   PeakMethod peak = PeakMethod::kParabola;

@@ -24,7 +24,9 @@ struct ProtocolError {
   std::string message;
 };
 
-std::string to_line(const ordered_json& reply) { return reply.dump(-1, ' ', true, ordered_json::error_handler_t::replace); }
+std::string to_line(const ordered_json& reply) {
+  return reply.dump(-1, ' ', true, ordered_json::error_handler_t::replace);
+}
 
 ordered_json success(const json& id, ordered_json result) {
   return {{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}};
@@ -100,12 +102,11 @@ void Dispatcher::add_system_methods() {
                         if (params.contains("t")) result["t"] = params["t"];
                         return result;
                       }});
-  add("system.info", {"Who answers", {}, [this](const Json&) {
-                        return OrderedJson{{"name", "fvd"},
-                                           {"version", kVersion},
-                                           {"api", 1},
-                                           {"simulated", service_.machine().simulated}};
-                      }});
+  add("system.info",
+      {"Who answers", {}, [this](const Json&) {
+         return OrderedJson{
+             {"name", "fvd"}, {"version", kVersion}, {"api", 1}, {"simulated", service_.machine().simulated}};
+       }});
   add("system.state", {"The machine's state, flat and cheap to poll", {}, [this](const Json&) {
                          return machine_status_json(service_.machine(), heartbeat());
                        }});
@@ -150,19 +151,16 @@ void Dispatcher::add_job_methods() {
                                          {"duplicate", started.duplicate},
                                          {"state", job_state_name(started.job.state)}};
                     }});
-  add("job.status", {"What a job is doing", which, [this](const Json& params) {
-                       return job_status_json(service_.job(key_from(params)));
-                     }});
+  add("job.status", {"What a job is doing", which,
+                     [this](const Json& params) { return job_status_json(service_.job(key_from(params))); }});
   auto wait_params = which;
   wait_params.push_back({"until", ParamType::kText, false, "\"acquired\" or \"done\" (the default)"});
   wait_params.push_back({"timeout_ms", ParamType::kInteger, false, "0..30000, default 30000; then done is false"});
   // Runs only where waiting is out of place, in a batch: there it answers at once.
-  add("job.wait", {"Answers when the job is acquired or done", wait_params, [this](const Json& params) {
-                     return job_status_json(service_.job(key_from(params)));
-                   }});
-  add("job.abort", {"Ends a job; no effect on one that has ended", which, [this](const Json& params) {
-                      return job_status_json(service_.abort(key_from(params)));
-                    }});
+  add("job.wait", {"Answers when the job is acquired or done", wait_params,
+                   [this](const Json& params) { return job_status_json(service_.job(key_from(params))); }});
+  add("job.abort", {"Ends a job; no effect on one that has ended", which,
+                    [this](const Json& params) { return job_status_json(service_.abort(key_from(params))); }});
 }
 
 void Dispatcher::add_result_methods() {
@@ -181,7 +179,8 @@ void Dispatcher::add_result_methods() {
   add("result.get", {"The result of a job; the same answer every time", get_params, [result](const Json& params) {
                        return result(key_from(params), text_or(params, "format", "compact"));
                      }});
-  add("result.next", {"The oldest result that was not acknowledged; job_id is empty if there is none", {},
+  add("result.next", {"The oldest result that was not acknowledged; job_id is empty if there is none",
+                      {},
                       [this, result](const Json&) {
                         const auto job = service_.next_unacknowledged();
                         return job ? result(job->job_id, "compact") : OrderedJson{{"job_id", ""}};
@@ -254,7 +253,8 @@ std::optional<ordered_json> Dispatcher::handle_request(const json& request, bool
   const json id = notification ? json(nullptr) : request["id"];
   if (!is_valid_id(id)) return invalid("id must be null, a text of at most 64 bytes, or an integer of at most 2^53-1");
   const json params = request.value("params", json::object());
-  if (!params.is_object() && !params.is_array() && !params.is_null()) return invalid("params must be an object or a list");
+  if (!params.is_object() && !params.is_array() && !params.is_null())
+    return invalid("params must be an object or a list");
   const auto name = method->get<std::string>();
   std::optional<ordered_json> reply;
   try {
@@ -283,7 +283,8 @@ ordered_json Dispatcher::run_method(const std::string& name, const json& given, 
   const auto& known = method->second.params;
   if (given.is_array()) {
     if (given.size() > known.size()) {
-      throw ProtocolError{json_rpc::kInvalidParams, name + " takes at most " + std::to_string(known.size()) + " parameters"};
+      throw ProtocolError{json_rpc::kInvalidParams,
+                          name + " takes at most " + std::to_string(known.size()) + " parameters"};
     }
     for (std::size_t i = 0; i < given.size(); ++i) params[known[i].name] = given[i];
   } else if (given.is_object()) {
@@ -313,7 +314,8 @@ ordered_json Dispatcher::run_method(const std::string& name, const json& given, 
                     {"retry", wire.retry},
                     {"state", scan_state_name(service_.machine().state)}});
   } catch (const std::exception& error) {
-    return failure(id, json_rpc::kInternalError, std::string("internal error: ") + error.what(), {{"error", "internal"}});
+    return failure(id, json_rpc::kInternalError, std::string("internal error: ") + error.what(),
+                   {{"error", "internal"}});
   }
 }
 
@@ -340,13 +342,15 @@ std::optional<std::string> Dispatcher::resume(const WaitingRequest& waiting, boo
     if (!timed_out && !has_come(job, waiting.until_acquired)) return std::nullopt;
     return to_line(success(waiting.id, job_status_json(job)));
   } catch (const Error& error) {
-    return to_line(failure(waiting.id, rpc_error(error.code()).code, error.what(), {{"error", error_name(error.code())}}));
+    return to_line(
+        failure(waiting.id, rpc_error(error.code()).code, error.what(), {{"error", error_name(error.code())}}));
   }
 }
 
 std::string Dispatcher::too_long() {
-  return to_line(failure(nullptr, json_rpc::kInvalidRequest,
-                         "the line is longer than " + std::to_string(kMaxLineBytes) + " bytes; the connection is closed"));
+  return to_line(
+      failure(nullptr, json_rpc::kInvalidRequest,
+              "the line is longer than " + std::to_string(kMaxLineBytes) + " bytes; the connection is closed"));
 }
 
 std::string Dispatcher::too_many_connections() {

@@ -27,8 +27,8 @@ struct WaitingRequest {
 
 /// What became of a line.
 struct Handled {
-  std::optional<std::string> reply;        ///< one line without terminator; absent = nothing to say
-  std::optional<WaitingRequest> waiting;   ///< the answer comes later, through Dispatcher::resume
+  std::optional<std::string> reply;       ///< one line without terminator; absent = nothing to say
+  std::optional<WaitingRequest> waiting;  ///< the answer comes later, through Dispatcher::resume
 };
 
 /// context: one thread at a time.
@@ -76,7 +76,8 @@ class Dispatcher {
   [[nodiscard]] std::optional<OrderedJson> handle_request(const Json& request, bool in_batch, Handled& handled);
   [[nodiscard]] std::optional<OrderedJson> handle_batch(const Json& batch);
   [[nodiscard]] OrderedJson run_method(const std::string& name, const Json& params, const Json& id);
-  [[nodiscard]] std::optional<WaitingRequest> as_waiting(const std::string& name, const Json& params, const Json& id) const;
+  [[nodiscard]] std::optional<WaitingRequest> as_waiting(const std::string& name, const Json& params,
+                                                         const Json& id) const;
   [[nodiscard]] std::int64_t heartbeat() const;
 
   JobService& service_;

@@ -55,7 +55,7 @@ ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) 
           {"busy", executing},
           {"acquiring", acquiring},
           {"part_release", !acquiring},
-          {"result_valid", machine.job && machine.job->state == JobState::kCompleted},
+          {"result_valid", machine.job && machine.job->state == JobState::kCompleted && !machine.job->acknowledged},
           {"results_waiting", machine.results_waiting},
           {"error_code", code_of(machine.error)},
           {"error", error_of(machine.error)},
@@ -70,8 +70,10 @@ ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) 
 }
 
 ordered_json compact_result_json(const JobStatus& job, const std::string& result_text) {
-  ordered_json json{{"job_id", job.job_id},   {"seq", job.request.seq},
-                    {"part_id", job.request.part_id}, {"state", job_state_name(job.state)},
+  ordered_json json{{"job_id", job.job_id},
+                    {"seq", job.request.seq},
+                    {"part_id", job.request.part_id},
+                    {"state", job_state_name(job.state)},
                     {"error_code", code_of(job.error)}};
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);

@@ -1,11 +1,4 @@
-#include <utility>  // before Asio 1.74, which forgets it
-
 #include "daemon/rpc/rpc_server.hpp"
-
-#include <netinet/tcp.h>
-#include <pthread.h>
-#include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -16,11 +9,16 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>  // before Asio 1.74, which forgets it
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
+#include <netinet/tcp.h>
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "core/error.hpp"
 #include "daemon/rpc/dispatcher.hpp"
@@ -35,6 +33,8 @@ namespace {
 
 /// A client that lets this much pile up does not read; it is dropped rather than the memory filled.
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
+/// A refused client has so long to read why.
+constexpr std::chrono::seconds kFarewell{1};
 
 void tune(tcp::socket& socket) {
   ErrorCodeOf ignored;
@@ -54,7 +54,12 @@ struct RpcServer::Impl {
   class Session;
 
   Impl(const RpcConfig& c, const std::filesystem::path& runtime_dir, JobService& s)
-      : config(c), service(s), dispatcher(s), acceptor(context), port_file(runtime_dir / "rpc.json") {
+      : config(c),
+        service(s),
+        dispatcher(s),
+        acceptor(context),
+        accept_pause(context),
+        port_file(runtime_dir / "rpc.json") {
     listen();
     write_port_file();
     accept();
@@ -82,8 +87,8 @@ struct RpcServer::Impl {
       if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
     }
     if (error) {
-      throw Error(ErrorCode::kBadConfig, "cannot listen on " + config.address + ":" + std::to_string(config.port) + ": " +
-                                             error.message() + "; see /rpc/address and /rpc/port");
+      throw Error(ErrorCode::kBadConfig, "cannot listen on " + config.address + ":" + std::to_string(config.port) +
+                                             ": " + error.message() + "; see /rpc/address and /rpc/port");
     }
     port = acceptor.local_endpoint().port();
   }
@@ -97,8 +102,8 @@ struct RpcServer::Impl {
     out << "{\"address\": \"" << config.address << "\", \"port\": " << port << ", \"pid\": " << ::getpid() << "}\n";
     out.close();
     if (!out || ::rename(temporary.c_str(), port_file.c_str()) != 0) {
-      throw Error(ErrorCode::kStorageWrite, "cannot write " + port_file.string() + ": " + std::strerror(errno) +
-                                                "; see /paths/runtime_dir");
+      throw Error(ErrorCode::kStorageWrite,
+                  "cannot write " + port_file.string() + ": " + std::strerror(errno) + "; see /paths/runtime_dir");
     }
   }
 
@@ -110,6 +115,7 @@ struct RpcServer::Impl {
   Dispatcher dispatcher;
   asio::io_context context;
   tcp::acceptor acceptor;
+  asio::steady_timer accept_pause;
   std::filesystem::path port_file;
   int port = 0;
   std::set<std::shared_ptr<Session>> sessions;  // network thread only
@@ -124,29 +130,24 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
 
   void start() {
     tune(socket_);
+    watch_idle();
     read();
   }
 
   void refuse() {
     tune(socket_);
-    closing_ = true;
-    send(Dispatcher::too_many_connections());
+    refuse_with(Dispatcher::too_many_connections());
+    read();
   }
 
-  /// A job changed: what waits for it may go on.
+  /// A job changed, or the waiting time is over: what waits for it may go on.
   void resume(bool timed_out) {
-    if (!waiting_) return;
-    auto reply = server_.dispatcher.resume(*waiting_, timed_out);
-    if (!reply) return;
-    waiting_.reset();
-    wait_.cancel();
-    watch_idle();
-    send(std::move(*reply));
+    if (!try_answer_wait(timed_out)) return;
     process();
   }
 
  private:
-  /// Starts the time of silence anew.
+  /// Starts the time of silence anew; a line without its end is silence too.
   void watch_idle() {
     idle_.expires_after(std::chrono::seconds(server_.config.idle_timeout_s));
     idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
@@ -156,46 +157,67 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   }
 
   void read() {
-    watch_idle();
     socket_.async_read_some(asio::buffer(chunk_), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
       if (error) return self->close();
-      self->input_.append(self->chunk_.data(), count);
-      self->process();
-      if (!self->closing_) self->read();
+      // What comes after a refusal is read and dropped: closing with unread input would take the refusal with it.
+      if (!self->refused_) {
+        self->input_.append(self->chunk_.data(), count);
+        self->process();
+      }
+      self->read();
     });
   }
 
   /// Handles the whole lines at hand, in order; stops at a request that has to wait.
   void process() {
-    while (!waiting_ && !closing_) {
-      const std::size_t end = input_.find_first_of(std::string_view("\n\r\0", 3));
+    std::size_t begin = 0;
+    while (!waiting_ && !refused_) {
+      const std::size_t end = input_.find_first_of(std::string_view("\n\r\0", 3), begin);
       if (end == std::string::npos) break;
-      const std::string line = input_.substr(0, end);
-      input_.erase(0, end + 1);
-      if (line.size() > Dispatcher::kMaxLineBytes) return refuse_line();
-      if (line.find_first_not_of(" \t") == std::string::npos) continue;
+      const std::string_view line(input_.data() + begin, end - begin);
+      begin = end + 1;
+      if (line.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
+      if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+      watch_idle();
       Handled handled = server_.dispatcher.handle(line);
       if (handled.reply) send(std::move(*handled.reply));
       if (handled.waiting) begin_wait(std::move(*handled.waiting));
     }
-    // What piles up behind a waiting request is bounded as well.
-    const std::size_t limit = waiting_ ? kMaxUnsentBytes : Dispatcher::kMaxLineBytes;
-    if (input_.size() > limit) refuse_line();
-  }
-
-  void refuse_line() {
-    closing_ = true;
-    send(Dispatcher::too_long());
+    input_.erase(0, begin);
+    // Also bounds what piles up behind a request that waits.
+    if (input_.size() > Dispatcher::kMaxLineBytes) refuse_with(Dispatcher::too_long());
   }
 
   void begin_wait(WaitingRequest waiting) {
-    const auto timeout = waiting.timeout;
+    wait_.expires_after(waiting.timeout);
     waiting_ = std::move(waiting);
-    wait_.expires_after(timeout);
     wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
       if (!error) self->resume(true);
     });
-    resume(false);
+    (void)try_answer_wait(false);
+  }
+
+  /// True if the waiting request was answered.
+  [[nodiscard]] bool try_answer_wait(bool timed_out) {
+    if (!waiting_) return false;
+    auto reply = server_.dispatcher.resume(*waiting_, timed_out);
+    if (!reply) return false;
+    waiting_.reset();
+    wait_.cancel();
+    watch_idle();
+    send(std::move(*reply));
+    return true;
+  }
+
+  /// Says why and ends the connection once that is said.
+  void refuse_with(std::string line) {
+    refused_ = true;
+    input_.clear();
+    send(std::move(line));
+    idle_.expires_after(kFarewell);
+    idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+      if (!error) self->close();
+    });
   }
 
   void send(std::string line) {
@@ -207,17 +229,19 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   }
 
   void write() {
-    asio::async_write(socket_, asio::buffer(unsent_.front()), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
-      if (error) return self->close();
-      self->unsent_bytes_ -= count;
-      self->unsent_.pop_front();
-      if (!self->unsent_.empty()) return self->write();
-      if (self->closing_) self->close();
-    });
+    asio::async_write(socket_, asio::buffer(unsent_.front()),
+                      [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
+                        if (error) return self->close();
+                        self->unsent_bytes_ -= count;
+                        self->unsent_.pop_front();
+                        if (!self->unsent_.empty()) return self->write();
+                        ErrorCodeOf ignored;
+                        if (self->refused_) self->socket_.shutdown(tcp::socket::shutdown_send, ignored);
+                      });
   }
 
   void close() {
-    closing_ = true;
+    refused_ = true;
     waiting_.reset();
     ErrorCodeOf ignored;
     idle_.cancel();
@@ -236,20 +260,27 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   std::deque<std::string> unsent_;
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;
-  bool closing_ = false;
+  bool refused_ = false;
 };
 
 void RpcServer::Impl::accept() {
   acceptor.async_accept([this](ErrorCodeOf error, tcp::socket socket) {
-    if (!error) {
-      const auto session = std::make_shared<Session>(*this, std::move(socket));
-      const bool room = sessions.size() < static_cast<std::size_t>(config.max_connections);
-      sessions.insert(session);
-      if (room) {
-        session->start();
-      } else {
-        session->refuse();
-      }
+    if (error) {
+      // Out of file descriptors, most likely: trying again at once would only burn time.
+      spdlog::warn("a connection could not be accepted: {}", error.message());
+      accept_pause.expires_after(std::chrono::milliseconds(100));
+      accept_pause.async_wait([this](ErrorCodeOf stopped) {
+        if (!stopped) accept();
+      });
+      return;
+    }
+    const auto session = std::make_shared<Session>(*this, std::move(socket));
+    const bool room = sessions.size() < static_cast<std::size_t>(config.max_connections);
+    sessions.insert(session);
+    if (room) {
+      session->start();
+    } else {
+      session->refuse();
     }
     accept();
   });

@@ -11,8 +11,8 @@
 namespace fvd {
 
 /// Lines end with LF, CR, CRLF or NUL; replies end with LF. Requests of one connection are answered in their order.
-/// A line over 64 KiB, a connection too many, one that is silent for idle_timeout_s, or one that does not take its replies
-/// is closed. Owns one network thread; nothing a client does blocks it.
+/// A line over 64 KiB, a connection too many, one that is silent for idle_timeout_s, or one that does not take its
+/// replies is closed. Owns one network thread; nothing a client does blocks it.
 class RpcServer {
  public:
   /// Listens, and writes <runtime_dir>/rpc.json {"address","port","pid"}. Becomes the service's change listener.

@@ -1,51 +1,91 @@
 #include "daemon/store/database.hpp"
 
+#include <cerrno>
+
 #include "core/error.hpp"
 
 namespace fvd {
 
-Database::Database(const std::filesystem::path& file) : file_(file) {
-  sqlite3* handle = nullptr;
-  const int result = sqlite3_open_v2(file.c_str(), &handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, nullptr);
-  handle_.reset(handle);
-  if (result != SQLITE_OK) fail("opening");
-  sqlite3_busy_timeout(handle, 5000);
-  execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON");
+namespace {
+
+constexpr int kBusyTimeoutMs = 1000;  // a predecessor that was just killed
+
+bool means_disk_full(int code, int system_errno) {
+  if (code == SQLITE_FULL) return true;
+  return code == SQLITE_IOERR && (system_errno == ENOSPC || system_errno == EDQUOT);
 }
 
-void Database::fail(const std::string& what) const {
-  const bool full = handle_ && sqlite3_errcode(handle_.get()) == SQLITE_FULL;
-  throw Error(full ? ErrorCode::kStorageFull : ErrorCode::kDatabase,
-              "database " + file_.string() + ": " + what + ": " + (handle_ ? sqlite3_errmsg(handle_.get()) : "no memory"));
+std::string advice(int code) {
+  switch (code) {
+    case SQLITE_BUSY:
+      return "; is another fvd running with the same state_dir?";
+    case SQLITE_CANTOPEN:
+      return "; does its folder exist, and may fvd write there?";
+    case SQLITE_READONLY:
+      return "; may fvd write there?";
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return "; move the file away to start anew, results on disk are kept";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& file) : file_(file) {
+  sqlite3* handle = nullptr;
+  constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
+  const int code = sqlite3_open_v2(file.c_str(), &handle, kFlags, nullptr);
+  handle_.reset(handle);
+  if (handle == nullptr) throw Error(ErrorCode::kDatabase, "no memory to open the database " + file.string());
+  if (code != SQLITE_OK) fail("opening");
+  sqlite3_extended_result_codes(handle, 0);
+  sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+  execute(
+      "PRAGMA locking_mode=EXCLUSIVE;"
+      "PRAGMA journal_mode=WAL;"
+      "PRAGMA synchronous=FULL;");
 }
 
 void Database::execute(const char* sql) {
-  if (sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail("executing");
+  if (sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail(sql);
+}
+
+void Database::fail(std::string_view what) const {
+  const int code = sqlite3_errcode(handle_.get());
+  const std::string reason = sqlite3_errmsg(handle_.get());
+  if (means_disk_full(code, sqlite3_system_errno(handle_.get()))) {
+    throw Error(ErrorCode::kStorageFull, "no space left for the database " + file_.string() + ": free some disk space");
+  }
+  throw Error(ErrorCode::kDatabase,
+              "database " + file_.string() + ": " + std::string(what) + ": " + reason + advice(code));
 }
 
 Statement::Statement(const Database& database, const char* sql) : database_(database) {
   sqlite3_stmt* statement = nullptr;
-  if (sqlite3_prepare_v2(database.handle(), sql, -1, &statement, nullptr) != SQLITE_OK) database.fail("preparing");
+  if (sqlite3_prepare_v2(database.handle(), sql, -1, &statement, nullptr) != SQLITE_OK) database.fail(sql);
   statement_.reset(statement);
 }
 
 Statement& Statement::bind(std::int64_t value) {
-  if (sqlite3_bind_int64(statement_.get(), ++bound_, value) != SQLITE_OK) database_.fail("binding");
+  if (sqlite3_bind_int64(statement_.get(), ++bound_, value) != SQLITE_OK) database_.fail("binding a number");
   return *this;
 }
 
 Statement& Statement::bind(std::string_view text) {
-  // The text is copied: the caller's may be gone when the statement runs.
-  if (sqlite3_bind_text(statement_.get(), ++bound_, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT) != SQLITE_OK) {
-    database_.fail("binding");
+  const char* bytes = text.data() == nullptr ? "" : text.data();  // nullptr would bind NULL
+  if (sqlite3_bind_text64(statement_.get(), ++bound_, bytes, text.size(), SQLITE_TRANSIENT, SQLITE_UTF8) != SQLITE_OK) {
+    database_.fail("binding a text");
   }
   return *this;
 }
 
 bool Statement::step() {
-  const int result = sqlite3_step(statement_.get());
-  if (result != SQLITE_ROW && result != SQLITE_DONE) database_.fail("running");
-  return result == SQLITE_ROW;
+  const int code = sqlite3_step(statement_.get());
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) database_.fail(sqlite3_sql(statement_.get()));
+  return false;
 }
 
 void Statement::run() {
@@ -53,20 +93,26 @@ void Statement::run() {
   }
 }
 
-std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+std::int64_t Statement::integer(int column) const noexcept { return sqlite3_column_int64(statement_.get(), column); }
 
 std::string Statement::text(int column) const {
-  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
-  return text == nullptr ? std::string() : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+  const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_.get(), column));
+  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column));
+  return bytes == nullptr ? std::string() : std::string(bytes, size);
 }
 
+Transaction::Transaction(Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }
+
 Transaction::~Transaction() {
-  if (!done_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  // A failed commit may have rolled back by itself; then there is nothing to do.
+  if (!committed_ && sqlite3_get_autocommit(database_.handle()) == 0) {
+    sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  }
 }
 
 void Transaction::commit() {
   database_.execute("COMMIT");
-  done_ = true;
+  committed_ = true;
 }
 
 }  // namespace fvd

@@ -1,6 +1,6 @@
 #pragma once
 
-/// SQLite's handles as C++ expects them; errors become Error kDatabase or kStorageFull.
+/// SQLite's handles as C++ expects them; its error codes become Error kDatabase, a full disk kStorageFull.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,51 +12,61 @@
 
 namespace fvd {
 
+/// One connection. context: one thread at a time.
 class Database {
  public:
-  /// Throws Error kDatabase naming the file.
+  /// Opens or creates the file; its folder must exist. Write-ahead log with synchronous=FULL: a commit that returned
+  /// survives a power cut. The file stays locked against every other process until destruction.
+  /// Throws Error kDatabase naming the file and the reason, kStorageFull.
   explicit Database(const std::filesystem::path& file);
 
-  /// Runs statements without results.
+  /// Runs statements without results. Throws Error kDatabase, kStorageFull.
   void execute(const char* sql);
-  [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
-  [[noreturn]] void fail(const std::string& what) const;
+
+  [[nodiscard]] sqlite3* handle() const noexcept { return handle_.get(); }
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+  /// Throws the connection's latest error. what: what was tried, e.g. "storing the job".
+  [[noreturn]] void fail(std::string_view what) const;
 
  private:
   struct Closer {
-    void operator()(sqlite3* handle) const { sqlite3_close(handle); }
+    void operator()(sqlite3* handle) const noexcept { sqlite3_close(handle); }
   };
   std::filesystem::path file_;
   std::unique_ptr<sqlite3, Closer> handle_;
 };
 
-/// One statement: bind in order, then step through its rows.
+/// One prepared statement: bind its parameters in order, then step through its rows.
 class Statement {
  public:
   Statement(const Database& database, const char* sql);
 
   Statement& bind(std::int64_t value);
+  /// The text is copied; it may hold any bytes.
   Statement& bind(std::string_view text);
-  /// True while there is a row.
+
+  /// True while there is a row. Throws Error kDatabase, kStorageFull.
   [[nodiscard]] bool step();
-  /// Runs to the end.
+  /// Runs a statement that gives no rows.
   void run();
-  [[nodiscard]] std::int64_t integer(int column) const;
+
+  /// Columns of the current row, from 0; NULL reads as 0 or "".
+  [[nodiscard]] std::int64_t integer(int column) const noexcept;
   [[nodiscard]] std::string text(int column) const;
 
  private:
   struct Finalizer {
-    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+    void operator()(sqlite3_stmt* statement) const noexcept { sqlite3_finalize(statement); }
   };
   const Database& database_;
   std::unique_ptr<sqlite3_stmt, Finalizer> statement_;
   int bound_ = 0;
 };
 
-/// All or nothing: rolled back unless committed.
+/// All or nothing: rolled back unless commit() returned.
 class Transaction {
  public:
-  explicit Transaction(Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }
+  explicit Transaction(Database& database);
   ~Transaction();
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
@@ -64,7 +74,7 @@ class Transaction {
 
  private:
   Database& database_;
-  bool done_ = false;
+  bool committed_ = false;
 };
 
 }  // namespace fvd

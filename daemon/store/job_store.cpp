@@ -1,221 +1,260 @@
 #include "daemon/store/job_store.hpp"
 
 #include <array>
-#include <cstdio>
-#include <ctime>
+#include <chrono>
 #include <mutex>
-
-#include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "daemon/store/database.hpp"
+#include "daemon/store/job_id.hpp"
+#include "daemon/store/job_schema.hpp"
 
 namespace fvd {
 
 namespace {
 
-constexpr const char* kSchema = R"sql(
-CREATE TABLE IF NOT EXISTS counters (name TEXT PRIMARY KEY, value INTEGER NOT NULL);
-CREATE TABLE IF NOT EXISTS jobs (
-  number INTEGER PRIMARY KEY AUTOINCREMENT,
-  job_id TEXT NOT NULL UNIQUE,
-  seq INTEGER NOT NULL UNIQUE,
-  part_id TEXT NOT NULL,
-  recipe TEXT NOT NULL,
-  accepted_s INTEGER NOT NULL,
-  state TEXT NOT NULL,
-  error TEXT NOT NULL DEFAULT '',
-  message TEXT NOT NULL DEFAULT '',
-  slices_done INTEGER NOT NULL DEFAULT 0,
-  slices_planned INTEGER NOT NULL DEFAULT 0,
-  frames TEXT NOT NULL DEFAULT '[0,0,0,0,0,0]',
-  result_dir TEXT NOT NULL DEFAULT '',
-  result_json TEXT NOT NULL DEFAULT '',
-  acknowledged INTEGER NOT NULL DEFAULT 0
-);
-CREATE INDEX IF NOT EXISTS waiting ON jobs (acknowledged, number);
-PRAGMA user_version = 1;
-)sql";
+constexpr std::array kAllJobStates{JobState::kProcessing, JobState::kCompleted, JobState::kAborted, JobState::kFailed};
 
-constexpr const char* kColumns =
-    "job_id, seq, part_id, recipe, state, error, message, slices_done, slices_planned, frames, acknowledged, result_dir, "
-    "result_json";
+/// Columns in the order in which read_row() takes them.
+#define FVD_JOB_COLUMNS                                                                                        \
+  "job_id, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done, slices_planned, "     \
+  "frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale, frames_underrun, result_dir, " \
+  "result_json"
 
-std::string select(const std::string& condition) {
-  return std::string("SELECT ") + kColumns + " FROM jobs WHERE " + condition;
-}
-
-std::string frames_text(const FrameCounts& frames) {
-  return nlohmann::json{frames.expected, frames.ok, frames.incomplete, frames.missing, frames.stale, frames.underrun}.dump();
-}
-
-FrameCounts frames_from(const std::string& text) {
-  const auto list = nlohmann::json::parse(text).get<std::array<std::uint64_t, 6>>();
-  return {list[0], list[1], list[2], list[3], list[4], list[5]};
-}
-
-JobState state_from(const std::string& name) {
-  for (const JobState state : {JobState::kProcessing, JobState::kCompleted, JobState::kAborted}) {
-    if (name == job_state_name(state)) return state;
+JobState state_from_name(const std::string& name) {
+  for (const JobState state : kAllJobStates) {
+    if (job_state_name(state) == name) return state;
   }
   return JobState::kFailed;
 }
 
+std::optional<ErrorCode> error_from_name(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  for (int code = 0; code <= static_cast<int>(ErrorCode::kDatabase); ++code) {
+    if (error_name(static_cast<ErrorCode>(code)) == name) return static_cast<ErrorCode>(code);
+  }
+  return ErrorCode::kInternal;
+}
+
 StoredJob read_row(const Statement& row) {
   StoredJob job;
-  job.status.job_id = row.text(0);
-  job.status.request = {row.integer(1), row.text(2), row.text(3)};
-  job.status.state = state_from(row.text(4));
-  if (const std::string error = row.text(5); !error.empty()) job.status.error = error_from_name(error);
-  job.status.error_message = row.text(6);
-  job.status.slices_done = static_cast<int>(row.integer(7));
-  job.status.slices_planned = static_cast<int>(row.integer(8));
-  job.status.frames = frames_from(row.text(9));
-  job.status.acknowledged = row.integer(10) != 0;
-  job.status.acquired = job.status.state != JobState::kProcessing;
-  job.result_dir = row.text(11);
-  job.result_json = row.text(12);
+  int column = 0;
+  const auto text = [&] { return row.text(column++); };
+  const auto integer = [&] { return row.integer(column++); };
+  const auto count = [&] { return static_cast<std::uint64_t>(integer()); };
+  JobStatus& status = job.status;
+  status.job_id = text();
+  status.request.seq = integer();
+  status.request.part_id = text();
+  status.request.recipe = text();
+  status.state = state_from_name(text());
+  status.error = error_from_name(text());
+  status.error_message = text();
+  status.acknowledged = integer() != 0;
+  status.slices_done = static_cast<int>(integer());
+  status.slices_planned = static_cast<int>(integer());
+  status.frames.expected = count();
+  status.frames.ok = count();
+  status.frames.incomplete = count();
+  status.frames.missing = count();
+  status.frames.stale = count();
+  status.frames.underrun = count();
+  job.result_dir = text();
+  job.result_json = text();
+  status.acquired = status.state != JobState::kProcessing;
   return job;
 }
 
-std::string describe(const JobKey& key) {
-  if (const auto* id = std::get_if<std::string>(&key)) return "job_id '" + *id + "'";
-  return "seq " + std::to_string(std::get<std::int64_t>(key));
+std::optional<JobStatus> first_status(Statement& rows) {
+  if (!rows.step()) return std::nullopt;
+  return read_row(rows).status;
+}
+
+std::string key_text(const JobKey& key) {
+  if (const auto* id = std::get_if<std::string>(&key)) return "'" + *id + "'";
+  return "with seq " + std::to_string(std::get<std::int64_t>(key));
+}
+
+std::int64_t scalar(const Database& database, const char* sql) {
+  Statement query(database, sql);
+  return query.step() ? query.integer(0) : 0;
+}
+
+std::filesystem::path with_folder(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::create_directories(std::filesystem::absolute(file).parent_path(), error);
+  if (error) {
+    throw Error(ErrorCode::kDatabase,
+                "cannot create the folder of the database " + file.string() + ": " + error.message());
+  }
+  return file;
 }
 
 }  // namespace
 
 struct JobStore::Impl {
-  explicit Impl(const std::filesystem::path& file) : database(file) {
-    database.execute(kSchema);
+  explicit Impl(const std::filesystem::path& file) : database(with_folder(file)) {}
+
+  void count_start() {
     Transaction transaction(database);
-    Statement(database, "INSERT INTO counters VALUES ('epoch', 1) ON CONFLICT (name) DO UPDATE SET value = value + 1").run();
-    Statement row(database, "SELECT value FROM counters WHERE name = 'epoch'");
-    if (row.step()) epoch = row.integer(0);
-    Statement(database, "UPDATE jobs SET state = 'failed', error = ?, message = ? WHERE state = 'processing'")
+    database.execute("UPDATE starts SET epoch = epoch + 1");
+    Statement(database,
+              "UPDATE jobs SET state = ?, error = ?, error_message = ?, "
+              "ended_utc = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE state = ?")
+        .bind(job_state_name(JobState::kFailed))
         .bind(error_name(ErrorCode::kInterrupted))
-        .bind("the daemon ended while the job ran; measure the part again")
+        .bind("the daemon stopped while the job ran: measure the part again with a new sequence number")
+        .bind(job_state_name(JobState::kProcessing))
         .run();
+    epoch = scalar(database, "SELECT epoch FROM starts");
     transaction.commit();
   }
 
-  [[nodiscard]] std::optional<StoredJob> find(const JobKey& key) const {
-    const bool by_id = std::holds_alternative<std::string>(key);
-    Statement row(database, select(by_id ? "job_id = ?" : "seq = ?").c_str());
-    if (by_id) {
-      row.bind(std::get<std::string>(key));
+  [[nodiscard]] StoredJob find_locked(const JobKey& key) const {
+    const auto* id = std::get_if<std::string>(&key);
+    Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
+                                            : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE seq = ?");
+    if (id != nullptr) {
+      query.bind(*id);
     } else {
-      row.bind(std::get<std::int64_t>(key));
+      query.bind(std::get<std::int64_t>(key));
     }
-    if (!row.step()) return std::nullopt;
-    return read_row(row);
+    if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
+    return read_row(query);
   }
 
-  [[nodiscard]] std::optional<JobStatus> first(const std::string& condition) const {
-    Statement row(database, select(condition).c_str());
-    if (!row.step()) return std::nullopt;
-    return read_row(row).status;
+  [[nodiscard]] std::optional<JobStatus> find_repeated_locked(const JobRequest& request) const {
+    Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE seq = ?");
+    query.bind(request.seq);
+    auto known = first_status(query);
+    if (!known) {
+      const std::int64_t newest = scalar(database, "SELECT max(seq) FROM jobs");
+      if (request.seq < newest - kSeqWindow) {
+        throw Error(ErrorCode::kSeqStale, "seq " + std::to_string(request.seq) + " is more than " +
+                                              std::to_string(kSeqWindow) + " behind the newest, " +
+                                              std::to_string(newest) + ": continue from there");
+      }
+      return std::nullopt;
+    }
+    const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
+    if (known->request.part_id != request.part_id || !same_recipe) {
+      throw Error(ErrorCode::kSeqConflict, "seq " + std::to_string(request.seq) + " belongs to job " + known->job_id +
+                                               " (part '" + known->request.part_id + "', recipe '" +
+                                               known->request.recipe + "'): use a new number for a new job");
+    }
+    return known;
   }
 
-  [[nodiscard]] std::int64_t number(const char* sql) const {
-    Statement row(database, sql);
-    return row.step() ? row.integer(0) : 0;
+  [[nodiscard]] int waiting_locked() const {
+    Statement query(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0 AND state <> ?");
+    query.bind(job_state_name(JobState::kProcessing));
+    return query.step() ? static_cast<int>(query.integer(0)) : 0;
   }
 
-  Database database;
-  std::int64_t epoch = 0;
   mutable std::mutex mutex;
+  Database database;  // guarded by mutex
+  std::int64_t epoch = 0;
 };
 
-JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) {}
+JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) {
+  prepare_job_schema(impl_->database);
+  impl_->count_start();
+}
+
 JobStore::~JobStore() = default;
 
 std::optional<JobStatus> JobStore::find_repeated(const JobRequest& request) const {
   const std::lock_guard lock(impl_->mutex);
-  if (const auto known = impl_->find(request.seq)) {
-    const JobRequest& old = known->status.request;
-    // A request without a recipe meant the prepared one; the row names it.
-    if (old.part_id == request.part_id && (request.recipe.empty() || old.recipe == request.recipe)) return known->status;
-    throw Error(ErrorCode::kSeqConflict, "seq " + std::to_string(request.seq) + " was used for part '" + old.part_id +
-                                             "' with recipe '" + old.recipe + "'; a new job needs a new seq");
-  }
-  const std::int64_t newest = impl_->number("SELECT COALESCE(MAX(seq), 0) FROM jobs");
-  if (request.seq < newest - kSeqWindow) {
-    throw Error(ErrorCode::kSeqStale, "seq " + std::to_string(request.seq) + " is more than " + std::to_string(kSeqWindow) +
-                                          " behind the newest, " + std::to_string(newest));
-  }
-  return std::nullopt;
+  return impl_->find_repeated_locked(request);
 }
 
 JobStatus JobStore::accept(const JobRequest& request) {
   const std::lock_guard lock(impl_->mutex);
+  Transaction transaction(impl_->database);
+  if (const auto known = impl_->find_repeated_locked(request)) {
+    throw Error(ErrorCode::kSeqConflict,
+                "seq " + std::to_string(request.seq) + " was accepted before, as job " + known->job_id);
+  }
+  // sqlite_sequence holds the number given last; it never goes back, even if rows are deleted.
+  const std::int64_t number =
+      1 + scalar(impl_->database, "SELECT coalesce(max(seq), 0) FROM sqlite_sequence WHERE name = 'jobs'");
   JobStatus job;
+  job.job_id = make_job_id(std::chrono::system_clock::now(), impl_->epoch, number);
   job.request = request;
-  const std::time_t now = std::time(nullptr);
-  const std::int64_t number = 1 + impl_->number("SELECT COALESCE(MAX(number), 0) FROM jobs");
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  // Sorts by time, and by number within a second; the epoch keeps it unique if the clock is set back.
-  std::array<char, 64> id{};
-  std::snprintf(id.data(), id.size(), "%04d%02d%02dT%02d%02d%02d-%06lld", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
-                utc.tm_hour, utc.tm_min, utc.tm_sec, static_cast<long long>(number));
-  job.job_id = id.data();
-  Statement(impl_->database, "INSERT INTO jobs (job_id, seq, part_id, recipe, accepted_s, state) VALUES (?, ?, ?, ?, ?, 'processing')")
+  Statement(impl_->database, "INSERT INTO jobs (number, job_id, seq, part_id, recipe, state) VALUES (?, ?, ?, ?, ?, ?)")
+      .bind(number)
       .bind(job.job_id)
       .bind(request.seq)
       .bind(request.part_id)
       .bind(request.recipe)
-      .bind(std::int64_t{now})
+      .bind(job_state_name(job.state))
       .run();
+  transaction.commit();
   return job;
 }
 
 void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json) {
+  const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
   const std::lock_guard lock(impl_->mutex);
+  Transaction transaction(impl_->database);
   Statement(impl_->database,
-            "UPDATE jobs SET state = ?, error = ?, message = ?, slices_done = ?, slices_planned = ?, frames = ?, "
-            "result_dir = ?, result_json = ? WHERE job_id = ?")
+            "UPDATE jobs SET state = ?, error = ?, error_message = ?, slices_done = ?, slices_planned = ?, "
+            "frames_expected = ?, frames_ok = ?, frames_incomplete = ?, frames_missing = ?, frames_stale = ?, "
+            "frames_underrun = ?, result_dir = ?, result_json = ?, "
+            "ended_utc = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE job_id = ?")
       .bind(job_state_name(ended.state))
-      .bind(ended.error ? error_name(*ended.error) : "")
+      .bind(ended.error ? error_name(*ended.error) : std::string_view())
       .bind(ended.error_message)
       .bind(std::int64_t{ended.slices_done})
       .bind(std::int64_t{ended.slices_planned})
-      .bind(frames_text(ended.frames))
+      .bind(integer(ended.frames.expected))
+      .bind(integer(ended.frames.ok))
+      .bind(integer(ended.frames.incomplete))
+      .bind(integer(ended.frames.missing))
+      .bind(integer(ended.frames.stale))
+      .bind(integer(ended.frames.underrun))
       .bind(result_dir)
       .bind(result_json)
       .bind(ended.job_id)
       .run();
+  if (sqlite3_changes(impl_->database.handle()) == 0) {
+    throw Error(ErrorCode::kUnknownJob, "no job " + key_text(ended.job_id) + " is known");
+  }
+  transaction.commit();
 }
 
 StoredJob JobStore::find(const JobKey& key) const {
   const std::lock_guard lock(impl_->mutex);
-  auto job = impl_->find(key);
-  if (!job) throw Error(ErrorCode::kUnknownJob, "there is no job with " + describe(key));
-  return std::move(*job);
+  return impl_->find_locked(key);
 }
 
 std::optional<JobStatus> JobStore::latest() const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->first("1 ORDER BY number DESC LIMIT 1");
+  Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
+  return first_status(query);
 }
 
 std::optional<JobStatus> JobStore::next_unacknowledged() const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->first("acknowledged = 0 AND state != 'processing' ORDER BY number LIMIT 1");
+  Statement query(impl_->database,
+                  "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE acknowledged = 0 AND state <> ? ORDER BY number LIMIT 1");
+  query.bind(job_state_name(JobState::kProcessing));
+  return first_status(query);
 }
 
 int JobStore::unacknowledged_count() const {
   const std::lock_guard lock(impl_->mutex);
-  return static_cast<int>(impl_->number("SELECT COUNT(*) FROM jobs WHERE acknowledged = 0 AND state != 'processing'"));
+  return impl_->waiting_locked();
 }
 
 int JobStore::acknowledge(const JobKey& key) {
-  const StoredJob job = find(key);
-  {
-    const std::lock_guard lock(impl_->mutex);
-    Statement(impl_->database, "UPDATE jobs SET acknowledged = 1 WHERE job_id = ?").bind(job.status.job_id).run();
+  const std::lock_guard lock(impl_->mutex);
+  const JobStatus job = impl_->find_locked(key).status;
+  if (job.state == JobState::kProcessing) {
+    throw Error(ErrorCode::kBusy, "job " + job.job_id + " is still running; acknowledge it when it has ended");
   }
-  return unacknowledged_count();
+  Statement(impl_->database, "UPDATE jobs SET acknowledged = 1 WHERE job_id = ?").bind(job.job_id).run();
+  return impl_->waiting_locked();
 }
 
 std::int64_t JobStore::epoch() const noexcept { return impl_->epoch; }

@@ -49,7 +49,7 @@ class ReplayCamera final : public Camera {
       : stack_(config.replay_dir), bench_(replay_bench(config.replay_dir)), address_(config.replay_dir.string()) {}
 
   [[nodiscard]] CameraInfo info() const override {
-    return {"fvd", "recorded slices " + stack_.list().description, "", address_, true};
+    return {"fvd", "recorded slices " + stack_.list().description, "", address_, stack_.width(), stack_.height(), true};
   }
 
   CameraSettings configure(const CameraSettings& settings) override {

@@ -1,0 +1,103 @@
+/// The keys of a recipe: names, ranges, meanings.
+
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "daemon/recipe_book.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr int kMaxSidePx = 65535;
+
+constexpr std::array kPixelFormats{std::pair{PixelFormat::kMono8, "Mono8"}, std::pair{PixelFormat::kMono10, "Mono10"},
+                                   std::pair{PixelFormat::kMono12, "Mono12"},
+                                   std::pair{PixelFormat::kMono16, "Mono16"}};
+
+void describe_format(Fields& fields, PixelFormat& format) {
+  std::vector<std::string> names;
+  std::string name;
+  for (const auto& [value, text] : kPixelFormats) {
+    names.emplace_back(text);
+    if (value == format) name = text;
+  }
+  fields.choice("pixel_format", name, names, "PixelFormat by its GenICam name");
+  for (const auto& [value, text] : kPixelFormats) {
+    if (name == text) format = value;
+  }
+}
+
+std::vector<std::string> peak_names() {
+  std::vector<std::string> names;
+  for (const PeakMethod method : kAllPeakMethods) names.emplace_back(peak_method_name(method));
+  return names;
+}
+
+void describe_settle(SettleCriterion& settle, Fields& fields) {
+  fields.number("window_um", settle.window.value, positive(1000.0), "largest |measured - target| of an arrived stage");
+  fields.integer("samples", settle.samples, {1, 1000}, "consecutive samples inside the window");
+  auto dwell_ms = settle.dwell.count();
+  fields.integer("dwell_ms", dwell_ms, {0, 10000}, "time those samples span at least");
+  settle.dwell = std::chrono::milliseconds(dwell_ms);
+  auto timeout_ms = settle.timeout.count();
+  fields.integer("timeout_ms", timeout_ms, {10, 600000}, "from the start of the move; later fails the job");
+  settle.timeout = std::chrono::milliseconds(timeout_ms);
+}
+
+void describe_scan(Recipe& recipe, Fields& fields) {
+  fields.number("start_um", recipe.start_um, {-1e6, 1e6}, "z of the first slice");
+  fields.require("start_um");
+  fields.number("step_um", recipe.step_um, positive(1e5), "distance of slices");
+  fields.require("step_um");
+  fields.integer("slices", recipe.slices, {3, 65535}, "number of slices");
+  fields.require("slices");
+  fields.integer("frame_retries", recipe.frame_retries, {0, 100}, "further triggers for a slice whose frame was lost");
+  fields.integer("allowed_lost_slices", recipe.allowed_lost_slices, {0, 65532}, "up to slices - 3; more fail the job");
+  fields.group("settle", "when the stage counts as arrived", [&](Fields& in) { describe_settle(recipe.settle, in); });
+}
+
+void describe_camera(CameraSettings& camera, Fields& fields) {
+  describe_format(fields, camera.pixel_format);
+  fields.integer("width_px", camera.width, {0, kMaxSidePx}, "0 = all the sensor has");
+  fields.integer("height_px", camera.height, {0, kMaxSidePx}, "0 = all the sensor has");
+  fields.integer("offset_x_px", camera.offset_x, {0, kMaxSidePx}, "left edge of the region");
+  fields.integer("offset_y_px", camera.offset_y, {0, kMaxSidePx}, "upper edge of the region");
+  fields.number("exposure_us", camera.exposure_us, positive(6e7), "ExposureTime");
+  fields.number("gain_db", camera.gain_db, {0.0, 100.0}, "Gain");
+}
+
+void describe_focus(Recipe& recipe, Fields& fields) {
+  fields.integer("window_px", recipe.focus.window_px, {kMinWindowPx, kMaxWindowPx}, "side of the square window, odd");
+  std::string peak(peak_method_name(recipe.peak));
+  fields.choice("peak", peak, peak_names(), "how a height is taken from the three slices around the sharpest");
+  recipe.peak = peak_method_from_name(peak).value_or(recipe.peak);
+  std::vector<std::string> extra;
+  for (const PeakMethod method : recipe.extra_peaks) extra.emplace_back(peak_method_name(method));
+  fields.choices("extra_peaks", extra, peak_names(), "further height maps of the same scan");
+  recipe.extra_peaks.clear();
+  for (const std::string& name : extra) recipe.extra_peaks.push_back(peak_method_from_name(name).value());
+  fields.number("min_prominence", recipe.focus.min_prominence, {0.0, 1.0},
+                "(peak - minimum) / peak of the focus curve; below it a point is a hole");
+}
+
+}  // namespace
+
+void describe(Recipe& recipe, Fields& fields) {
+  fields.text("description", recipe.description, 1000, "for people");
+  fields.group("scan", "where the slices lie", [&](Fields& in) { describe_scan(recipe, in); });
+  fields.require("scan");
+  fields.group("camera", "settings of the camera", [&](Fields& in) { describe_camera(recipe.camera, in); });
+  fields.group("focus", "from slices to heights", [&](Fields& in) { describe_focus(recipe, in); });
+  fields.group("lateral", "scale on the object", [&](Fields& in) {
+    in.number("pixel_pitch_x_um", recipe.pixel_pitch_x_um, positive(1e5), "distance of columns on the object");
+    in.number("pixel_pitch_y_um", recipe.pixel_pitch_y_um, positive(1e5), "distance of rows on the object");
+  });
+  fields.group("result", "what is kept and what is good enough", [&](Fields& in) {
+    in.number("min_valid_fraction", recipe.min_valid_fraction, {0.0, 1.0}, "fewer valid points fail the job");
+    in.boolean("record_slices", recipe.record_slices, "also keep the slices, in the result's folder slices/");
+  });
+}
+
+}  // namespace fvd

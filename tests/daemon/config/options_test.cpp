@@ -1,0 +1,127 @@
+#include "daemon/options.hpp"
+
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/exit_code.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class Fvd : public ::testing::Test {
+ protected:
+  ParsedOptions parse(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "fvd");
+    return parse_options(static_cast<int>(arguments.size()), arguments.data(), out_, err_);
+  }
+  std::ostringstream out_;
+  std::ostringstream err_;
+};
+
+TEST_F(Fvd, ReadsItsStandardFileUnlessTold) {
+  EXPECT_EQ(parse({}).options.config_file, "/etc/fvd/fvd.json");
+  EXPECT_EQ(parse({"--config", "x.json"}).options.config_file, "x.json");
+  EXPECT_FALSE(parse({}).exit);
+}
+
+TEST_F(Fvd, CollectsOverrides) {
+  EXPECT_THAT(parse({"--set", "rpc.port=0", "--set=log.level=debug"}).options.overrides,
+              ElementsAre("rpc.port=0", "log.level=debug"));
+}
+
+TEST_F(Fvd, TellsItsVersion) {
+  EXPECT_EQ(parse({"--version"}).exit, exit_code::kOk);
+  EXPECT_THAT(out_.str(), ::testing::MatchesRegex("fvd [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST_F(Fvd, HelpNamesEveryOption) {
+  EXPECT_EQ(parse({"--help"}).exit, exit_code::kOk);
+  for (const char* option : {"--config", "--set", "--check-config", "--dump-config", "--version"}) {
+    EXPECT_THAT(out_.str(), HasSubstr(option));
+  }
+}
+
+TEST_F(Fvd, RefusesWrongArguments) {
+  for (const auto& arguments :
+       std::vector<std::vector<const char*>>{{"--confg", "x"}, {"--config"}, {"x"}, {"--set"}}) {
+    EXPECT_EQ(parse(arguments).exit, exit_code::kUsage) << arguments[0];
+  }
+  EXPECT_THAT(err_.str(), HasSubstr("--confg"));
+}
+
+Options with_overrides(const Overrides& overrides) {
+  Options options;
+  options.overrides = overrides;
+  return options;
+}
+
+Options asking_for(bool Options::*flag, const Overrides& overrides = {}) {
+  Options options = with_overrides(overrides);
+  options.*flag = true;
+  return options;
+}
+
+class FvdWithAFile : public Fvd {
+ protected:
+  StartUp start(const std::string& text, Options options) {
+    options.config_file = folder_.path() / "fvd.json";
+    std::ofstream(options.config_file) << text;
+    std::ofstream(folder_.path() / "drive.json") << "{}";
+    return start_up(options, out_, err_);
+  }
+  static constexpr const char* kGood =
+      R"({"camera": {"address": "10.0.0.1"}, "stage": {"profile": "drive.json"}, "paths": {"recipe_dir": "."}})";
+  test::ScratchDir folder_;
+};
+
+TEST_F(FvdWithAFile, RunsWithAGoodConfiguration) {
+  const StartUp result = start(kGood, with_overrides({"rpc.port=0"}));
+  EXPECT_FALSE(result.exit);
+  EXPECT_EQ(result.config.rpc.port, 0);
+  EXPECT_THAT(err_.str(), IsEmpty());
+}
+
+TEST_F(FvdWithAFile, ChecksAGoodConfigurationSilently) {
+  EXPECT_EQ(start(kGood, asking_for(&Options::check_config)).exit, exit_code::kOk);
+  EXPECT_THAT(out_.str() + err_.str(), IsEmpty());
+}
+
+TEST_F(FvdWithAFile, SaysEveryProblemAndExitsWith78) {
+  const std::string bad = R"({"rpc": {"port": -1}, "camera": {"adress": "x"}})";
+  EXPECT_EQ(start(bad, asking_for(&Options::check_config)).exit, 78);
+  EXPECT_THAT(
+      err_.str(),
+      AllOf(HasSubstr("fvd.json: /rpc/port: -1 is not accepted; expected an integer within 0..65535"),
+            HasSubstr("fvd.json: /camera/adress: unknown key; did you mean 'address'?"), HasSubstr("/stage/profile")));
+  EXPECT_EQ(start(bad, {}).exit, 78) << "it does not run either";
+}
+
+TEST_F(FvdWithAFile, DumpsTheConfigurationInForce) {
+  EXPECT_EQ(start(kGood, asking_for(&Options::dump_config, {"rpc.port=77"})).exit, exit_code::kOk);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("\"port\": 77"), HasSubstr("drive.json"), HasSubstr("queue_slices")));
+}
+
+TEST_F(FvdWithAFile, PrintsItsSchemas) {
+  EXPECT_EQ(start("{", asking_for(&Options::print_config_schema)).exit, exit_code::kOk);
+  EXPECT_EQ(out_.str(), config_schema_text());
+}
+
+TEST(ExitCode, TellsWhatStoppedTheDaemon) {
+  EXPECT_EQ(exit_code_of(ErrorCode::kBadConfig), 78);
+  EXPECT_EQ(exit_code_of(ErrorCode::kStageDisconnected), 69);
+  EXPECT_EQ(exit_code_of(ErrorCode::kDatabase), 74);
+  EXPECT_EQ(exit_code_of(ErrorCode::kInternal), 70);
+}
+
+}  // namespace
+}  // namespace fvd

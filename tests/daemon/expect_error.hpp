@@ -1,0 +1,41 @@
+#pragma once
+
+/// Expectations about Error: its code, and what its message tells.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+
+namespace fvd {
+
+/// The Error that `body` throws; nothing if it throws none.
+template <typename Body>
+std::optional<Error> error_of(Body body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+inline std::string_view name_of(const std::optional<Error>& error) {
+  return error ? error_name(error->code()) : std::string_view("no error");
+}
+
+}  // namespace fvd
+
+#define FVD_EXPECT_ERROR_SAYING(expected_code, statement, matcher)                            \
+  do {                                                                                        \
+    const auto fvd_error = ::fvd::error_of([&] { statement; });                               \
+    EXPECT_EQ(::fvd::name_of(fvd_error), ::fvd::error_name(::fvd::ErrorCode::expected_code)); \
+    EXPECT_THAT(std::string(fvd_error ? fvd_error->what() : ""), matcher);                    \
+  } while (false)
+
+#define FVD_EXPECT_ERROR(expected_code, statement) \
+  FVD_EXPECT_ERROR_SAYING(expected_code, statement, ::testing::Not(::testing::IsEmpty()))

@@ -1,0 +1,166 @@
+/// The store when the process dies, the disk fills up or the file is not what it should be.
+
+#include <cerrno>
+#include <csignal>
+#include <fstream>
+#include <optional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "daemon/store/database.hpp"
+#include "daemon/store/job_store.hpp"
+#include "tests/daemon/expect_error.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Runs `body` in a process of its own that then dies by SIGKILL: nothing is closed, nothing flushed.
+template <typename Body>
+void in_a_process_that_is_killed(Body body) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    try {
+      body();
+      ::raise(SIGKILL);
+    } catch (...) {
+    }
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << "the child failed before it could be killed";
+}
+
+TEST(JobStoreCrash, FindsAnAcceptedJobAsInterruptedAfterAKill) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "jobs.db";
+  in_a_process_that_is_killed([&] {
+    JobStore store(file);
+    (void)store.accept({42, "part", "chapter"});
+  });
+
+  JobStore store(file);
+
+  EXPECT_EQ(store.epoch(), 2);
+  const JobStatus job = store.find(std::int64_t{42}).status;
+  EXPECT_EQ(job.state, JobState::kFailed);
+  EXPECT_EQ(job.error, ErrorCode::kInterrupted);
+  EXPECT_THAT(job.error_message, HasSubstr("measure the part again"));
+  EXPECT_EQ(store.find_repeated({42, "part", "chapter"})->job_id, job.job_id) << "never a second motion";
+  EXPECT_EQ(store.next_unacknowledged()->job_id, job.job_id);
+}
+
+TEST(JobStoreCrash, KeepsAFinishedJobAfterAKill) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "jobs.db";
+  in_a_process_that_is_killed([&] {
+    JobStore store(file);
+    JobStatus job = store.accept({42, "part", "chapter"});
+    job.state = JobState::kCompleted;
+    store.finish(job, "/results/42", "{\"points\":1}");
+  });
+
+  JobStore store(file);
+
+  EXPECT_EQ(store.find(std::int64_t{42}).status.state, JobState::kCompleted);
+  EXPECT_EQ(store.find(std::int64_t{42}).result_json, "{\"points\":1}");
+}
+
+TEST(JobStoreCrash, CountsEveryStartThatWasKilled) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "jobs.db";
+  for (int i = 0; i < 3; ++i) in_a_process_that_is_killed([&] { const JobStore store(file); });
+  EXPECT_EQ(JobStore(file).epoch(), 4);
+}
+
+TEST(JobStoreCrash, RefusesAFileThatAnotherConnectionHolds) {
+  const test::ScratchDir folder;
+  const JobStore first(folder.path() / "jobs.db");
+  FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore(folder.path() / "jobs.db"), HasSubstr("another fvd"));
+}
+
+TEST(JobStoreCrash, RefusesAFileThatIsNoDatabase) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "jobs.db";
+  std::ofstream(file) << std::string(8192, 'x');
+  FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore{file}, HasSubstr(file.string()));
+}
+
+TEST(JobStoreCrash, RefusesAnUnusableFolder) {
+  const test::ScratchDir folder;
+  std::ofstream(folder.path() / "file") << "not a folder";
+  FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore(folder.path() / "file" / "jobs.db"), HasSubstr("folder"));
+}
+
+TEST(JobStoreCrash, RefusesADatabaseOfANewerVersion) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "jobs.db";
+  { const JobStore store(file); }
+  Database(file).execute("PRAGMA user_version = 99");
+  FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore{file}, HasSubstr("newer"));
+}
+
+/// While it lives, SQLite's writes fail with one errno.
+class BrokenDisk {
+ public:
+  explicit BrokenDisk(int error) {
+    error_ = error;
+    for (const char* call : {"pwrite", "pwrite64"}) set(call, reinterpret_cast<sqlite3_syscall_ptr>(&fail_pwrite));
+    set("write", reinterpret_cast<sqlite3_syscall_ptr>(&fail_write));
+  }
+  ~BrokenDisk() {
+    for (const char* call : {"pwrite", "pwrite64", "write"}) set(call, nullptr);  // nullptr: the real one again
+  }
+  BrokenDisk(const BrokenDisk&) = delete;
+  BrokenDisk& operator=(const BrokenDisk&) = delete;
+
+ private:
+  static void set(const char* call, sqlite3_syscall_ptr function) {
+    sqlite3_vfs* vfs = sqlite3_vfs_find(nullptr);
+    vfs->xSetSystemCall(vfs, call, function);
+  }
+  static ssize_t fail_pwrite(int, const void*, std::size_t, off_t) {
+    errno = error_;
+    return -1;
+  }
+  static ssize_t fail_write(int, const void*, std::size_t) {
+    errno = error_;
+    return -1;
+  }
+  static inline int error_ = 0;
+};
+
+TEST(JobStoreCrash, SaysThatTheDiskIsFullAndWorksAgainWhenItIsNot) {
+  const test::ScratchDir folder;
+  JobStore store(folder.path() / "jobs.db");
+  {
+    const BrokenDisk full(ENOSPC);
+    FVD_EXPECT_ERROR(kStorageFull, (void)store.accept({1, "part", "chapter"}));
+  }
+  FVD_EXPECT_ERROR(kUnknownJob, (void)store.find(std::int64_t{1}));
+
+  EXPECT_NO_THROW((void)store.accept({1, "part", "chapter"}));
+}
+
+TEST(JobStoreCrash, SaysThatTheDiskIsBroken) {
+  const test::ScratchDir folder;
+  JobStore store(folder.path() / "jobs.db");
+  JobStatus job = store.accept({1, "part", "chapter"});
+  job.state = JobState::kCompleted;
+  {
+    const BrokenDisk broken(EIO);
+    FVD_EXPECT_ERROR(kDatabase, store.finish(job, "dir", "{}"));
+  }
+  EXPECT_EQ(store.find(std::int64_t{1}).status.state, JobState::kProcessing) << "nothing half done";
+}
+
+}  // namespace
+}  // namespace fvd

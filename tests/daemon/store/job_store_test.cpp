@@ -1,0 +1,205 @@
+#include "daemon/store/job_store.hpp"
+
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/daemon/expect_error.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+JobRequest request(std::int64_t seq, const std::string& part = "part", const std::string& recipe = "chapter") {
+  return {seq, part, recipe};
+}
+
+class AJobStore : public ::testing::Test {
+ protected:
+  /// As a new process would see it.
+  void reopen() {
+    store_.reset();
+    store_ = std::make_unique<JobStore>(file_);
+  }
+  void finish(JobStatus job, JobState state = JobState::kCompleted) {
+    job.state = state;
+    store_->finish(job, "/results/" + job.job_id, "{}");
+  }
+
+  test::ScratchDir folder_;
+  std::filesystem::path file_ = folder_.path() / "state" / "jobs.db";
+  std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(file_);
+};
+
+TEST_F(AJobStore, CreatesItsFolder) { EXPECT_TRUE(std::filesystem::exists(file_)); }
+
+TEST_F(AJobStore, KnowsNothingAtFirst) {
+  EXPECT_FALSE(store_->latest());
+  EXPECT_FALSE(store_->next_unacknowledged());
+  EXPECT_EQ(store_->unacknowledged_count(), 0);
+  EXPECT_FALSE(store_->find_repeated(request(1)));
+  FVD_EXPECT_ERROR(kUnknownJob, (void)store_->find(std::int64_t{1}));
+  FVD_EXPECT_ERROR(kUnknownJob, (void)store_->find(std::string("x")));
+  FVD_EXPECT_ERROR(kUnknownJob, store_->acknowledge(std::string("x")));
+}
+
+TEST_F(AJobStore, CountsItsOpenings) {
+  EXPECT_EQ(store_->epoch(), 1);
+  reopen();
+  EXPECT_EQ(store_->epoch(), 2);
+}
+
+TEST_F(AJobStore, FindsAnAcceptedJobByIdAndBySeq) {
+  const JobStatus job = store_->accept(request(7, "A-17"));
+
+  EXPECT_EQ(job.state, JobState::kProcessing);
+  EXPECT_EQ(store_->find(job.job_id).status.request.seq, 7);
+  EXPECT_EQ(store_->find(std::int64_t{7}).status.job_id, job.job_id);
+  EXPECT_EQ(store_->find(std::int64_t{7}).status.request.part_id, "A-17");
+  EXPECT_EQ(store_->latest()->job_id, job.job_id);
+}
+
+TEST_F(AJobStore, GivesIdsThatAreUniqueSortableAndShort) {
+  std::vector<std::string> ids;
+  for (int seq = 1; seq <= 60; ++seq) {
+    if (seq % 20 == 0) reopen();
+    ids.push_back(store_->accept(request(seq)).job_id);
+  }
+
+  EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), ids.size());
+  EXPECT_THAT(ids, ::testing::WhenSorted(::testing::ElementsAreArray(ids)));
+  EXPECT_THAT(ids, ::testing::Each(::testing::SizeIs(::testing::Le(32))));
+  EXPECT_THAT(ids, ::testing::Each(::testing::MatchesRegex("[0-9]+T[0-9]+Z-[0-9]+-[0-9]+")));
+}
+
+TEST_F(AJobStore, ReturnsTheSameJobForARepeatedRequest) {
+  const JobStatus job = store_->accept(request(7));
+
+  EXPECT_EQ(store_->find_repeated(request(7)).value().job_id, job.job_id);
+  EXPECT_EQ(store_->find_repeated(request(7, "part", "")).value().job_id, job.job_id) << "the recipe was left open";
+  reopen();
+  EXPECT_EQ(store_->find_repeated(request(7)).value().job_id, job.job_id);
+}
+
+TEST_F(AJobStore, RefusesANumberThatBelongsToAnotherRequest) {
+  (void)store_->accept(request(7));
+
+  FVD_EXPECT_ERROR(kSeqConflict, (void)store_->find_repeated(request(7, "another part")));
+  FVD_EXPECT_ERROR(kSeqConflict, (void)store_->find_repeated(request(7, "part", "another recipe")));
+  FVD_EXPECT_ERROR(kSeqConflict, (void)store_->accept(request(7)));
+  FVD_EXPECT_ERROR(kSeqConflict, (void)store_->accept(request(7, "another part")));
+}
+
+TEST_F(AJobStore, RefusesUnknownNumbersBehindTheWindow) {
+  (void)store_->accept(request(1));
+  (void)store_->accept(request(5000));
+
+  EXPECT_FALSE(store_->find_repeated(request(5000 - JobStore::kSeqWindow))) << "the last number of the window is new";
+  FVD_EXPECT_ERROR(kSeqStale, (void)store_->find_repeated(request(4999 - JobStore::kSeqWindow)));
+  FVD_EXPECT_ERROR(kSeqStale, (void)store_->accept(request(4999 - JobStore::kSeqWindow)));
+  EXPECT_TRUE(store_->find_repeated(request(1))) << "known, however old";
+}
+
+TEST_F(AJobStore, KeepsTheLargestSequenceNumber) {
+  constexpr std::int64_t kLargest = (std::int64_t{1} << 53U) - 1;
+  const JobStatus job = store_->accept(request(kLargest));
+  EXPECT_EQ(store_->find(kLargest).status.job_id, job.job_id);
+}
+
+TEST_F(AJobStore, KeepsEverythingOfAnEndedJob) {
+  JobStatus job = store_->accept(request(7, "A \"quoted\" part"));
+  job.state = JobState::kFailed;
+  job.error = ErrorCode::kCameraFramesLost;
+  job.error_message = "slice 3 was lost\nthree times: \xc2\xb5m";
+  job.slices_done = 3;
+  job.slices_planned = 21;
+  job.frames = {.expected = 6, .ok = 1, .incomplete = 2, .missing = 1, .stale = 1, .underrun = 1};
+
+  store_->finish(job, "/results/x", "{\"a\":1}");
+  reopen();
+
+  const StoredJob stored = store_->find(job.job_id);
+  EXPECT_EQ(stored.status.request.part_id, "A \"quoted\" part");
+  EXPECT_EQ(stored.status.request.recipe, "chapter");
+  EXPECT_EQ(stored.status.state, JobState::kFailed);
+  EXPECT_EQ(stored.status.error, ErrorCode::kCameraFramesLost);
+  EXPECT_EQ(stored.status.error_message, job.error_message);
+  EXPECT_EQ(stored.status.slices_done, 3);
+  EXPECT_EQ(stored.status.slices_planned, 21);
+  EXPECT_EQ(stored.status.frames, job.frames);
+  EXPECT_TRUE(stored.status.acquired);
+  EXPECT_EQ(stored.result_dir, "/results/x");
+  EXPECT_EQ(stored.result_json, "{\"a\":1}");
+}
+
+class EveryJobState : public AJobStore, public ::testing::WithParamInterface<JobState> {};
+
+TEST_P(EveryJobState, SurvivesReopening) {
+  const JobStatus job = store_->accept(request(1));
+  finish(job, GetParam());
+  reopen();
+  EXPECT_EQ(store_->find(job.job_id).status.state, GetParam());
+  EXPECT_EQ(store_->find(job.job_id).status.error, std::nullopt);
+}
+INSTANTIATE_TEST_SUITE_P(Ended, EveryJobState,
+                         ::testing::Values(JobState::kCompleted, JobState::kAborted, JobState::kFailed));
+
+TEST_F(AJobStore, KeepsEveryErrorCode) {
+  for (int code = 0; code <= static_cast<int>(ErrorCode::kDatabase); ++code) {
+    JobStatus job = store_->accept(request(code + 1));
+    job.error = static_cast<ErrorCode>(code);
+    job.state = JobState::kFailed;
+    store_->finish(job, "", "");
+    EXPECT_EQ(store_->find(job.job_id).status.error, job.error) << error_name(*job.error);
+  }
+}
+
+TEST_F(AJobStore, RefusesToFinishAJobItDoesNotKnow) {
+  JobStatus job;
+  job.job_id = "never accepted";
+  job.state = JobState::kCompleted;
+  FVD_EXPECT_ERROR(kUnknownJob, store_->finish(job, "", ""));
+}
+
+TEST_F(AJobStore, HandsOutUnacknowledgedJobsOldestFirst) {
+  const JobStatus first = store_->accept(request(10));
+  const JobStatus second = store_->accept(request(5));
+  EXPECT_FALSE(store_->next_unacknowledged()) << "running jobs are not handed out";
+
+  finish(second, JobState::kFailed);
+  EXPECT_EQ(store_->next_unacknowledged()->job_id, second.job_id);
+  finish(first);
+  EXPECT_EQ(store_->next_unacknowledged()->job_id, first.job_id);
+  EXPECT_EQ(store_->unacknowledged_count(), 2);
+
+  EXPECT_EQ(store_->acknowledge(first.job_id), 1);
+  EXPECT_EQ(store_->acknowledge(first.job_id), 1) << "repeating changes nothing";
+  EXPECT_TRUE(store_->find(first.job_id).status.acknowledged);
+  EXPECT_EQ(store_->next_unacknowledged()->job_id, second.job_id);
+  EXPECT_EQ(store_->acknowledge(std::int64_t{5}), 0);
+  EXPECT_FALSE(store_->next_unacknowledged());
+}
+
+TEST_F(AJobStore, RefusesToAcknowledgeARunningJob) {
+  const JobStatus job = store_->accept(request(1));
+  FVD_EXPECT_ERROR(kBusy, store_->acknowledge(job.job_id));
+}
+
+TEST_F(AJobStore, TakesJobsFromSeveralThreads) {
+  {
+    std::vector<std::jthread> threads;
+    for (int thread = 0; thread < 4; ++thread) {
+      threads.emplace_back([this, thread] {
+        for (int i = 0; i < 25; ++i) finish(store_->accept(request(1 + thread * 25 + i)));
+      });
+    }
+  }
+  EXPECT_EQ(store_->unacknowledged_count(), 100);
+}
+
+}  // namespace
+}  // namespace fvd

@@ -1,0 +1,138 @@
+/// A PLC's trigger through JSON-RPC, Modbus and GigE Vision to the result files, against the truth.
+
+#include <cstring>
+#include <sstream>
+
+#include "core/focus/streaming_focus_stack.hpp"
+#include "daemon/ctl/process_stack.hpp"
+#include "sim/evaluate.hpp"
+#include "tests/system/system_fixture.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+
+/// The figures of a result directory, as the demo prints them.
+json figures_of(const std::filesystem::path& directory) {
+  std::ostringstream out;
+  sim::evaluate(sim::WorldParameters{}, directory, true, out);
+  std::string text = out.str();
+  text.pop_back();
+  return json::parse(text.substr(text.rfind('\n') + 1));
+}
+
+void expect_chapter_figures(const json& figures) {
+  EXPECT_NEAR(figures["plateau_rms_um"]["nearest"].get<double>(), 3.00, 0.05);
+  EXPECT_LE(figures["plateau_rms_um"]["parabola"].get<double>(), 0.65);
+  EXPECT_LE(figures["plateau_rms_um"]["log_parabola"].get<double>(), 0.40);
+  EXPECT_LE(figures["ramp_rms_um"]["log_parabola"].get<double>(), 0.40);
+  EXPECT_NEAR(figures["steps_um"][0].get<double>(), 50.0, 0.1);
+  EXPECT_NEAR(figures["steps_um"][1].get<double>(), 50.0, 0.1);
+  EXPECT_NEAR(figures["steps_um"][2].get<double>(), 100.0, 0.1);
+  EXPECT_GE(figures["valid_textured"].get<double>(), 0.999);
+  EXPECT_LE(figures["valid_texture_poor"].get<double>(), 0.30);
+}
+
+TEST_F(AMicroscope, MeasuresTheChaptersSurface) {
+  start();
+  const json started = begin(1);
+  EXPECT_EQ(started["duplicate"], false) << started.dump();
+  const json ended = await_end(1);
+  ASSERT_EQ(ended["state"], "completed") << ended.dump();
+  EXPECT_EQ(ended["frames_expected"], 21);
+  EXPECT_EQ(ended["frames_ok"], 21);
+  const json figures = figures_of(result_dir(1));
+  expect_chapter_figures(figures);
+  EXPECT_EQ(figures["frames_ok"], 21);
+  for (const char* file : {"height.tiff", "height_nearest.tiff", "height_parabola.tiff", "height.gsf", "mask.png",
+                           "texture.png", "preview.png", "step_log.csv", "result.json"}) {
+    EXPECT_GT(std::filesystem::file_size(result_dir(1) / file), 100U) << file;
+  }
+  const json record = json::parse(test::read_text(result_dir(1) / "result.json"));
+  EXPECT_EQ(record["provenance"]["simulated"], true);
+  EXPECT_LE(record["steps"]["error_max_um"].get<double>(), 0.2);
+}
+
+TEST_F(AMicroscope, AnswersARepeatedTriggerWithTheSameJobAndNoSecondMotion) {
+  start();
+  const json first = begin(7);
+  const json again = begin(7);
+  EXPECT_EQ(again["duplicate"], true);
+  EXPECT_EQ(again["job_id"], first["job_id"]);
+  EXPECT_EQ(begin(8)["code"], 1002) << "one job at a time";
+  await_end(7);
+  const int moves = plant_->drive().moves();
+  EXPECT_EQ(begin(7)["job_id"], first["job_id"]);
+  EXPECT_EQ(ask("job.start", {{"seq", 7}, {"part_id", "another"}, {"recipe", "chapter"}})["code"], 1009);
+  EXPECT_EQ(plant_->drive().moves(), moves);
+  EXPECT_EQ(ask("result.next", json::object())["seq"], 7);
+  EXPECT_EQ(ask("result.ack", {{"seq", 7}})["remaining"], 0);
+}
+
+TEST_F(AMicroscope, MeasuresRightUnderPacketLoss) {
+  start();
+  plant_->camera().set_packet_loss(0.01);
+  begin(1);
+  const json ended = await_end(1);
+  ASSERT_EQ(ended["state"], "completed") << ended.dump();
+  EXPECT_EQ(ended["frames_ok"], 21);
+  EXPECT_GT(plant_->camera().packets_lost(), 0U);
+  expect_chapter_figures(figures_of(result_dir(1)));
+}
+
+TEST_F(AMicroscope, RetriesLostFramesAndAccountsForThem) {
+  start();
+  begin(1);
+  await_slices(1, 3);
+  plant_->camera().drop_frames(1);
+  plant_->camera().ignore_triggers(1);
+  const json ended = await_end(1);
+  ASSERT_EQ(ended["state"], "completed") << ended.dump();
+  EXPECT_EQ(ended["frames_ok"], 21);
+  EXPECT_EQ(ended["frames_expected"], 23);
+  const json frames = json::parse(test::read_text(result_dir(1) / "result.json"))["frames"];
+  EXPECT_EQ(frames["missing"], 2) << frames.dump();
+}
+
+TEST_F(AMicroscope, GivesBitForBitTheMapThatOfflineProcessingGives) {
+  start();
+  begin(1, "chapter-recorded");
+  ASSERT_EQ(await_end(1)["state"], "completed");
+  const auto live = result_dir(1);
+  ctl::ProcessOptions offline;
+  offline.source = live / "slices";
+  offline.out = folder_.path() / "offline";
+  offline.z = ZFile{live / "slices" / "z.txt", LengthUnit::kMicrometre};
+  offline.peak = PeakMethod::kLogParabola;
+  (void)ctl::process_stack(offline, {});
+  for (const char* file : {"mask.png", "texture.png"}) {
+    EXPECT_EQ(test::read_text(live / file), test::read_text(offline.out / file)) << file;
+  }
+  // The title differs; the heights are what follows the header's padding.
+  const auto heights = [](const std::filesystem::path& directory) {
+    const std::string text = test::read_text(directory / "height.gsf");
+    return text.substr(text.size() - 480 * 360 * sizeof(float));
+  };
+  EXPECT_EQ(heights(live), heights(offline.out));
+}
+
+TEST_F(AMicroscope, MeasuresOnAWornAxisWithoutMoreThanItsErrors) {
+  sim::PlantOptions worn = options();
+  worn.axis = {.encoder_resolution_um = 0.1,
+               .encoder_noise_um = 0.02,
+               .settle_noise_um = 0.05,
+               .ring_amplitude_um = 0.4,
+               .backlash_um = 1.2,
+               .lead_error_um = 0.3,
+               .drift_um_per_min = 0.5,
+               .start_latency_ms = 3.0};
+  start(worn);
+  begin(1);
+  ASSERT_EQ(await_end(1)["state"], "completed");
+  const json figures = figures_of(result_dir(1));
+  EXPECT_LE(figures["plateau_rms_um"]["log_parabola"].get<double>(), 0.40 + 0.3 + 0.1);
+}
+
+}  // namespace
+}  // namespace fvd
