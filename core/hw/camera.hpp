@@ -46,7 +46,8 @@ struct CameraHealth {
 };
 
 /// An open camera. Constructing one opens it (throws Error kCameraDisconnected), destroying it closes it; destruction
-/// of a camera that no longer answers may take seconds. Frames must be gone before their camera is.
+/// of a camera that no longer answers may take seconds. Frames must be gone before their camera is, or is configured
+/// anew.
 /// context: one thread at a time, except interrupt() and connected().
 class Camera {
  public:

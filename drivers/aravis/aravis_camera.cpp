@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <sstream>
 
@@ -63,7 +64,9 @@ class AravisCamera final : public Camera {
     }
     device_ = arv_camera_get_device(camera_.get());
     require_control();
-    g_signal_connect(device_, "control-lost", G_CALLBACK(&AravisCamera::on_control_lost), this);
+    // The handler owns a share of the flag: it may run in the heartbeat's thread while this object goes.
+    g_signal_connect_data(device_, "control-lost", G_CALLBACK(&AravisCamera::on_control_lost), new LostFlag(lost_),
+                          &AravisCamera::release_flag, GConnectFlags{});
     // Off by default: without it Aravis sends values the camera's own description forbids.
     arv_camera_set_range_check_policy(camera_.get(), ARV_RANGE_CHECK_POLICY_ENABLE);
     read_info();
@@ -71,7 +74,6 @@ class AravisCamera final : public Camera {
   }
 
   ~AravisCamera() override {
-    g_signal_handlers_disconnect_by_data(device_, this);
     stop_acquisition();
     frames_.reset();
   }
@@ -89,15 +91,19 @@ class AravisCamera final : public Camera {
       requested_ = settings;
     }
     clock_.measure(device_);
+    if (!clock_.measured()) {
+      throw Error(ErrorCode::kCameraSettings, "the camera at " + config_.address +
+                                                  " has no usable timestamp latch: a late frame could not be told from "
+                                                  "a fresh one, and heights would be wrong");
+    }
     return effective_;
   }
 
   void trigger() override {
     require_connected();
     GErrorSlot error;
-    triggered_ = HostClock::now();
     arv_camera_software_trigger(camera_.get(), error.out());
-    if (error.is_connection_loss()) lost_ = true;
+    if (error.is_connection_loss()) *lost_ = true;
     error.check("the camera at " + config_.address + " takes no trigger", ErrorCode::kCameraDisconnected);
   }
 
@@ -123,7 +129,7 @@ class AravisCamera final : public Camera {
 
   void interrupt() noexcept override { interrupted_ = true; }
 
-  [[nodiscard]] bool connected() const noexcept override { return !lost_; }
+  [[nodiscard]] bool connected() const noexcept override { return !*lost_; }
 
   [[nodiscard]] CameraHealth health() const override {
     CameraHealth health;
@@ -146,13 +152,13 @@ class AravisCamera final : public Camera {
   }
 
  private:
-  static void on_control_lost(ArvDevice* /*device*/, gpointer self) {
-    // Runs in the heartbeat's thread: nothing but the flag may be touched here.
-    static_cast<AravisCamera*>(self)->lost_ = true;
-  }
+  using LostFlag = std::shared_ptr<std::atomic<bool>>;
+
+  static void on_control_lost(ArvDevice* /*device*/, gpointer flag) { **static_cast<LostFlag*>(flag) = true; }
+  static void release_flag(gpointer flag, GClosure* /*closure*/) { delete static_cast<LostFlag*>(flag); }
 
   void require_connected() const {
-    if (lost_) {
+    if (*lost_) {
       throw Error(ErrorCode::kCameraDisconnected,
                   "the connection to the camera at " + config_.address + " is lost; it is being opened again");
     }
@@ -284,9 +290,9 @@ class AravisCamera final : public Camera {
     GObjectPtr<ArvStream> stream(arv_camera_create_stream(camera_.get(), nullptr, nullptr, error.out()));
     error.check("the camera at " + config_.address + " opens no stream", ErrorCode::kCameraDisconnected);
     if (ARV_IS_GV_STREAM(stream.get())) {
-      // A frame may begin when its exposure does; the retention must outlast it. Losses are noticed by our own
-      // deadline.
-      const auto retention = static_cast<guint>(std::min(1e9, effective_.exposure_us + 2e6));
+      // Frames are delivered in order, so one that waits for lost packets holds up all that follow: it is given up when
+      // our own deadline is over. That outlasts the exposure, for cameras that begin a frame with it.
+      const auto retention = static_cast<guint>(frame_deadline().count());
       g_object_set(stream.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", 32 << 20,
                    "frame-retention", retention, nullptr);
     }
@@ -307,7 +313,7 @@ class AravisCamera final : public Camera {
   }
 
   void stop_acquisition() noexcept {
-    if (!frames_ || lost_) return;
+    if (!frames_ || *lost_) return;
     GErrorSlot error;
     arv_camera_stop_acquisition(camera_.get(), error.out());
     if (error.failed()) spdlog::warn("the camera at {} did not stop: {}", config_.address, error.message());
@@ -342,8 +348,8 @@ class AravisCamera final : public Camera {
     frame.image = {effective_.pixel_format, effective_.width, effective_.height,
                    static_cast<std::ptrdiff_t>(effective_.width) * bytes_per_pixel(effective_.pixel_format),
                    static_cast<const std::byte*>(data)};
-    // Without a clock map the trigger is the earliest the exposure can have begun.
-    frame.exposure_start = clock_.to_host(arv_buffer_get_timestamp(buffer)).value_or(triggered_);
+    // The warm-up frame comes before the clock is measured; nobody looks at its time.
+    frame.exposure_start = clock_.to_host(arv_buffer_get_timestamp(buffer)).value_or(HostTime::min());
     frame.exposure_end = frame.exposure_start + std::chrono::duration_cast<HostClock::duration>(
                                                     std::chrono::duration<double, std::micro>(effective_.exposure_us));
     return frame;
@@ -358,10 +364,9 @@ class AravisCamera final : public Camera {
   std::optional<FrameBuffers> frames_;
   FrameCounter counter_;
   CameraClock clock_;
-  HostTime triggered_{};
   std::uint64_t frames_complete_ = 0;
   std::uint64_t frames_failed_ = 0;
-  std::atomic<bool> lost_{false};
+  LostFlag lost_ = std::make_shared<std::atomic<bool>>(false);
   std::atomic<bool> interrupted_{false};
 };
 

@@ -1,7 +1,5 @@
 #include "drivers/aravis/camera_clock.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "drivers/aravis/gobject.hpp"
 
 namespace fvd {
@@ -34,10 +32,7 @@ std::optional<Latch> latch_of(ArvDevice* device) {
 void CameraClock::measure(ArvDevice* device) {
   if (offset_ && HostClock::now() - measured_ < kRenewAfter) return;
   const auto latch = latch_of(device);
-  if (!latch) {
-    spdlog::warn("the camera has no timestamp latch: frames are told apart by their number only");
-    return;
-  }
+  if (!latch) return;
   GErrorSlot error;
   double ns_per_tick = 1.0;
   if (latch->tick_frequency != nullptr) {

@@ -18,6 +18,8 @@ class CameraClock {
   /// Measures anew if the last measurement is older than kRenewAfter. Without a latch in the camera there is no map.
   void measure(ArvDevice* device);
 
+  [[nodiscard]] bool measured() const { return offset_.has_value(); }
+
   /// Host time of a camera timestamp in ns; nothing without a map.
   [[nodiscard]] std::optional<HostTime> to_host(std::uint64_t camera_ns) const;
 
