@@ -15,6 +15,7 @@
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/recipe_book.hpp"
+#include "daemon/systemd_notify.hpp"
 #include "daemon/version.hpp"
 
 namespace fvd {
@@ -218,6 +219,7 @@ void Engine::transition_locked(ScanEvent event) {
   if (!next || *next == state_) return;
   spdlog::info("state {} -> {}", scan_state_name(state_), scan_state_name(*next));
   state_ = *next;
+  notify_status(std::string(scan_state_name(state_)));
 }
 
 // --- the engine's thread -------------------------------------------------------------------------------------------

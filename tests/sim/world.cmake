@@ -1,2 +1,4 @@
-fvd_add_test(sim_world_test LABELS sim LIBRARIES fvd::sim SOURCES renderer_test.cpp surface_test.cpp)
+fvd_add_test(sim_world_test LABELS sim
+  LIBRARIES fvd::sim nlohmann_json::nlohmann_json opencv_core opencv_imgcodecs
+  SOURCES evaluate_test.cpp renderer_test.cpp surface_test.cpp)
 target_compile_definitions(sim_world_test PRIVATE FVD_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
