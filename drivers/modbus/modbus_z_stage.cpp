@@ -339,13 +339,14 @@ class ModbusZStage final : public ZStage {
     SettleDetector detector(move.target_quantised, criterion);
     bool begun = false;
     // Only samples taken after the command count: the drive's "in position" of the move before is stale.
-    for (HostTime last = HostClock::now();;) {
+    const HostTime commanded = HostClock::now();  // the last attempt, which move.started may lie well before
+    for (HostTime last = commanded;;) {
       const AxisSample sample = sample_after(last, stop);
       last = sample.time;
       ++move.polls;
       require_no_alarm(sample);
       begun = begun || obeys(sample, move, before, criterion);
-      if (!begun && sample.time - move.started > profile_.start_within) {
+      if (!begun && sample.time - commanded > profile_.start_within) {
         throw Error(ErrorCode::kStagePosition, "the drive at " + link_.description() + " took the move to " +
                                                    std::to_string(move.target.value) +
                                                    " um without a word and does not move: is it ready and enabled?");
