@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 
 namespace fvd::sim {
@@ -32,12 +33,11 @@ DefocusRenderer::DefocusRenderer(const Plane<float>& texture, const Plane<float>
       pool_(options.threads) {
   const TransferNodes nodes(options.sigma_max_px);
   const FrequencyBlur blur(texture);
+  levels_.reserve(nodes.t().size() * texture.pixels().size());
   for (const double t : nodes.t()) {
     const Plane<float> blurred = blur.blurred(t);
-    std::vector<std::int16_t> level(blurred.pixels().size());
-    std::transform(blurred.pixels().begin(), blurred.pixels().end(), level.begin(),
+    std::transform(blurred.pixels().begin(), blurred.pixels().end(), std::back_inserter(levels_),
                    [](float value) { return static_cast<std::int16_t>(std::lround(value * kUnitsPerLevel)); });
-    levels_.push_back(std::move(level));
   }
   weights_.resize(kWeightSteps + 1);
   for (int i = 0; i <= kWeightSteps; ++i) {
@@ -50,7 +50,7 @@ DefocusRenderer::DefocusRenderer(const Plane<float>& texture, const Plane<float>
 }
 
 std::size_t DefocusRenderer::memory_bytes() const {
-  return levels_.size() * height_um_.size() * sizeof(std::int16_t) + height_um_.size() * sizeof(float) +
+  return levels_.size() * sizeof(std::int16_t) + height_um_.size() * sizeof(float) +
          weights_.size() * sizeof(TransferWeights) + noise_.size() * sizeof(float);
 }
 
@@ -67,14 +67,18 @@ void DefocusRenderer::render_row(int row, double z_um, const ExposureRequest& re
       hashed(options_.seed ^ hashed(request.exposure_index * 65536U + static_cast<unsigned>(row)));
   const float* noise = noise_.data() + place % kNoiseSize;
   const auto z = static_cast<float>(z_um);
+  const std::int16_t* const levels = levels_.data();
+  const TransferWeights* const weights = weights_.data();
+  const float* const heights = height_um_.data();
+  const std::size_t plane = height_um_.size();
   for (int x = 0; x < request.width; ++x) {
     const std::size_t i = first + static_cast<std::size_t>(x);
-    const float step = std::min(std::abs(z - height_um_[i]) * steps_per_um, static_cast<float>(kWeightSteps));
-    const TransferWeights& w = weights_[static_cast<std::size_t>(step + 0.5F)];
-    const auto node = static_cast<std::size_t>(w.first);
+    const float step = std::min(std::abs(z - heights[i]) * steps_per_um, static_cast<float>(kWeightSteps));
+    const TransferWeights& w = weights[static_cast<int>(step + 0.5F)];
+    const std::int16_t* level_at = levels + static_cast<std::size_t>(w.first) * plane + i;
     const float level =
-        w.weight[0] * static_cast<float>(levels_[node][i]) + w.weight[1] * static_cast<float>(levels_[node + 1][i]) +
-        w.weight[2] * static_cast<float>(levels_[node + 2][i]) + w.weight[3] * static_cast<float>(levels_[node + 3][i]);
+        w.weight[0] * static_cast<float>(level_at[0]) + w.weight[1] * static_cast<float>(level_at[plane]) +
+        w.weight[2] * static_cast<float>(level_at[2 * plane]) + w.weight[3] * static_cast<float>(level_at[3 * plane]);
     const float value = level * gain + noise[x] * noise_scale + 0.5F;
     out[x] = static_cast<Pixel>(std::clamp(value, 0.0F, largest));
   }

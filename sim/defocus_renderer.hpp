@@ -48,7 +48,7 @@ class DefocusRenderer {
   int width_;
   int height_;
   RendererOptions options_;
-  std::vector<std::vector<std::int16_t>> levels_;  // a node each: the blurred texture
+  std::vector<std::int16_t> levels_;  // [node][height][width], the blurred texture
   std::vector<float> height_um_;
   std::vector<TransferWeights> weights_;  // over sigma, finely
   std::vector<float> noise_;              // standard normal
