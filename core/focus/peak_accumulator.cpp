@@ -8,40 +8,44 @@ namespace fvd {
 
 namespace {
 
+/// `one` where the mask is all ones, `other` where it is 0. With masks no path forks: from ?: on several planes g++ 12
+/// makes branches, and a loop with branches stays scalar.
+template <typename T>
+inline T select(T mask, T one, T other) {
+  return static_cast<T>(other ^ ((one ^ other) & mask));
+}
+
 template <typename Texture>
-inline __attribute__((always_inline)) void update(
-    std::uint32_t* __restrict previous, std::uint32_t* __restrict peak, std::uint32_t* __restrict left,
-    std::uint32_t* __restrict right, std::uint32_t* __restrict minimum, std::uint16_t* __restrict peak_index,
-    Texture* __restrict texture, std::uint8_t* __restrict saturated_at_peak, const std::uint32_t* __restrict sharpness,
-    const std::uint8_t* __restrict saturated, const Texture* __restrict pixels, int width, std::uint16_t index) {
+inline __attribute__((always_inline)) void update(const PeakRow<Texture> row, const std::uint32_t* sharpness,
+                                                  const std::uint8_t* saturated, const Texture* pixels, int width,
+                                                  std::uint16_t index) {
   const auto before = static_cast<std::uint16_t>(index - 1);
+  FVD_NO_ALIASING
   for (int x = 0; x < width; ++x) {
     const std::uint32_t value = sharpness[x];
-    const bool higher = value > peak[x];
-    const bool follows_peak = peak_index[x] == before;
-    left[x] = higher ? previous[x] : left[x];
-    const std::uint32_t kept = follows_peak ? value : right[x];
-    right[x] = higher ? 0U : kept;
-    peak[x] = higher ? value : peak[x];
-    minimum[x] = value < minimum[x] ? value : minimum[x];
-    peak_index[x] = higher ? index : peak_index[x];
-    texture[x] = higher ? pixels[x] : texture[x];
-    saturated_at_peak[x] = higher ? saturated[x] : saturated_at_peak[x];
-    previous[x] = value;
+    const std::uint32_t higher = 0U - static_cast<std::uint32_t>(value > row.peak[x]);
+    const std::uint32_t follows_peak = 0U - static_cast<std::uint32_t>(row.peak_index[x] == before);
+    row.left[x] = select(higher, row.previous[x], row.left[x]);
+    row.right[x] = ~higher & select(follows_peak, value, row.right[x]);
+    row.peak[x] = value > row.peak[x] ? value : row.peak[x];
+    row.minimum[x] = value < row.minimum[x] ? value : row.minimum[x];
+    row.peak_index[x] = select(static_cast<std::uint16_t>(higher), index, row.peak_index[x]);
+    row.texture[x] = select(static_cast<Texture>(higher), pixels[x], row.texture[x]);
+    row.saturated[x] = select(static_cast<std::uint8_t>(higher), saturated[x], row.saturated[x]);
+    row.previous[x] = value;
   }
 }
 
+// Clones need a plain function each.
 FVD_VECTOR_CLONES void update_row(const PeakRow<std::uint8_t>& row, const std::uint32_t* sharpness,
                                   const std::uint8_t* saturated, const std::uint8_t* pixels, int width,
                                   std::uint16_t index) {
-  update(row.previous, row.peak, row.left, row.right, row.minimum, row.peak_index, row.texture, row.saturated,
-         sharpness, saturated, pixels, width, index);
+  update(row, sharpness, saturated, pixels, width, index);
 }
 FVD_VECTOR_CLONES void update_row(const PeakRow<std::uint16_t>& row, const std::uint32_t* sharpness,
                                   const std::uint8_t* saturated, const std::uint16_t* pixels, int width,
                                   std::uint16_t index) {
-  update(row.previous, row.peak, row.left, row.right, row.minimum, row.peak_index, row.texture, row.saturated,
-         sharpness, saturated, pixels, width, index);
+  update(row, sharpness, saturated, pixels, width, index);
 }
 
 }  // namespace

@@ -26,9 +26,10 @@ std::optional<double> fit_peak_um(PeakMethod method, const PeakTriple& triple) n
   const double a = transformed(method, triple.left) - top;
   const double b = transformed(method, triple.right) - top;
   // a, b <= 0 and not both 0 in exact arithmetic; a logarithm may round a difference of one count away.
-  const double curvature = a * d3 - b * d1;
-  if (curvature == 0.0) return triple.z_peak_um;
-  return triple.z_peak_um + (a * d3 * d3 - b * d1 * d1) / (2.0 * curvature);
+  const double total = a * d3 - b * d1;
+  if (total == 0.0) return triple.z_peak_um;
+  const double weight = a * d3 / total;
+  return triple.z_peak_um + 0.5 * (weight * d3 + (1.0 - weight) * d1);
 }
 
 }  // namespace fvd

@@ -24,8 +24,9 @@ struct PeakTriple {
 ///
 /// With d1 = z_left - z_peak, d3 = z_right - z_peak, a = g(left) - g(peak), b = g(right) - g(peak):
 ///   z = z_peak + (a d3^2 - b d1^2) / (2 (a d3 - b d1)),
-/// the vertex of the parabola through the points; g is the identity (kParabola) or the logarithm (kLogParabola, exact
-/// for a Gaussian curve). A sample of 0 counts as half a count under the logarithm.
+/// the vertex of the parabola through the points. It is the mean of d3 / 2 and d1 / 2 with the weights a d3 and -b d1,
+/// which have one sign: so it lies no further than half way to either neighbour. g is the identity (kParabola) or the
+/// logarithm (kLogParabola, exact for a Gaussian curve). A sample of 0 counts as half a count under the logarithm.
 [[nodiscard]] std::optional<double> fit_peak_um(PeakMethod method, const PeakTriple& triple) noexcept;
 
 }  // namespace fvd

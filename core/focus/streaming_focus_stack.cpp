@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <functional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -27,7 +28,7 @@ class TypedStack {
 
   void push(PlaneView<const Pixel> slice, int saturation, int index, WorkerPool& pool) {
     const int bands = static_cast<int>(scanners_.size());
-    pool.run(bands, [&](int band) {
+    const auto scan_band = [&](int band) {
       const int first = height_ * band / bands;
       const int end = height_ * (band + 1) / bands;
       if (first == end) return;
@@ -41,7 +42,8 @@ class TypedStack {
           update_peaks(peaks_.row(y), scanner.sharpness(), scanner.saturated(), slice.row(y), slice.width, index);
         }
       }
-    });
+    };
+    pool.run(bands, std::ref(scan_band));  // by reference: a copy of the captures would be allocated
   }
 
   void resolve_row(int y, const std::vector<double>& z_um, PeakMethod method, double min_prominence, HeightMap& map) {
@@ -70,6 +72,11 @@ class TypedStack {
   std::vector<SharpnessRows<Pixel>> scanners_;  // one a band
 };
 
+std::string shape(int width, int height, PixelFormat format) {
+  return std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
+         std::to_string(significant_bits(format)) + " bit";
+}
+
 constexpr std::size_t kMapBytesPerPixel =
     sizeof(float) + sizeof(std::uint8_t) + sizeof(float) + sizeof(std::uint16_t);  // HeightMap's planes
 
@@ -88,6 +95,23 @@ struct StreamingFocusStack::Impl {
     z_um.reserve(kMaxSlices);
   }
 
+  /// Throws Error kBadSlice for a slice that cannot be the next one.
+  void check(const ImageView& slice, double z) const {
+    if (slice.width != width || slice.height != height || slice.format != format) {
+      throw Error(ErrorCode::kBadSlice, "slice " + std::to_string(z_um.size()) + " has " +
+                                            shape(slice.width, slice.height, slice.format) + ", the stack " +
+                                            shape(width, height, format));
+    }
+    if (!(std::abs(z) <= kMaxHeight_um)) {
+      throw Error(ErrorCode::kBadSlice, "slice " + std::to_string(z_um.size()) + " has a z of " + std::to_string(z) +
+                                            " um: must be a number within +-1e9 um");
+    }
+    if (z_um.size() == kMaxSlices) {
+      throw Error(ErrorCode::kBadSlice,
+                  "the stack holds its " + std::to_string(kMaxSlices) + " slices; scan in larger steps");
+    }
+  }
+
   int width;
   int height;
   PixelFormat format;
@@ -101,8 +125,8 @@ StreamingFocusStack::StreamingFocusStack(int width, int height, PixelFormat form
                                          WorkerPool& pool) {
   check_focus_settings(settings);
   if (width < 1 || height < 1) {
-    throw Error(ErrorCode::kBadInput, "a slice of " + std::to_string(width) + " x " + std::to_string(height) +
-                                          " pixels: both must be at least 1");
+    throw Error(ErrorCode::kBadInput,
+                "slices of " + shape(width, height, format) + ": width and height must be at least 1");
   }
   impl_ = std::make_unique<Impl>(width, height, format, settings, pool);
 }
@@ -112,17 +136,7 @@ StreamingFocusStack::StreamingFocusStack(StreamingFocusStack&&) noexcept = defau
 StreamingFocusStack& StreamingFocusStack::operator=(StreamingFocusStack&&) noexcept = default;
 
 void StreamingFocusStack::push(const ImageView& slice, double z_um) {
-  std::ostringstream problem;
-  if (slice.width != impl_->width || slice.height != impl_->height || slice.format != impl_->format) {
-    problem << "slice " << slices() << " has " << slice.width << " x " << slice.height << " pixels of "
-            << significant_bits(slice.format) << " bit, the stack " << impl_->width << " x " << impl_->height << " of "
-            << significant_bits(impl_->format) << " bit";
-  } else if (!std::isfinite(z_um)) {
-    problem << "slice " << slices() << " has no finite z";
-  } else if (slices() == kMaxSlices) {
-    problem << "the stack holds its " << kMaxSlices << " slices; scan in larger steps";
-  }
-  if (const auto text = problem.str(); !text.empty()) throw Error(ErrorCode::kBadSlice, text);
+  impl_->check(slice, z_um);
   const int index = slices();
   const int saturation = max_grey_level(slice.format);
   if (auto* narrow = std::get_if<TypedStack<std::uint8_t>>(&impl_->stack)) {

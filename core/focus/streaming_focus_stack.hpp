@@ -19,6 +19,7 @@ class WorkerPool;
 class StreamingFocusStack {
  public:
   static constexpr int kMaxSlices = 65535;
+  static constexpr double kMaxHeight_um = 1e9;  ///< a kilometre: a z beyond it is no stage position
 
   /// Allocates everything it will ever need. width, height >= 1. pool outlives the stack.
   /// Throws Error kBadInput for a window outside 3..63 or even.
@@ -27,8 +28,8 @@ class StreamingFocusStack {
   StreamingFocusStack(StreamingFocusStack&&) noexcept;
   StreamingFocusStack& operator=(StreamingFocusStack&&) noexcept;
 
-  /// Adds one slice at its measured z. Throws Error kBadSlice if size or format differ, z is not finite, or the stack
-  /// is full; the stack is unchanged then. Allocates nothing but the z list's reserved entry.
+  /// Adds one slice at its measured z. Throws Error kBadSlice if size or format differ, z is not a number within
+  /// +-kMaxHeight_um, or the stack is full; the stack is unchanged then. Allocates nothing.
   void push(const ImageView& slice, double z_um);
 
   [[nodiscard]] int slices() const noexcept;

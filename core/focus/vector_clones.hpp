@@ -7,3 +7,11 @@
 #else
 #define FVD_VECTOR_CLONES
 #endif
+
+/// Before a loop: no iteration reads what another writes. g++ 12 forgets `restrict` when it inlines, and then checks so
+/// many pointers against each other that it gives the vector code up.
+#if defined(__GNUC__) && !defined(__clang__)
+#define FVD_NO_ALIASING _Pragma("GCC ivdep")
+#else
+#define FVD_NO_ALIASING
+#endif

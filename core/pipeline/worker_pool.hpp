@@ -19,7 +19,8 @@ class WorkerPool {
   [[nodiscard]] int threads() const noexcept;
 
   /// Calls body(index) once for every index in [0, count), in any order, on any thread; returns when all are done.
-  /// The first exception a body throws is rethrown here, after all running bodies ended.
+  /// The first exception a body throws is rethrown here, after all running bodies ended; indices not begun by then are
+  /// left out. Allocates nothing; a lambda with many captures is passed as std::ref(lambda), or its copy is allocated.
   void run(int count, const std::function<void(int)>& body);
 
  private:
