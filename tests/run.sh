@@ -5,4 +5,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/support/setup.sh"
 
 fvd_install_packages
 fvd_build
+# Only the thread sanitizer reads this; it says which libraries' locks it cannot see.
+export TSAN_OPTIONS="suppressions=$FVD_ROOT/tests/tsan.supp ${TSAN_OPTIONS:-}"
 ctest --test-dir "$FVD_BUILD" --output-on-failure --no-tests=error -j2 "$@"
