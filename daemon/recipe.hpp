@@ -25,7 +25,7 @@ struct Recipe {
 
   CameraSettings camera;
   FocusSettings focus;
-  PeakMethod peak = PeakMethod::kLogParabola;
+  PeakMethod peak = PeakMethod::kInverseRoot;
   std::vector<PeakMethod> extra_peaks;  ///< further height maps from the same scan, height_<method>.tiff
 
   double pixel_pitch_x_um = 1.0;  ///< > 0, on the object

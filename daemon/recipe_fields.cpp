@@ -70,6 +70,8 @@ void describe_camera(CameraSettings& camera, Fields& fields) {
 
 void describe_focus(Recipe& recipe, Fields& fields) {
   fields.integer("window_px", recipe.focus.window_px, {kMinWindowPx, kMaxWindowPx}, "side of the square window, odd");
+  fields.integer("distance_px", recipe.focus.distance_px, {1, kMaxDistancePx},
+                 "from a pixel to the neighbours of its Laplacian");
   std::string peak(peak_method_name(recipe.peak));
   fields.choice("peak", peak, peak_names(), "how a height is taken from the three slices around the sharpest");
   recipe.peak = peak_method_from_name(peak).value_or(recipe.peak);

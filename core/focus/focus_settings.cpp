@@ -14,6 +14,8 @@ std::string_view peak_method_name(PeakMethod method) noexcept {
       return "parabola";
     case PeakMethod::kLogParabola:
       return "log_parabola";
+    case PeakMethod::kInverseRoot:
+      return "inverse_root";
   }
   return "nearest";
 }
@@ -29,6 +31,10 @@ void check_focus_settings(const FocusSettings& settings) {
   if (settings.window_px < kMinWindowPx || settings.window_px > kMaxWindowPx || settings.window_px % 2 == 0) {
     throw Error(ErrorCode::kBadInput,
                 "window of " + std::to_string(settings.window_px) + " px: must be odd and within 3..63 px");
+  }
+  if (settings.distance_px < 1 || settings.distance_px > kMaxDistancePx) {
+    throw Error(ErrorCode::kBadInput,
+                "neighbour distance of " + std::to_string(settings.distance_px) + " px: must be within 1..7 px");
   }
   if (!(settings.min_prominence >= 0.0 && settings.min_prominence <= 1.0)) {
     throw Error(ErrorCode::kBadInput,

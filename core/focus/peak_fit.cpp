@@ -9,7 +9,9 @@ namespace {
 
 double transformed(PeakMethod method, std::uint32_t value) {
   const auto sharpness = static_cast<double>(value);
-  return method == PeakMethod::kLogParabola ? std::log(std::max(sharpness, 0.5)) : sharpness;
+  if (method == PeakMethod::kLogParabola) return std::log(std::max(sharpness, 0.5));
+  if (method == PeakMethod::kInverseRoot) return -1.0 / std::sqrt(std::max(sharpness, 0.5));  // rising, as the others
+  return sharpness;
 }
 
 }  // namespace
@@ -25,7 +27,7 @@ std::optional<double> fit_peak_um(PeakMethod method, const PeakTriple& triple) n
   const double top = transformed(method, triple.peak);
   const double a = transformed(method, triple.left) - top;
   const double b = transformed(method, triple.right) - top;
-  // a, b <= 0 and not both 0 in exact arithmetic; a logarithm may round a difference of one count away.
+  // a, b <= 0 and not both 0 in exact arithmetic; a logarithm or root may round a difference of one count away.
   const double total = a * d3 - b * d1;
   if (total == 0.0) return triple.z_peak_um;
   const double weight = a * d3 / total;

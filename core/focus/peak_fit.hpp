@@ -26,7 +26,8 @@ struct PeakTriple {
 ///   z = z_peak + (a d3^2 - b d1^2) / (2 (a d3 - b d1)),
 /// the vertex of the parabola through the points. It is the mean of d3 / 2 and d1 / 2 with the weights a d3 and -b d1,
 /// which have one sign: so it lies no further than half way to either neighbour. g is the identity (kParabola) or the
-/// logarithm (kLogParabola, exact for a Gaussian curve). A sample of 0 counts as half a count under the logarithm.
+/// logarithm (kLogParabola, exact for a Gaussian curve) or -F^-1/2 (kInverseRoot, exact for F = 1 / (a + b u^2)^2). A
+/// sample of 0 counts as half a count under the last two.
 [[nodiscard]] std::optional<double> fit_peak_um(PeakMethod method, const PeakTriple& triple) noexcept;
 
 }  // namespace fvd

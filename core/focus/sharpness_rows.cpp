@@ -47,13 +47,13 @@ FVD_VECTOR_CLONES int row_maximum(const std::uint16_t* row, int width) {
 }
 
 template <typename Pixel>
-Plane<std::uint32_t> reference(PlaneView<const Pixel> image, int window) {
+Plane<std::uint32_t> reference(PlaneView<const Pixel> image, int window, int distance) {
   const int width = image.width;
   const int height = image.height;
   Plane<LaplacianOf<Pixel>> laplacian(width, height);
   for (int y = 0; y < height; ++y) {
-    modified_laplacian_row_scalar(image.row(std::max(y - 1, 0)), image.row(y), image.row(std::min(y + 1, height - 1)),
-                                  width, laplacian.row(y));
+    modified_laplacian_row_scalar(image.row(std::max(y - distance, 0)), image.row(y),
+                                  image.row(std::min(y + distance, height - 1)), width, distance, laplacian.row(y));
   }
   Plane<std::uint32_t> sums(width, height);
   const int radius = window / 2;
@@ -72,10 +72,11 @@ Plane<std::uint32_t> reference(PlaneView<const Pixel> image, int window) {
 }  // namespace
 
 template <typename Pixel>
-SharpnessRows<Pixel>::SharpnessRows(int width, int window)
+SharpnessRows<Pixel>::SharpnessRows(int width, int window, int distance)
     : width_(width),
       window_(window),
       radius_(window / 2),
+      distance_(distance),
       ring_(static_cast<std::size_t>(width) * static_cast<std::size_t>(window)),
       columns_(static_cast<std::size_t>(width)),
       sums_(static_cast<std::size_t>(width)),
@@ -113,8 +114,8 @@ void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first, int sa
 template <typename Pixel>
 void SharpnessRows<Pixel>::enter(int y) noexcept {
   Laplacian* row = ring_row(y);
-  modified_laplacian_row(image_.row(std::max(y - 1, 0)), image_.row(y), image_.row(std::min(y + 1, image_.height - 1)),
-                         width_, row);
+  modified_laplacian_row(image_.row(std::max(y - distance_, 0)), image_.row(y),
+                         image_.row(std::min(y + distance_, image_.height - 1)), width_, distance_, row);
   add_row(columns_.data(), row, width_);
   if (!row_saturated(y)) return;
   ++saturated_rows_;
@@ -164,9 +165,9 @@ void SharpnessRows<Pixel>::find_saturated() noexcept {
         [this](int x, std::uint32_t count) { saturated_[static_cast<std::size_t>(x)] = count > 0 ? 1 : 0; });
 }
 
-Plane<std::uint32_t> sharpness_reference(const ImageView& image, int window) {
-  return image.format == PixelFormat::kMono8 ? reference(image.as<std::uint8_t>(), window)
-                                             : reference(image.as<std::uint16_t>(), window);
+Plane<std::uint32_t> sharpness_reference(const ImageView& image, int window, int distance) {
+  return image.format == PixelFormat::kMono8 ? reference(image.as<std::uint8_t>(), window, distance)
+                                             : reference(image.as<std::uint16_t>(), window, distance);
 }
 
 template class SharpnessRows<std::uint8_t>;

@@ -19,8 +19,8 @@ namespace fvd {
 template <typename Pixel>
 class SharpnessRows {
  public:
-  /// width >= 1; window odd, 3..63.
-  SharpnessRows(int width, int window);
+  /// width >= 1; window odd, 3..63; distance of the Laplacian's neighbours >= 1.
+  SharpnessRows(int width, int window, int distance);
 
   /// Starts at row `first` of an image of the constructor's width. A pixel >= saturation counts as saturated.
   void begin(PlaneView<const Pixel> image, int first, int saturation) noexcept;
@@ -48,6 +48,7 @@ class SharpnessRows {
   int width_;
   int window_;
   int radius_;
+  int distance_;
   PlaneView<const Pixel> image_;
   int saturation_ = 0;
   int y_ = 0;
@@ -60,7 +61,7 @@ class SharpnessRows {
 };
 
 /// The same for a whole image, obviously correct: every window summed anew. Shape of the image.
-[[nodiscard]] Plane<std::uint32_t> sharpness_reference(const ImageView& image, int window);
+[[nodiscard]] Plane<std::uint32_t> sharpness_reference(const ImageView& image, int window, int distance);
 
 extern template class SharpnessRows<std::uint8_t>;
 extern template class SharpnessRows<std::uint16_t>;

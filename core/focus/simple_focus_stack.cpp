@@ -41,7 +41,7 @@ SimpleFocusStack::SimpleFocusStack(const FocusSettings& settings) : settings_(se
 void SimpleFocusStack::push(const ImageView& slice, double z_um) {
   assert(pixels_.empty() || (pixels_[0].width() == slice.width && pixels_[0].height() == slice.height));
   format_ = slice.format;
-  sharpness_.push_back(sharpness_reference(slice, settings_.window_px));
+  sharpness_.push_back(sharpness_reference(slice, settings_.window_px, settings_.distance_px));
   pixels_.push_back(widened(slice));
   z_um_.push_back(z_um);
 }

@@ -22,8 +22,8 @@ namespace {
 template <typename Pixel>
 class TypedStack {
  public:
-  TypedStack(int width, int height, int window, int bands) : height_(height), peaks_(width, height) {
-    for (int band = 0; band < bands; ++band) scanners_.emplace_back(width, window);
+  TypedStack(int width, int height, const FocusSettings& settings, int bands) : height_(height), peaks_(width, height) {
+    for (int band = 0; band < bands; ++band) scanners_.emplace_back(width, settings.window_px, settings.distance_px);
   }
 
   void push(PlaneView<const Pixel> slice, int saturation, int index, WorkerPool& pool) {
@@ -85,13 +85,13 @@ constexpr std::size_t kMapBytesPerPixel =
 struct StreamingFocusStack::Impl {
   using Typed = std::variant<TypedStack<std::uint8_t>, TypedStack<std::uint16_t>>;
 
-  static Typed make(int width, int height, PixelFormat format, int window, int bands) {
-    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, window, bands);
-    return TypedStack<std::uint16_t>(width, height, window, bands);
+  static Typed make(int width, int height, PixelFormat format, const FocusSettings& settings, int bands) {
+    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, settings, bands);
+    return TypedStack<std::uint16_t>(width, height, settings, bands);
   }
 
   Impl(int w, int h, PixelFormat f, const FocusSettings& s, WorkerPool& p)
-      : width(w), height(h), format(f), settings(s), pool(&p), stack(make(w, h, f, s.window_px, p.threads())) {
+      : width(w), height(h), format(f), settings(s), pool(&p), stack(make(w, h, f, s, p.threads())) {
     z_um.reserve(kMaxSlices);
   }
 

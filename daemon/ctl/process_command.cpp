@@ -34,7 +34,7 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   options.out = arguments.out;
   options.part_id = arguments.part_id;
   options.z = z_source(arguments);
-  options.focus = {arguments.window_px, arguments.min_prominence};
+  options.focus = {arguments.window_px, arguments.distance_px, arguments.min_prominence};
   options.peak = *peak_method_from_name(arguments.peak);  // the parser lets only known names through
   for (const auto& name : arguments.extra_peaks) options.extra_peaks.push_back(*peak_method_from_name(name));
   if (arguments.pixel_pitch_um != 0.0) options.pixel_pitch_um = arguments.pixel_pitch_um;
@@ -82,6 +82,8 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
       ->check(CLI::IsMember({"um", "mm", "m"}))
       ->capture_default_str();
   command.add_option("--window", a.window_px, "side of the focus window in pixels, odd, 3..63")->capture_default_str();
+  command.add_option("--distance", a.distance_px, "from a pixel to the neighbours of its Laplacian in pixels, 1..7")
+      ->capture_default_str();
   command.add_option("--peak", a.peak, "how heights are taken from the focus curve")
       ->check(CLI::IsMember(peak_names()))
       ->capture_default_str();

@@ -30,8 +30,9 @@ struct ProcessArguments {
   double z_step_um = 0.0;
   double z_start_um = 0.0;
   int window_px = 9;
+  int distance_px = 1;
   double min_prominence = 0.5;
-  std::string peak = "parabola";
+  std::string peak = "inverse_root";
   std::vector<std::string> extra_peaks;
   double pixel_pitch_um = 0.0;  ///< 0 = unknown
   int threads = 0;

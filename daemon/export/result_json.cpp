@@ -73,6 +73,7 @@ Json focus(const ResultData& data) {
   json["pixel_pitch_x_um"] = data.pixel_pitch_x_um ? Json(*data.pixel_pitch_x_um) : Json(nullptr);
   json["pixel_pitch_y_um"] = data.pixel_pitch_y_um ? Json(*data.pixel_pitch_y_um) : Json(nullptr);
   json["window_px"] = data.focus.window_px;
+  json["distance_px"] = data.focus.distance_px;
   json["min_prominence"] = data.focus.min_prominence;
   json["peak"] = peak_method_name(data.peak);
   Json extra = Json::array();

@@ -159,7 +159,7 @@ TEST_F(ASimWorld, IsSharpestWhereItsSurfaceIs) {
   for (double z_um = -10.0; z_um <= 70.0; z_um += 2.0) {
     const auto pixels = slice(world, z_um);
     const auto sharpness =
-        sharpness_reference({PixelFormat::kMono8, 96, 64, 96, reinterpret_cast<const std::byte*>(pixels.data())}, 9);
+        sharpness_reference({PixelFormat::kMono8, 96, 64, 96, reinterpret_cast<const std::byte*>(pixels.data())}, 9, 1);
     for (std::size_t i = 0; i < best.pixels().size(); ++i) {
       if (sharpness.pixels()[i] <= best.pixels()[i]) continue;
       best.pixels()[i] = sharpness.pixels()[i];

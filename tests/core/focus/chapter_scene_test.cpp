@@ -184,6 +184,14 @@ TEST_F(TheChapterScene, IsMeasuredBetterByTheLogParabola) {
   EXPECT_NEAR(log_parabola.mean_um[2] - log_parabola.mean_um[1], 50.0, 0.1);
 }
 
+TEST_F(TheChapterScene, IsMeasuredBestByTheInverseRoot) {
+  const Figures inverse_root = figures(PeakMethod::kInverseRoot);
+  EXPECT_LE(inverse_root.rms_um, 0.25);
+  EXPECT_GE(inverse_root.rms_um, 0.09) << "below the bound of any unbiased method";
+  EXPECT_NEAR(inverse_root.mean_um[1] - inverse_root.mean_um[0], 50.0, 0.1);
+  EXPECT_NEAR(inverse_root.mean_um[2] - inverse_root.mean_um[1], 50.0, 0.1);
+}
+
 TEST_F(TheChapterScene, IsValidEverywhere) { EXPECT_GE(figures(PeakMethod::kParabola).valid, 0.999); }
 
 }  // namespace

@@ -97,6 +97,7 @@ struct Case {
   int height;
   int slices;
   int window;
+  int distance = 1;
 };
 
 class AStreamingStack : public testing::TestWithParam<Case> {};
@@ -104,7 +105,7 @@ class AStreamingStack : public testing::TestWithParam<Case> {};
 TEST_P(AStreamingStack, EqualsTheOneThatKeepsEverything) {
   const Case c = GetParam();
   const Scan scan = make_scan(c.format, c.surface, c.width, c.height, c.slices, 7);
-  const FocusSettings settings{.window_px = c.window, .min_prominence = 0.3};
+  const FocusSettings settings{.window_px = c.window, .distance_px = c.distance, .min_prominence = 0.3};
   SimpleFocusStack simple(settings);
   for (std::size_t k = 0; k < scan.slices.size(); ++k) simple.push(scan.slice(k), scan.z_um[k]);
   for (const PeakMethod method : kAllPeakMethods) {
@@ -118,13 +119,13 @@ TEST_P(AStreamingStack, EqualsTheOneThatKeepsEverything) {
 
 INSTANTIATE_TEST_SUITE_P(OnEverySurface, AStreamingStack,
                          testing::Values(Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 15, 9},
-                                         Case{PixelFormat::kMono8, Surface::kStepped, 64, 17, 12, 5},
+                                         Case{PixelFormat::kMono8, Surface::kStepped, 64, 17, 12, 5, 3},
                                          Case{PixelFormat::kMono8, Surface::kRandom, 40, 23, 9, 3},
-                                         Case{PixelFormat::kMono16, Surface::kTilted, 37, 29, 15, 7},
+                                         Case{PixelFormat::kMono16, Surface::kTilted, 37, 29, 15, 7, 2},
                                          Case{PixelFormat::kMono16, Surface::kRandom, 33, 11, 21, 31},
                                          Case{PixelFormat::kMono12, Surface::kStepped, 20, 20, 8, 9},
                                          Case{PixelFormat::kMono8, Surface::kTilted, 1, 1, 5, 9},
-                                         Case{PixelFormat::kMono8, Surface::kTilted, 3, 2, 5, 63},
+                                         Case{PixelFormat::kMono8, Surface::kTilted, 3, 2, 5, 63, 7},
                                          Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 1, 3},
                                          Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 2, 3}));
 
@@ -244,6 +245,9 @@ TEST(StreamingFocusStack, RefusesBadSettings) {
     EXPECT_THROW(StreamingFocusStack(4, 4, PixelFormat::kMono8, {.window_px = window, .min_prominence = 0.5}, pool),
                  Error)
         << window;
+  }
+  for (const int distance : {-1, 0, 8}) {
+    EXPECT_THROW(StreamingFocusStack(4, 4, PixelFormat::kMono8, {.distance_px = distance}, pool), Error) << distance;
   }
   EXPECT_THROW(StreamingFocusStack(4, 4, PixelFormat::kMono8, {.window_px = 9, .min_prominence = 1.5}, pool), Error);
   EXPECT_THROW(StreamingFocusStack(0, 4, PixelFormat::kMono8, {}, pool), Error);

@@ -14,6 +14,7 @@ PeakTriple sample(const std::function<double(double)>& curve, double z1, double 
 }
 
 double parabola(double z) { return 1e9 - 1e6 * (z - 2.3) * (z - 2.3); }
+double heavy_tailed(double z) { return 4e9 / std::pow(1.0 + (z - 2.3) * (z - 2.3) / 400.0, 2); }
 double gaussian(double z) { return 4e9 * std::exp(-0.5 * (z - 2.3) * (z - 2.3) / (12.0 * 12.0)); }
 
 TEST(PeakFit, ParabolaIsExactOnAParabolaAtUnevenHeights) {
@@ -24,6 +25,12 @@ TEST(PeakFit, ParabolaIsExactOnAParabolaAtUnevenHeights) {
 
 TEST(PeakFit, LogParabolaIsExactOnAGaussianAtUnevenHeights) {
   const auto z = fit_peak_um(PeakMethod::kLogParabola, sample(gaussian, -9.0, 1.0, 14.0));
+  ASSERT_TRUE(z);
+  EXPECT_NEAR(*z, 2.3, 1e-6);
+}
+
+TEST(PeakFit, InverseRootIsExactOnAHeavyTailedPeakAtUnevenHeights) {
+  const auto z = fit_peak_um(PeakMethod::kInverseRoot, sample(heavy_tailed, -9.0, 1.0, 14.0));
   ASSERT_TRUE(z);
   EXPECT_NEAR(*z, 2.3, 1e-6);
 }
