@@ -145,7 +145,7 @@ PositionMean FakeZStage::mean_position(HostTime /*from*/, HostTime /*to*/) {
   return {Micrometers{position_um_}, Micrometers{0.0}, 3};
 }
 
-bool SpySink::try_push(Slice&& slice) {
+bool SpySink::push(Slice&& slice, HostTime /*deadline*/, std::stop_token /*stop*/) {
   if (static_cast<int>(z_um.size()) == refuse_at) return false;
   z_um.push_back(slice.z_um);
   contents.push_back(slice.frame.image.as<std::uint8_t>().at(0, 0));

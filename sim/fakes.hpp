@@ -120,7 +120,7 @@ class FakeZStage final : public ZStage {
 /// Keeps what a test wants to see of each slice; refuses when told to.
 class SpySink final : public SliceSink {
  public:
-  [[nodiscard]] bool try_push(Slice&& slice) override;
+  [[nodiscard]] bool push(Slice&& slice, HostTime deadline, std::stop_token stop) override;
 
   int refuse_at = -1;
   std::vector<double> z_um;

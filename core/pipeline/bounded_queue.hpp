@@ -3,6 +3,7 @@
 /// A queue between two threads with a fixed number of places.
 
 #include <cassert>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <mutex>
@@ -19,15 +20,16 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) : ring_(capacity) { assert(capacity > 0); }
 
-  /// Never blocks. False, and `item` untouched, when the queue is full or closed: the caller decides what a loss means.
-  [[nodiscard]] bool try_push(T&& item) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (closed_ || count_ == ring_.size()) return false;
-      ring_[(first_ + count_) % ring_.size()] = std::move(item);
-      ++count_;
-    }
-    changed_.notify_one();
+  /// Waits for room. False, and `item` untouched, when there is none by the deadline, the queue is closed or stop is
+  /// requested: the caller decides what a loss means.
+  template <typename Clock>
+  [[nodiscard]] bool push_until(T&& item, std::chrono::time_point<Clock> deadline, std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, stop, deadline, [this] { return count_ < ring_.size() || closed_; });
+    if (stop.stop_requested() || closed_ || count_ == ring_.size()) return false;
+    ring_[(first_ + count_) % ring_.size()] = std::move(item);
+    ++count_;
+    changed_.notify_all();
     return true;
   }
 
@@ -40,6 +42,7 @@ class BoundedQueue {
     ring_[first_].reset();
     first_ = (first_ + 1) % ring_.size();
     --count_;
+    changed_.notify_all();
     return item;
   }
 

@@ -11,7 +11,9 @@ FocusWorker::FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, T
   pthread_setname_np(thread_.native_handle(), "fvd-focus");
 }
 
-bool FocusWorker::try_push(Slice&& slice) { return queue_.try_push(std::move(slice)); }
+bool FocusWorker::push(Slice&& slice, HostTime deadline, std::stop_token stop) {
+  return queue_.push_until(std::move(slice), deadline, std::move(stop));
+}
 
 void FocusWorker::finish() {
   queue_.close();

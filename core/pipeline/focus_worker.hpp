@@ -13,7 +13,7 @@
 
 namespace fvd {
 
-/// context: try_push from the scan's thread; finish from the thread that made it.
+/// context: push from the scan's thread; finish from the thread that made it.
 class FocusWorker final : public SliceSink {
  public:
   /// Called with every slice on the worker's thread before it is computed, e.g. to record it.
@@ -24,7 +24,7 @@ class FocusWorker final : public SliceSink {
   /// Drops what is still queued.
   ~FocusWorker() override = default;
 
-  [[nodiscard]] bool try_push(Slice&& slice) override;
+  [[nodiscard]] bool push(Slice&& slice, HostTime deadline, std::stop_token stop) override;
 
   /// Waits until every slice pushed is computed. Rethrows the first error of the worker's thread.
   void finish();

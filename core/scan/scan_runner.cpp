@@ -11,6 +11,9 @@ namespace fvd {
 
 namespace {
 
+/// The stage stands still while the computation catches up: nothing is lost by waiting, only time.
+constexpr std::chrono::seconds kComputePatience{10};
+
 double milliseconds(HostClock::duration duration) {
   return std::chrono::duration<double, std::milli>(duration).count();
 }
@@ -56,6 +59,15 @@ void ScanRunner::take_up(const ScanPlan& plan, std::stop_token stop) {
   deps_.stage.move_to(plan.start - distance, wide, stop);
 }
 
+void ScanRunner::hand_over(Slice&& slice, int index, std::stop_token stop) {
+  if (deps_.sink.push(std::move(slice), deps_.clock.now() + kComputePatience, stop)) return;
+  if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
+  throw Error(ErrorCode::kSliceLost,
+              "slice " + std::to_string(index) + " found no room in the slice queue within " +
+                  std::to_string(kComputePatience / std::chrono::seconds(1)) +
+                  " s: the computation hangs or is far too slow; use more threads or a smaller window");
+}
+
 void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
                      std::stop_token stop) {
   check_plan(plan, deps_.stage.info());
@@ -85,11 +97,7 @@ void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::functi
         record_exposure(step, *captured,
                         deps_.stage.mean_position(captured->frame.exposure_start, captured->frame.exposure_end));
         const double z_um = measured_z ? step.measured_um : step.quantised_um;
-        if (!deps_.sink.try_push({std::move(captured->frame), z_um})) {
-          throw Error(ErrorCode::kSliceLost, "slice " + std::to_string(index) +
-                                                 " was refused by the full slice queue: the computation is slower than "
-                                                 "the scan; use more threads, a larger queue or a smaller window");
-        }
+        hand_over({std::move(captured->frame), z_um}, index, stop);
       }
       report.steps.push_back(step);
       if (on_slice) on_slice(report);

@@ -41,6 +41,7 @@ class ScanRunner {
            std::stop_token stop);
 
  private:
+  void hand_over(Slice&& slice, int index, std::stop_token stop);
   void take_up(const ScanPlan& plan, std::stop_token stop);
 
   ScanDependencies deps_;

@@ -2,6 +2,8 @@
 
 /// Where the scan hands its slices to.
 
+#include <stop_token>
+
 #include "core/frame.hpp"
 
 namespace fvd {
@@ -15,8 +17,9 @@ struct Slice {
 class SliceSink {
  public:
   virtual ~SliceSink() = default;
-  /// Never blocks. False = no room; the scan fails, because a silent gap would falsify heights.
-  [[nodiscard]] virtual bool try_push(Slice&& slice) = 0;
+  /// Waits for room until the deadline or until stop is requested. False = not taken; the scan fails then, because a
+  /// silent gap would falsify heights.
+  [[nodiscard]] virtual bool push(Slice&& slice, HostTime deadline, std::stop_token stop) = 0;
 };
 
 }  // namespace fvd

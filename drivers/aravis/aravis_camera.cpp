@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "drivers/aravis/camera_clock.hpp"
+#include "drivers/aravis/control_watch.hpp"
 #include "drivers/aravis/frame_buffers.hpp"
 #include "drivers/aravis/frame_counter.hpp"
 #include "drivers/aravis/gobject.hpp"
@@ -62,11 +63,8 @@ class AravisCamera final : public Camera {
       throw Error(ErrorCode::kCameraDisconnected, "no camera at " + config.address + ": " + error.message() +
                                                       "; is it powered, in this network, and its address right?");
     }
-    device_ = arv_camera_get_device(camera_.get());
+    control_.watch(arv_camera_get_device(camera_.get()));
     require_control();
-    // The handler owns a share of the flag: it may run in the heartbeat's thread while this object goes.
-    g_signal_connect_data(device_, "control-lost", G_CALLBACK(&AravisCamera::on_control_lost), new LostFlag(lost_),
-                          &AravisCamera::release_flag, GConnectFlags{});
     // Off by default: without it Aravis sends values the camera's own description forbids.
     arv_camera_set_range_check_policy(camera_.get(), ARV_RANGE_CHECK_POLICY_ENABLE);
     read_info();
@@ -90,7 +88,7 @@ class AravisCamera final : public Camera {
       start_acquisition();
       requested_ = settings;
     }
-    clock_.measure(device_);
+    clock_.measure(control_.device());
     if (!clock_.measured()) {
       throw Error(ErrorCode::kCameraSettings, "the camera at " + config_.address +
                                                   " has no usable timestamp latch: a late frame could not be told from "
@@ -103,7 +101,7 @@ class AravisCamera final : public Camera {
     require_connected();
     GErrorSlot error;
     arv_camera_software_trigger(camera_.get(), error.out());
-    if (error.is_connection_loss()) *lost_ = true;
+    if (error.is_connection_loss()) control_.set_lost();
     error.check("the camera at " + config_.address + " takes no trigger", ErrorCode::kCameraDisconnected);
   }
 
@@ -129,7 +127,7 @@ class AravisCamera final : public Camera {
 
   void interrupt() noexcept override { interrupted_ = true; }
 
-  [[nodiscard]] bool connected() const noexcept override { return !*lost_; }
+  [[nodiscard]] bool connected() const noexcept override { return !control_.lost(); }
 
   [[nodiscard]] CameraHealth health() const override {
     CameraHealth health;
@@ -152,20 +150,17 @@ class AravisCamera final : public Camera {
   }
 
  private:
-  using LostFlag = std::shared_ptr<std::atomic<bool>>;
-
-  static void on_control_lost(ArvDevice* /*device*/, gpointer flag) { **static_cast<LostFlag*>(flag) = true; }
-  static void release_flag(gpointer flag, GClosure* /*closure*/) { delete static_cast<LostFlag*>(flag); }
-
   void require_connected() const {
-    if (*lost_) {
+    if (control_.lost()) {
       throw Error(ErrorCode::kCameraDisconnected,
                   "the connection to the camera at " + config_.address + " is lost; it is being opened again");
     }
   }
 
   void require_control() const {
-    if (!arv_camera_is_gv_device(camera_.get()) || arv_gv_device_is_controller(ARV_GV_DEVICE(device_)) != FALSE) return;
+    if (!arv_camera_is_gv_device(camera_.get()) ||
+        arv_gv_device_is_controller(ARV_GV_DEVICE(control_.device())) != FALSE)
+      return;
     throw Error(ErrorCode::kCameraDisconnected,
                 "the camera at " + config_.address +
                     " is controlled by another program, or by one that died less than its heartbeat timeout ago");
@@ -313,7 +308,7 @@ class AravisCamera final : public Camera {
   }
 
   void stop_acquisition() noexcept {
-    if (!frames_ || *lost_) return;
+    if (!frames_ || control_.lost()) return;
     GErrorSlot error;
     arv_camera_stop_acquisition(camera_.get(), error.out());
     if (error.failed()) spdlog::warn("the camera at {} did not stop: {}", config_.address, error.message());
@@ -356,8 +351,8 @@ class AravisCamera final : public Camera {
   }
 
   const CameraConfig config_;
+  ControlWatch control_;  // before the camera: outlives it
   GObjectPtr<ArvCamera> camera_;
-  ArvDevice* device_ = nullptr;  // owned by camera_
   CameraInfo info_;
   std::optional<CameraSettings> requested_;
   CameraSettings effective_;
@@ -366,7 +361,6 @@ class AravisCamera final : public Camera {
   CameraClock clock_;
   std::uint64_t frames_complete_ = 0;
   std::uint64_t frames_failed_ = 0;
-  LostFlag lost_ = std::make_shared<std::atomic<bool>>(false);
   std::atomic<bool> interrupted_{false};
 };
 

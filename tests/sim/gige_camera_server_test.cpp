@@ -106,12 +106,15 @@ TEST_F(AGigeCameraServer, SurvivesNonsenseAndStillAnswers) {
     if (bytes.size() > 1) bytes[0] = 0x42;
     send(bytes);
   }
-  // What was answered to the nonsense is read away; then a good request gets its good answer.
-  send(command(0x0080, words({gvcp::reg::kVersion}), 0x7777));
+  // Datagrams beyond a full socket buffer are lost, so a client asks again, as every GVCP client does.
   bool answered = false;
-  while (auto reply = receive(2000)) {
-    if (reply->size() == 12 && gvcp::get16(*reply, 6) == 0x7777) {
-      answered = gvcp::get16(*reply, 0) == 0 && gvcp::get32(*reply, 8) == 0x00010002;
+  for (int attempt = 0; attempt < 40 && !answered; ++attempt) {
+    send(command(0x0080, words({gvcp::reg::kVersion}), 0x7777));
+    while (auto reply = receive(250)) {
+      if (reply->size() != 12 || gvcp::get16(*reply, 6) != 0x7777) continue;  // an answer to the nonsense
+      EXPECT_EQ(gvcp::get16(*reply, 0), 0);
+      EXPECT_EQ(gvcp::get32(*reply, 8), 0x00010002U);
+      answered = true;
       break;
     }
   }

@@ -58,7 +58,7 @@ TEST_F(AReplayedStack, ShowsTheSliceWhereTheStageStands) {
 
 class KeepSlices final : public SliceSink {
  public:
-  bool try_push(Slice&& slice) override {
+  bool push(Slice&& slice, HostTime /*deadline*/, std::stop_token /*stop*/) override {
     z_um.push_back(slice.z_um);
     levels.push_back(slice.frame.image.as<std::uint8_t>().at(3, 4));
     return true;
