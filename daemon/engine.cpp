@@ -127,7 +127,7 @@ void Engine::require_acceptable_locked(const Recipe& recipe) const {
   const std::size_t frames = pixels * static_cast<std::size_t>(bytes_per_pixel(recipe.camera.pixel_format)) *
                              static_cast<std::size_t>(recipe.camera.pool_frames);
   const std::size_t needed = maps * StreamingFocusStack::memory_bytes(width, height, recipe.camera.pixel_format,
-                                                                      recipe.focus, pool_.threads()) +
+                                                                      focus_settings(recipe), pool_.threads()) +
                              frames;
   const std::size_t budget = static_cast<std::size_t>(config_.compute.memory_budget_mib) << 20U;
   if (needed <= budget) return;
@@ -296,7 +296,7 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
   result.part_id = job.status.request.part_id;
   result.recipe_id = job.recipe.id;
   result.recipe_sha256 = job.recipe.sha256;
-  result.focus = job.recipe.focus;
+  result.focus = focus_settings(job.recipe);
   result.peak = job.recipe.peak;
   result.pixel_pitch_x_um = job.recipe.pixel_pitch_x_um;
   result.pixel_pitch_y_um = job.recipe.pixel_pitch_y_um;

@@ -25,7 +25,9 @@ struct Recipe {
 
   CameraSettings camera;
   FocusSettings focus;
-  PeakMethod peak = PeakMethod::kInverseRoot;
+  double curve_width_um = 0.0;  ///< full width at half maximum of the focus curve, 0 = unknown
+  int bin_slices = 0;           ///< slices summed to one sample of the curve; 0 = by the curve's width
+  PeakMethod peak = PeakMethod::kFiveSample;
   std::vector<PeakMethod> extra_peaks;  ///< further height maps from the same scan, height_<method>.tiff
 
   double pixel_pitch_x_um = 1.0;  ///< > 0, on the object
@@ -33,5 +35,14 @@ struct Recipe {
   double min_valid_fraction = 0.0;  ///< 0..1; fewer valid points fail the job
   bool record_slices = false;       ///< also keep the slices (PGM) and their z in the result's folder slices/
 };
+
+/// The focus settings of a scan: recipe.focus with its bins chosen, and no window for the intensity.
+[[nodiscard]] inline FocusSettings focus_settings(const Recipe& recipe) {
+  FocusSettings settings = recipe.focus;
+  settings.bin_slices =
+      recipe.bin_slices > 0 ? recipe.bin_slices : choose_bin_slices(recipe.step_um, recipe.curve_width_um);
+  if (settings.focus_operator == FocusOperator::kIntensity) settings.window_px = 1;
+  return settings;
+}
 
 }  // namespace fvd

@@ -69,11 +69,21 @@ void describe_camera(CameraSettings& camera, Fields& fields) {
 }
 
 void describe_focus(Recipe& recipe, Fields& fields) {
-  fields.integer("window_px", recipe.focus.window_px, {kMinWindowPx, kMaxWindowPx}, "side of the square window, odd");
+  std::vector<std::string> operators;
+  for (const FocusOperator op : kAllFocusOperators) operators.emplace_back(focus_operator_name(op));
+  std::string op(focus_operator_name(recipe.focus.focus_operator));
+  fields.choice("operator", op, operators, "what is summed over the window as the measure of sharpness");
+  recipe.focus.focus_operator = focus_operator_from_name(op).value_or(recipe.focus.focus_operator);
+  fields.integer("window_px", recipe.focus.window_px, {kMinWindowPx, kMaxWindowPx},
+                 "side of the square window, odd; the intensity has none");
   fields.integer("distance_px", recipe.focus.distance_px, {1, kMaxDistancePx},
-                 "from a pixel to the neighbours of its Laplacian");
+                 "from a pixel to the neighbours that its operator looks at");
+  fields.number("curve_width_um", recipe.curve_width_um, {0.0, 1e5},
+                "full width at half maximum of the focus curve, as a result tells it; 0 = unknown");
+  fields.integer("bin_slices", recipe.bin_slices, {0, kMaxBinSlices},
+                 "slices summed to one sample of the curve; 0 = by curve_width_um, 1 where that is unknown");
   std::string peak(peak_method_name(recipe.peak));
-  fields.choice("peak", peak, peak_names(), "how a height is taken from the three slices around the sharpest");
+  fields.choice("peak", peak, peak_names(), "how a height is taken from the samples around the sharpest");
   recipe.peak = peak_method_from_name(peak).value_or(recipe.peak);
   std::vector<std::string> extra;
   for (const PeakMethod method : recipe.extra_peaks) extra.emplace_back(peak_method_name(method));
@@ -82,6 +92,8 @@ void describe_focus(Recipe& recipe, Fields& fields) {
   for (const std::string& name : extra) recipe.extra_peaks.push_back(peak_method_from_name(name).value());
   fields.number("min_prominence", recipe.focus.min_prominence, {0.0, 1.0},
                 "(peak - minimum) / peak of the focus curve; below it a point is a hole");
+  fields.number("min_significance", recipe.focus.min_significance, {0.0, 1e6},
+                "(peak - minimum) / noise of a sample; below it a point is a hole");
 }
 
 }  // namespace

@@ -1,173 +1,316 @@
 #include "core/focus/sharpness_rows.hpp"
 
 #include <algorithm>
-
-#include "core/focus/vector_clones.hpp"
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <type_traits>
 
 namespace fvd {
 
 namespace {
 
-FVD_VECTOR_CLONES void add_row(std::uint32_t* __restrict columns, const std::uint16_t* __restrict row, int width) {
-  for (int x = 0; x < width; ++x) columns[x] += row[x];
-}
-FVD_VECTOR_CLONES void add_row(std::uint32_t* __restrict columns, const std::uint32_t* __restrict row, int width) {
-  for (int x = 0; x < width; ++x) columns[x] += row[x];
-}
-FVD_VECTOR_CLONES void subtract_row(std::uint32_t* __restrict columns, const std::uint16_t* __restrict row, int width) {
-  for (int x = 0; x < width; ++x) columns[x] -= row[x];
-}
-FVD_VECTOR_CLONES void subtract_row(std::uint32_t* __restrict columns, const std::uint32_t* __restrict row, int width) {
-  for (int x = 0; x < width; ++x) columns[x] -= row[x];
+/// The bits a 16-bit gradient loses before it is squared; see the kernel.
+template <typename Pixel>
+constexpr int kGradientShift = sizeof(Pixel) == 1 ? 0 : 3;
+
+/// The operator anywhere in the image; the law for the kernels and what they leave at the ends of a row.
+template <typename Pixel>
+std::uint32_t operator_value(FocusOperator op, const Pixel* above, const Pixel* row, const Pixel* below, int x,
+                             int width, int distance, int shift) {
+  const int left = std::max(x - distance, 0);
+  const int right = std::min(x + distance, width - 1);
+  switch (op) {
+    case FocusOperator::kModifiedLaplacian:
+      return static_cast<std::uint32_t>(std::abs(2 * row[x] - row[left] - row[right]) +
+                                        std::abs(2 * row[x] - above[x] - below[x]));
+    case FocusOperator::kTenengrad: {
+      const int gx = (above[right] + 2 * row[right] + below[right] - above[left] - 2 * row[left] - below[left]) >>
+                     kGradientShift<Pixel>;
+      const int gy = (below[left] + 2 * below[x] + below[right] - above[left] - 2 * above[x] - above[right]) >>
+                     kGradientShift<Pixel>;
+      return static_cast<std::uint32_t>(gx * gx + gy * gy) >> shift;
+    }
+    case FocusOperator::kIntensity:
+      return row[x];
+  }
+  return 0;
 }
 
-/// out[x] = sum of columns[x - radius .. x + radius], clipped to 0..width-1.
-template <typename Value, typename Emit>
-void slide(const Value* columns, int width, int radius, Emit emit) {
-  std::uint32_t sum = 0;
-  for (int x = 0; x < std::min(radius, width); ++x) sum += columns[x];
-  const int entering_end = std::max(0, width - radius);
-  const int leaving_begin = std::min(width, radius + 1);
-  int x = 0;
-  for (; x < std::min(leaving_begin, entering_end); ++x) emit(x, sum += columns[x + radius]);
-  for (; x < entering_end; ++x) emit(x, sum += columns[x + radius] - columns[x - radius - 1]);
-  for (; x < leaving_begin; ++x) emit(x, sum);
-  for (; x < width; ++x) emit(x, sum -= columns[x - radius - 1]);
+std::uint16_t linear_code(std::uint64_t column_sum, int shift) {
+  return static_cast<std::uint16_t>(shift == 0 ? column_sum : (column_sum + (1U << (shift - 1))) >> shift);
 }
 
-FVD_VECTOR_CLONES int row_maximum(const std::uint8_t* row, int width) {
-  std::uint8_t largest = 0;
-  for (int x = 0; x < width; ++x) largest = row[x] > largest ? row[x] : largest;
-  return largest;
+/// The root kernel's arithmetic, in its order and precision.
+std::uint16_t root_code(std::uint64_t sum, float gain) {
+  return static_cast<std::uint16_t>(
+      static_cast<std::int32_t>(gain * std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum))) + 0.5F));
 }
-FVD_VECTOR_CLONES int row_maximum(const std::uint16_t* row, int width) {
-  std::uint16_t largest = 0;
-  for (int x = 0; x < width; ++x) largest = row[x] > largest ? row[x] : largest;
-  return largest;
+
+float root_gain(const SharpnessCode& code, int gradient_shift) {
+  // The sums lack the bits that were shifted out of their values.
+  return static_cast<float>(code.gain * std::sqrt(std::ldexp(1.0, code.operator_shift + 2 * gradient_shift)));
 }
 
 template <typename Pixel>
-Plane<std::uint32_t> reference(PlaneView<const Pixel> image, int window, int distance) {
-  const int width = image.width;
-  const int height = image.height;
-  Plane<LaplacianOf<Pixel>> laplacian(width, height);
-  for (int y = 0; y < height; ++y) {
-    modified_laplacian_row_scalar(image.row(std::max(y - distance, 0)), image.row(y),
-                                  image.row(std::min(y + distance, height - 1)), width, distance, laplacian.row(y));
-  }
-  Plane<std::uint32_t> sums(width, height);
-  const int radius = window / 2;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int v = std::max(y - radius, 0); v <= std::min(y + radius, height - 1); ++v) {
-        for (int u = std::max(x - radius, 0); u <= std::min(x + radius, width - 1); ++u) {
-          sums.at(x, y) += laplacian.at(u, v);
-        }
-      }
+int gradient_shift(FocusOperator op) {
+  return op == FocusOperator::kTenengrad ? kGradientShift<Pixel> : 0;
+}
+
+template <typename Pixel>
+Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings& settings, const SharpnessCode& code) {
+  Plane<std::uint32_t> values(image.width, image.height);
+  for (int y = 0; y < image.height; ++y) {
+    const Pixel* above = image.row(std::max(y - settings.distance_px, 0));
+    const Pixel* below = image.row(std::min(y + settings.distance_px, image.height - 1));
+    for (int x = 0; x < image.width; ++x) {
+      values.at(x, y) = operator_value(settings.focus_operator, above, image.row(y), below, x, image.width,
+                                       settings.distance_px, code.operator_shift);
     }
   }
-  return sums;
+  Plane<std::uint16_t> codes(image.width, image.height);
+  const int radius = settings.window_px / 2;
+  const float gain = root_gain(code, gradient_shift<Pixel>(settings.focus_operator));
+  for (int y = 0; y < image.height; ++y) {
+    const int rows = std::min({radius, y, image.height - 1 - y});
+    for (int x = 0; x < image.width; ++x) {
+      const int columns = std::min({radius, x, image.width - 1 - x});
+      std::uint64_t sum = 0;
+      for (int u = x - columns; u <= x + columns; ++u) {
+        std::uint64_t column = 0;
+        for (int v = y - rows; v <= y + rows; ++v) column += values.at(u, v);
+        sum += code.root ? column : linear_code(column, code.shift);
+      }
+      codes.at(x, y) = code.root ? root_code(sum, gain) : static_cast<std::uint16_t>(sum);
+    }
+  }
+  return codes;
+}
+
+/// The kernel's sums reach from `radius` to width - radius; nearer to the ends the window shrinks.
+template <typename Sum>
+void sum_ends(const Sum* values, int width, int radius, Sum* out) {
+  const auto at = [&](int x) {
+    const int reach = std::min({radius, x, width - 1 - x});
+    Sum sum = 0;
+    for (int u = x - reach; u <= x + reach; ++u) sum = static_cast<Sum>(sum + values[u]);
+    out[x] = sum;
+  };
+  const int left_end = std::min(radius, width);
+  for (int x = 0; x < left_end; ++x) at(x);
+  for (int x = std::max(left_end, width - radius); x < width; ++x) at(x);
 }
 
 }  // namespace
 
 template <typename Pixel>
-SharpnessRows<Pixel>::SharpnessRows(int width, int window, int distance)
-    : width_(width),
-      window_(window),
-      radius_(window / 2),
-      distance_(distance),
-      ring_(static_cast<std::size_t>(width) * static_cast<std::size_t>(window)),
-      columns_(static_cast<std::size_t>(width)),
-      sums_(static_cast<std::size_t>(width)),
+SharpnessRows<Pixel>::SharpnessRows(int width, const FocusSettings& settings, PixelFormat format)
+    : kernels_(focus_kernels()),
+      width_(width),
+      window_(settings.window_px),
+      radius_(settings.window_px / 2),
+      distance_(settings.distance_px),
+      operator_(settings.focus_operator),
+      code_(sharpness_code(settings, format)),
+      saturation_(max_grey_level(format)),
+      narrow_(!code_.root),
+      codes_(static_cast<std::size_t>(width)),
       saturated_columns_(static_cast<std::size_t>(width)),
-      saturated_(static_cast<std::size_t>(width)) {}
+      saturated_counts_(4 * static_cast<std::size_t>(width)),
+      saturated_(static_cast<std::size_t>(width)) {
+  if (narrow_) {
+    resize(narrow_columns_);
+  } else {
+    resize(wide_columns_);
+  }
+}
+
+template <typename Pixel>
+template <typename Sum>
+void SharpnessRows<Pixel>::resize(Columns<Sum>& columns) {
+  const auto width = static_cast<std::size_t>(width_);
+  columns.ring.resize(width * static_cast<std::size_t>(window_));
+  for (auto* row : {&columns.fresh, &columns.sums, &columns.scaled, &columns.windows}) row->resize(width);
+  columns.scratch.resize(3 * width);
+}
 
 template <typename Pixel>
 std::size_t SharpnessRows<Pixel>::memory_bytes(int width, int window) {
   return static_cast<std::size_t>(width) *
-         (static_cast<std::size_t>(window) * sizeof(Laplacian) + 2 * sizeof(std::uint32_t) + 2);
-}
-
-template <typename Pixel>
-auto SharpnessRows<Pixel>::ring_row(int y) noexcept -> Laplacian* {
-  return ring_.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
+         ((static_cast<std::size_t>(window) + 7) * sizeof(std::uint32_t) + 6 * sizeof(std::uint16_t) + 1);
 }
 
 template <typename Pixel>
 bool SharpnessRows<Pixel>::row_saturated(int y) const noexcept {
-  return row_maximum(image_.row(y), width_) >= saturation_;
+  if constexpr (sizeof(Pixel) == 1) return kernels_.maximum_u8(image_.row(y), width_) >= saturation_;
+  if constexpr (sizeof(Pixel) == 2) return kernels_.maximum_u16(image_.row(y), width_) >= saturation_;
 }
 
 template <typename Pixel>
-void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first, int saturation) noexcept {
+template <typename Sum>
+void SharpnessRows<Pixel>::clear(Columns<Sum>& columns) noexcept {
+  std::fill(columns.ring.begin(), columns.ring.end(), Sum{0});
+  std::fill(columns.sums.begin(), columns.sums.end(), Sum{0});
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first) noexcept {
   image_ = image;
-  saturation_ = saturation;
   y_ = first;
   saturated_rows_ = 0;
-  std::fill(columns_.begin(), columns_.end(), 0U);
-  std::fill(saturated_columns_.begin(), saturated_columns_.end(), std::uint8_t{0});
-  // All rows of the first window but its last, which next() adds.
-  for (int y = std::max(first - radius_, 0); y < std::min(first + radius_, image.height); ++y) enter(y);
+  if (narrow_) {
+    clear(narrow_columns_);
+  } else {
+    clear(wide_columns_);
+  }
+  std::fill(saturated_columns_.begin(), saturated_columns_.end(), std::uint16_t{0});
+  low_ = first - std::min({radius_, first, image.height - 1 - first});
+  high_ = low_;
+}
+
+template <typename Pixel>
+template <typename Sum>
+void SharpnessRows<Pixel>::compute_row(int y, Sum* out) noexcept {
+  const Pixel* above = image_.row(std::max(y - distance_, 0));
+  const Pixel* row = image_.row(y);
+  const Pixel* below = image_.row(std::min(y + distance_, image_.height - 1));
+  const int left_end = std::min(distance_, width_);
+  const int right_begin = std::max(left_end, width_ - distance_);
+  if constexpr (std::is_same_v<Sum, std::uint16_t>) {
+    if constexpr (sizeof(Pixel) == 1) kernels_.laplacian_u8(above, row, below, width_, distance_, out);
+  } else if (operator_ == FocusOperator::kIntensity) {
+    std::copy_n(row, width_, out);
+    return;
+  } else if (operator_ == FocusOperator::kTenengrad) {
+    if constexpr (sizeof(Pixel) == 1) {
+      kernels_.tenengrad_u8(above, row, below, width_, distance_, code_.operator_shift, out);
+    } else {
+      kernels_.tenengrad_u16(above, row, below, width_, distance_, code_.operator_shift, out);
+    }
+  } else {
+    if constexpr (sizeof(Pixel) == 2) kernels_.laplacian_u16(above, row, below, width_, distance_, out);
+  }
+  const auto end = [&](int x) {
+    out[x] = static_cast<Sum>(operator_value(operator_, above, row, below, x, width_, distance_, code_.operator_shift));
+  };
+  for (int x = 0; x < left_end; ++x) end(x);
+  for (int x = right_begin; x < width_; ++x) end(x);
+}
+
+template <typename Pixel>
+template <typename Sum>
+void SharpnessRows<Pixel>::enter(Columns<Sum>& columns, int y) noexcept {
+  compute_row(y, columns.fresh.data());
+  // The slot holds the row that leaves, `window` rows above, or zeros.
+  Sum* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
+  if constexpr (std::is_same_v<Sum, std::uint16_t>) {
+    kernels_.slide_u16(columns.sums.data(), columns.fresh.data(), slot, code_.shift, width_, columns.scaled.data());
+  } else {
+    kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
+  }
+}
+
+template <typename Pixel>
+template <typename Sum>
+void SharpnessRows<Pixel>::leave(Columns<Sum>& columns, int y) noexcept {
+  std::fill(columns.fresh.begin(), columns.fresh.end(), Sum{0});
+  Sum* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
+  if constexpr (std::is_same_v<Sum, std::uint16_t>) {
+    kernels_.slide_u16(columns.sums.data(), columns.fresh.data(), slot, code_.shift, width_, columns.scaled.data());
+  } else {
+    kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
+  }
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::count_saturated(int y, int change) noexcept {
+  if (change < 0 && saturated_rows_ == 0) return;
+  if (!row_saturated(y)) return;
+  saturated_rows_ += change;
+  const Pixel* pixels = image_.row(y);
+  for (int x = 0; x < width_; ++x) {
+    auto& column = saturated_columns_[static_cast<std::size_t>(x)];
+    column = static_cast<std::uint16_t>(column + (pixels[x] >= saturation_ ? change : 0));
+  }
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::enter(int y) noexcept {
-  Laplacian* row = ring_row(y);
-  modified_laplacian_row(image_.row(std::max(y - distance_, 0)), image_.row(y),
-                         image_.row(std::min(y + distance_, image_.height - 1)), width_, distance_, row);
-  add_row(columns_.data(), row, width_);
-  if (!row_saturated(y)) return;
-  ++saturated_rows_;
-  const Pixel* pixels = image_.row(y);
-  for (int x = 0; x < width_; ++x) {
-    const auto column = static_cast<std::size_t>(x);
-    saturated_columns_[column] =
-        static_cast<std::uint8_t>(saturated_columns_[column] + (pixels[x] >= saturation_ ? 1 : 0));
+  if (narrow_) {
+    enter(narrow_columns_, y);
+  } else {
+    enter(wide_columns_, y);
   }
+  count_saturated(y, 1);
+  if (y - window_ < low_) return;
+  count_saturated(low_, -1);  // its slot was taken over
+  ++low_;
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::leave(int y) noexcept {
-  subtract_row(columns_.data(), ring_row(y), width_);
-  if (saturated_rows_ == 0 || !row_saturated(y)) return;
-  --saturated_rows_;
-  const Pixel* pixels = image_.row(y);
-  for (int x = 0; x < width_; ++x) {
-    const auto column = static_cast<std::size_t>(x);
-    saturated_columns_[column] =
-        static_cast<std::uint8_t>(saturated_columns_[column] - (pixels[x] >= saturation_ ? 1 : 0));
+  if (narrow_) {
+    leave(narrow_columns_, y);
+  } else {
+    leave(wide_columns_, y);
   }
+  count_saturated(y, -1);
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::next() noexcept {
-  if (y_ + radius_ < image_.height) enter(y_ + radius_);
-  sum_columns();
+  const int reach = std::min({radius_, y_, image_.height - 1 - y_});
+  while (high_ <= y_ + reach) enter(high_++);
+  while (low_ < y_ - reach) leave(low_++);
+  if (narrow_) {
+    emit_narrow();
+  } else {
+    emit_wide();
+  }
   find_saturated();
-  if (y_ - radius_ >= 0) leave(y_ - radius_);
   ++y_;
 }
 
 template <typename Pixel>
-void SharpnessRows<Pixel>::sum_columns() noexcept {
-  slide(columns_.data(), width_, radius_,
-        [this](int x, std::uint32_t sum) { sums_[static_cast<std::size_t>(x)] = sum; });
+void SharpnessRows<Pixel>::emit_narrow() noexcept {
+  Narrow& columns = narrow_columns_;
+  if (width_ >= window_) {
+    kernels_.window_sums_u16(columns.scaled.data(), window_, width_, columns.scratch.data(), codes_.data() + radius_);
+  }
+  sum_ends(columns.scaled.data(), width_, radius_, codes_.data());
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::emit_wide() noexcept {
+  Wide& columns = wide_columns_;
+  if (width_ >= window_) {
+    kernels_.window_sums_u32(columns.sums.data(), window_, width_, columns.scratch.data(),
+                             columns.windows.data() + radius_);
+  }
+  sum_ends(columns.sums.data(), width_, radius_, columns.windows.data());
+  kernels_.root_code(columns.windows.data(), root_gain(code_, gradient_shift<Pixel>(operator_)), width_, codes_.data());
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::find_saturated() noexcept {
   if (saturated_rows_ == 0) {
-    std::fill(saturated_.begin(), saturated_.end(), std::uint8_t{0});
+    if (!saturated_clear_) std::fill(saturated_.begin(), saturated_.end(), std::uint8_t{0});
+    saturated_clear_ = true;
     return;
   }
-  slide(saturated_columns_.data(), width_, radius_,
-        [this](int x, std::uint32_t count) { saturated_[static_cast<std::size_t>(x)] = count > 0 ? 1 : 0; });
+  saturated_clear_ = false;
+  std::uint16_t* counts = saturated_counts_.data() + 3 * static_cast<std::ptrdiff_t>(width_);
+  if (width_ >= window_) {
+    kernels_.window_sums_u16(saturated_columns_.data(), window_, width_, saturated_counts_.data(), counts + radius_);
+  }
+  sum_ends(saturated_columns_.data(), width_, radius_, counts);
+  for (int x = 0; x < width_; ++x) saturated_[static_cast<std::size_t>(x)] = counts[x] > 0 ? 1 : 0;
 }
 
-Plane<std::uint32_t> sharpness_reference(const ImageView& image, int window, int distance) {
-  return image.format == PixelFormat::kMono8 ? reference(image.as<std::uint8_t>(), window, distance)
-                                             : reference(image.as<std::uint16_t>(), window, distance);
+Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings) {
+  const SharpnessCode code = sharpness_code(settings, image.format);
+  return image.format == PixelFormat::kMono8 ? reference(image.as<std::uint8_t>(), settings, code)
+                                             : reference(image.as<std::uint16_t>(), settings, code);
 }
 
 template class SharpnessRows<std::uint8_t>;

@@ -26,7 +26,7 @@ class SimpleFocusStack {
  private:
   FocusSettings settings_;
   PixelFormat format_ = PixelFormat::kMono8;
-  std::vector<Plane<std::uint32_t>> sharpness_;
+  std::vector<Plane<std::uint16_t>> sharpness_;  // codes
   std::vector<Plane<std::uint16_t>> pixels_;
   std::vector<double> z_um_;
 };

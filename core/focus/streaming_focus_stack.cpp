@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "core/focus/focus_point.hpp"
+#include "core/focus/noise_probe.hpp"
 #include "core/focus/peak_accumulator.hpp"
+#include "core/focus/row_fit.hpp"
 #include "core/focus/sharpness_rows.hpp"
+#include "core/focus/slice_binner.hpp"
 #include "core/pipeline/worker_pool.hpp"
 
 namespace fvd {
@@ -18,58 +20,77 @@ namespace fvd {
 namespace {
 
 /// The stack for one pixel type. The image is cut into as many bands of rows as there are threads; a band recomputes
-/// the few rows of its neighbours that its windows reach into, so no thread waits for another.
+/// the few rows of its neighbours that its windows reach into, so no thread waits for another. Slices that come
+/// together go row by row: the state of a row stays in the cache while all of them are taken in.
 template <typename Pixel>
 class TypedStack {
  public:
-  TypedStack(int width, int height, const FocusSettings& settings, int bands) : height_(height), peaks_(width, height) {
-    for (int band = 0; band < bands; ++band) scanners_.emplace_back(width, settings.window_px, settings.distance_px);
+  TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, int bands)
+      : height_(height), peaks_(width, height, settings.bin_slices > 1), settings_(settings) {
+    for (int band = 0; band < bands; ++band) {
+      auto& lanes = bands_.emplace_back(SliceBinner<Pixel>(width, settings.bin_slices));
+      for (int k = 0; k < StreamingFocusStack::kMaxBatch; ++k) lanes.scanners.emplace_back(width, settings, format);
+    }
   }
 
-  void push(PlaneView<const Pixel> slice, int saturation, int index, WorkerPool& pool) {
-    const int bands = static_cast<int>(scanners_.size());
-    const auto scan_band = [&](int band) {
-      const int first = height_ * band / bands;
-      const int end = height_ * (band + 1) / bands;
+  void push(std::span<const ZSlice> slices, int index, WorkerPool& pool) {
+    const int bands = static_cast<int>(bands_.size());
+    const auto scan_band = [&](int number) {
+      const int first = height_ * number / bands;
+      const int end = height_ * (number + 1) / bands;
       if (first == end) return;
-      auto& scanner = scanners_[static_cast<std::size_t>(band)];
-      scanner.begin(slice, first, saturation);
+      Band& band = bands_[static_cast<std::size_t>(number)];
+      for (std::size_t k = 0; k < slices.size(); ++k) band.scanners[k].begin(slices[k].image.as<Pixel>(), first);
       for (int y = first; y < end; ++y) {
-        scanner.next();
-        if (index == 0) {
-          start_peaks(peaks_.row(y), scanner.sharpness(), scanner.saturated(), slice.row(y), slice.width);
-        } else {
-          update_peaks(peaks_.row(y), scanner.sharpness(), scanner.saturated(), slice.row(y), slice.width, index);
+        const auto row = peaks_.row(y);
+        for (std::size_t k = 0; k < slices.size(); ++k) {
+          auto& scanner = band.scanners[k];
+          scanner.next();
+          band.binner.add(row, scanner.codes(), scanner.saturated(), slices[k].image.as<Pixel>().row(y),
+                          index + static_cast<int>(k));
         }
       }
     };
     pool.run(bands, std::ref(scan_band));  // by reference: a copy of the captures would be allocated
   }
 
-  void resolve_row(int y, const std::vector<double>& z_um, PeakMethod method, double min_prominence, HeightMap& map) {
-    const auto row = peaks_.row(y);
-    for (int x = 0; x < map.height_m.width(); ++x) {
-      const FocusPoint point = resolve_point(
-          {row.left[x], row.peak[x], row.right[x], row.minimum[x], row.peak_index[x], row.saturated[x] != 0}, z_um,
-          method, min_prominence);
-      map.height_m.at(x, y) = point.height_m;
-      map.mask.at(x, y) = point.mask;
-      map.prominence.at(x, y) = point.prominence;
-      map.texture.at(x, y) = row.texture[x];
+  /// Rows [first, end) of the map.
+  void fit_rows(int first, int end, const SampleHeights& heights, const RowFit& fit, const NoiseProbe& noise,
+                HeightMap& map) const {
+    const int width = map.height_m.width();
+    PeakAccumulator<Pixel> scratch(width, 1, settings_.bin_slices > 1);
+    SliceBinner<Pixel> binner(width, settings_.bin_slices);
+    const StateRow<Pixel> row = scratch.row(0);
+    std::vector<float> noise_row(static_cast<std::size_t>(width));
+    for (int y = first; y < end; ++y) {
+      scratch.copy_row(peaks_, y);
+      if (heights.pending() > 0) binner.close(row, heights.samples(), heights.pending());
+      noise.noise_row(y, noise_row.data());
+      fit.fit(row.curve, noise_row.data(), width,
+              {map.height_m.row(y), map.sigma_m.row(y), map.prominence.row(y), map.mask.row(y)});
+      std::copy_n(row.texture, width, map.texture.row(y));
     }
   }
 
   [[nodiscard]] std::size_t state_bytes() const { return peaks_.memory_bytes(); }
 
-  [[nodiscard]] static std::size_t memory_bytes(int width, int height, int window, int bands) {
-    return PeakAccumulator<Pixel>::memory_bytes(width, height) +
-           static_cast<std::size_t>(bands) * SharpnessRows<Pixel>::memory_bytes(width, window);
+  [[nodiscard]] static std::size_t memory_bytes(int width, int height, const FocusSettings& settings, int bands) {
+    return PeakAccumulator<Pixel>::memory_bytes(width, height, settings.bin_slices > 1) +
+           static_cast<std::size_t>(bands) * StreamingFocusStack::kMaxBatch *
+               SharpnessRows<Pixel>::memory_bytes(width, settings.window_px);
   }
 
  private:
+  struct Band {
+    explicit Band(SliceBinner<Pixel> b) : binner(std::move(b)) {}
+    SliceBinner<Pixel> binner;
+    std::vector<SharpnessRows<Pixel>> scanners;  // one a slice of a batch
+  };
+
   int height_;
   PeakAccumulator<Pixel> peaks_;
-  std::vector<SharpnessRows<Pixel>> scanners_;  // one a band
+  FocusSettings settings_;
+  std::vector<Band> bands_;  // one a thread
 };
 
 std::string shape(int width, int height, PixelFormat format) {
@@ -78,7 +99,7 @@ std::string shape(int width, int height, PixelFormat format) {
 }
 
 constexpr std::size_t kMapBytesPerPixel =
-    sizeof(float) + sizeof(std::uint8_t) + sizeof(float) + sizeof(std::uint16_t);  // HeightMap's planes
+    3 * sizeof(float) + sizeof(std::uint8_t) + sizeof(std::uint16_t);  // HeightMap's planes
 
 }  // namespace
 
@@ -86,27 +107,32 @@ struct StreamingFocusStack::Impl {
   using Typed = std::variant<TypedStack<std::uint8_t>, TypedStack<std::uint16_t>>;
 
   static Typed make(int width, int height, PixelFormat format, const FocusSettings& settings, int bands) {
-    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, settings, bands);
-    return TypedStack<std::uint16_t>(width, height, settings, bands);
+    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, format, settings, bands);
+    return TypedStack<std::uint16_t>(width, height, format, settings, bands);
   }
 
   Impl(int w, int h, PixelFormat f, const FocusSettings& s, WorkerPool& p)
-      : width(w), height(h), format(f), settings(s), pool(&p), stack(make(w, h, f, s, p.threads())) {
-    z_um.reserve(kMaxSlices);
-  }
+      : width(w),
+        height(h),
+        format(f),
+        settings(s),
+        pool(&p),
+        stack(make(w, h, f, s, p.threads())),
+        heights(s.bin_slices, kMaxSlices),
+        noise(w, h) {}
 
-  /// Throws Error kBadSlice for a slice that cannot be the next one.
-  void check(const ImageView& slice, double z) const {
+  /// Throws Error kBadSlice for a slice that cannot be the one of this number.
+  void check(const ImageView& slice, double z, int number) const {
     if (slice.width != width || slice.height != height || slice.format != format) {
-      throw Error(ErrorCode::kBadSlice, "slice " + std::to_string(z_um.size()) + " has " +
+      throw Error(ErrorCode::kBadSlice, "slice " + std::to_string(number) + " has " +
                                             shape(slice.width, slice.height, slice.format) + ", the stack " +
                                             shape(width, height, format));
     }
     if (!(std::abs(z) <= kMaxHeight_um)) {
-      throw Error(ErrorCode::kBadSlice, "slice " + std::to_string(z_um.size()) + " has a z of " + std::to_string(z) +
+      throw Error(ErrorCode::kBadSlice, "slice " + std::to_string(number) + " has a z of " + std::to_string(z) +
                                             " um: must be a number within +-1e9 um");
     }
-    if (z_um.size() == kMaxSlices) {
+    if (number >= kMaxSlices) {
       throw Error(ErrorCode::kBadSlice,
                   "the stack holds its " + std::to_string(kMaxSlices) + " slices; scan in larger steps");
     }
@@ -118,7 +144,8 @@ struct StreamingFocusStack::Impl {
   FocusSettings settings;
   WorkerPool* pool;
   Typed stack;
-  std::vector<double> z_um;
+  SampleHeights heights;
+  NoiseProbe noise;
 };
 
 StreamingFocusStack::StreamingFocusStack(int width, int height, PixelFormat format, const FocusSettings& settings,
@@ -136,18 +163,25 @@ StreamingFocusStack::StreamingFocusStack(StreamingFocusStack&&) noexcept = defau
 StreamingFocusStack& StreamingFocusStack::operator=(StreamingFocusStack&&) noexcept = default;
 
 void StreamingFocusStack::push(const ImageView& slice, double z_um) {
-  impl_->check(slice, z_um);
-  const int index = slices();
-  const int saturation = max_grey_level(slice.format);
-  if (auto* narrow = std::get_if<TypedStack<std::uint8_t>>(&impl_->stack)) {
-    narrow->push(slice.as<std::uint8_t>(), saturation, index, *impl_->pool);
-  } else {
-    std::get<TypedStack<std::uint16_t>>(impl_->stack).push(slice.as<std::uint16_t>(), saturation, index, *impl_->pool);
-  }
-  impl_->z_um.push_back(z_um);
+  const ZSlice one{slice, z_um};
+  push(std::span(&one, 1));
 }
 
-int StreamingFocusStack::slices() const noexcept { return static_cast<int>(impl_->z_um.size()); }
+void StreamingFocusStack::push(std::span<const ZSlice> slices) {
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    impl_->check(slices[k].image, slices[k].z_um, this->slices() + static_cast<int>(k));
+  }
+  for (std::size_t first = 0; first < slices.size(); first += kMaxBatch) {
+    const auto batch = slices.subspan(first, std::min<std::size_t>(kMaxBatch, slices.size() - first));
+    std::visit([&](auto& stack) { stack.push(batch, this->slices(), *impl_->pool); }, impl_->stack);
+    for (const ZSlice& slice : batch) {
+      impl_->noise.add(slice.image, *impl_->pool);
+      impl_->heights.push(slice.z_um);
+    }
+  }
+}
+
+int StreamingFocusStack::slices() const noexcept { return impl_->heights.slices(); }
 
 double StreamingFocusStack::state_bytes_per_pixel() const noexcept {
   const auto bytes = std::visit([](const auto& stack) { return stack.state_bytes(); }, impl_->stack);
@@ -157,25 +191,26 @@ double StreamingFocusStack::state_bytes_per_pixel() const noexcept {
 std::size_t StreamingFocusStack::memory_bytes(int width, int height, PixelFormat format, const FocusSettings& settings,
                                               int threads) {
   const std::size_t typed = format == PixelFormat::kMono8
-                                ? TypedStack<std::uint8_t>::memory_bytes(width, height, settings.window_px, threads)
-                                : TypedStack<std::uint16_t>::memory_bytes(width, height, settings.window_px, threads);
+                                ? TypedStack<std::uint8_t>::memory_bytes(width, height, settings, threads)
+                                : TypedStack<std::uint16_t>::memory_bytes(width, height, settings, threads);
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   return typed + pixels * kMapBytesPerPixel + kMaxSlices * sizeof(double);
 }
 
 HeightMap StreamingFocusStack::finish(PeakMethod method) const {
-  if (impl_->z_um.empty()) throw Error(ErrorCode::kBadSlice, "a height map needs slices; there are none");
-  const int width = impl_->width;
+  if (slices() == 0) throw Error(ErrorCode::kBadSlice, "a height map needs slices; there are none");
   const int height = impl_->height;
-  HeightMap map{Plane<float>(width, height), Plane<std::uint8_t>(width, height), Plane<float>(width, height),
-                impl_->format, Plane<std::uint16_t>(width, height)};
+  HeightMap map = empty_map(impl_->width, height, impl_->format);
+  const RowFit fit(impl_->heights.means_um(), impl_->settings, impl_->format, method);
   const int bands = impl_->pool->threads();
   impl_->pool->run(bands, [&](int band) {
-    for (int y = height * band / bands; y < height * (band + 1) / bands; ++y) {
-      std::visit([&](auto& stack) { stack.resolve_row(y, impl_->z_um, method, impl_->settings.min_prominence, map); },
-                 impl_->stack);
-    }
+    std::visit(
+        [&](const auto& stack) {
+          stack.fit_rows(height * band / bands, height * (band + 1) / bands, impl_->heights, fit, impl_->noise, map);
+        },
+        impl_->stack);
   });
+  map.noise_grey = impl_->noise.median();
   return map;
 }
 

@@ -38,12 +38,14 @@ class BoundedQueue {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, stop, [this] { return count_ > 0 || closed_; });
     if (count_ == 0 || stop.stop_requested()) return std::nullopt;
-    std::optional<T> item(std::move(*ring_[first_]));
-    ring_[first_].reset();
-    first_ = (first_ + 1) % ring_.size();
-    --count_;
-    changed_.notify_all();
-    return item;
+    return pop_locked();
+  }
+
+  /// An item that is there already, without waiting.
+  [[nodiscard]] std::optional<T> try_pop() {
+    const std::lock_guard lock(mutex_);
+    if (count_ == 0) return std::nullopt;
+    return pop_locked();
   }
 
   /// No more items come; what is inside can still be popped.
@@ -56,6 +58,15 @@ class BoundedQueue {
   }
 
  private:
+  std::optional<T> pop_locked() {
+    std::optional<T> item(std::move(*ring_[first_]));
+    ring_[first_].reset();
+    first_ = (first_ + 1) % ring_.size();
+    --count_;
+    changed_.notify_all();
+    return item;
+  }
+
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::vector<std::optional<T>> ring_;

@@ -1,6 +1,8 @@
 #include "core/pipeline/focus_worker.hpp"
 
+#include <array>
 #include <utility>
+#include <vector>
 
 #include <pthread.h>
 
@@ -23,16 +25,32 @@ void FocusWorker::finish() {
 
 void FocusWorker::run(std::stop_token stop) {
   try {
-    while (auto slice = queue_.pop(stop)) consume(*slice);
+    // What has come meanwhile is computed together: the further the computation is behind, the faster it gets.
+    std::vector<Slice> batch;
+    batch.reserve(StreamingFocusStack::kMaxBatch);
+    while (auto slice = queue_.pop(stop)) {
+      batch.clear();
+      batch.push_back(std::move(*slice));
+      while (batch.size() < StreamingFocusStack::kMaxBatch) {
+        auto next = queue_.try_pop();
+        if (!next) break;
+        batch.push_back(std::move(*next));
+      }
+      consume(batch);
+    }
   } catch (...) {
     failure_ = std::current_exception();
     queue_.close();  // the next push is refused and ends the scan; finish() then tells the reason
   }
 }
 
-void FocusWorker::consume(const Slice& slice) {
-  if (tap_) tap_(slice.frame.image, slice.z_um);
-  stack_.push(slice.frame.image, slice.z_um);
+void FocusWorker::consume(std::span<const Slice> batch) {
+  std::array<ZSlice, StreamingFocusStack::kMaxBatch> slices;
+  for (std::size_t k = 0; k < batch.size(); ++k) {
+    if (tap_) tap_(batch[k].frame.image, batch[k].z_um);
+    slices[k] = {batch[k].frame.image, batch[k].z_um};
+  }
+  stack_.push(std::span(slices).first(batch.size()));
 }
 
 }  // namespace fvd

@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <functional>
+#include <span>
 #include <stop_token>
 #include <thread>
 
@@ -31,7 +32,7 @@ class FocusWorker final : public SliceSink {
 
  private:
   void run(std::stop_token stop);
-  void consume(const Slice& slice);
+  void consume(std::span<const Slice> batch);
 
   StreamingFocusStack& stack_;
   BoundedQueue<Slice> queue_;

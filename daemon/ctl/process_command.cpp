@@ -20,6 +20,12 @@ std::vector<std::string> peak_names() {
   return names;
 }
 
+std::vector<std::string> operator_names() {
+  std::vector<std::string> names;
+  for (const FocusOperator op : kAllFocusOperators) names.emplace_back(focus_operator_name(op));
+  return names;
+}
+
 ZSource z_source(const ProcessArguments& arguments) {
   if (!arguments.z_file.empty()) return ZFile{arguments.z_file, *length_unit_from_name(arguments.z_unit)};
   if (arguments.z_step_um == 0.0) {
@@ -34,7 +40,12 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   options.out = arguments.out;
   options.part_id = arguments.part_id;
   options.z = z_source(arguments);
-  options.focus = {arguments.window_px, arguments.distance_px, arguments.min_prominence};
+  options.focus.focus_operator = *focus_operator_from_name(arguments.focus_operator);
+  options.focus.window_px = options.focus.focus_operator == FocusOperator::kIntensity ? 1 : arguments.window_px;
+  options.focus.distance_px = arguments.distance_px;
+  options.focus.min_prominence = arguments.min_prominence;
+  options.focus.min_significance = arguments.min_significance;
+  options.focus.bin_slices = arguments.bin_slices;
   options.peak = *peak_method_from_name(arguments.peak);  // the parser lets only known names through
   for (const auto& name : arguments.extra_peaks) options.extra_peaks.push_back(*peak_method_from_name(name));
   if (arguments.pixel_pitch_um != 0.0) options.pixel_pitch_um = arguments.pixel_pitch_um;
@@ -81,8 +92,14 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
       ->needs(file)
       ->check(CLI::IsMember({"um", "mm", "m"}))
       ->capture_default_str();
-  command.add_option("--window", a.window_px, "side of the focus window in pixels, odd, 3..63")->capture_default_str();
-  command.add_option("--distance", a.distance_px, "from a pixel to the neighbours of its Laplacian in pixels, 1..7")
+  command.add_option("--window", a.window_px, "side of the focus window in pixels, odd, 3..63; the intensity has none")
+      ->capture_default_str();
+  command.add_option("--operator", a.focus_operator, "what is summed over the window as the measure of sharpness")
+      ->check(CLI::IsMember(operator_names()))
+      ->capture_default_str();
+  command.add_option("--distance", a.distance_px, "from a pixel to the neighbours its operator looks at, 1..7 pixels")
+      ->capture_default_str();
+  command.add_option("--bin", a.bin_slices, "slices summed to one sample of the focus curve, 1..64")
       ->capture_default_str();
   command.add_option("--peak", a.peak, "how heights are taken from the focus curve")
       ->check(CLI::IsMember(peak_names()))
@@ -90,6 +107,8 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
   command.add_option("--extra-peak", a.extra_peaks, "further height maps, may be repeated")
       ->check(CLI::IsMember(peak_names()));
   command.add_option("--min-prominence", a.min_prominence, "points with a flatter focus curve become holes, 0..1")
+      ->capture_default_str();
+  command.add_option("--min-significance", a.min_significance, "points whose curve rises by less noise become holes")
       ->capture_default_str();
   command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");
   command.add_option("--part", a.part_id, "part id to write into the result; default: the name of the source");

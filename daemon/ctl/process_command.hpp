@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/focus/focus_settings.hpp"
 #include "daemon/ctl/fvdctl.hpp"
 
 namespace CLI {
@@ -30,9 +31,12 @@ struct ProcessArguments {
   double z_step_um = 0.0;
   double z_start_um = 0.0;
   int window_px = 9;
-  int distance_px = 1;
+  int distance_px = 2;
+  std::string focus_operator = "modified_laplacian";
+  int bin_slices = 1;
+  double min_significance = FocusSettings{}.min_significance;
   double min_prominence = 0.5;
-  std::string peak = "inverse_root";
+  std::string peak = "five_sample";
   std::vector<std::string> extra_peaks;
   double pixel_pitch_um = 0.0;  ///< 0 = unknown
   int threads = 0;

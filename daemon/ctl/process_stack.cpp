@@ -60,13 +60,22 @@ void describe(ResultData& data, const ProcessOptions& options, const RecordedSta
 
 void push_slices(StreamingFocusStack& focus, const RecordedStack& stack, const std::vector<double>& z_um,
                  ResultData& data, const std::function<void(int, int)>& on_slice) {
-  for (int index = 0; index < stack.slices(); ++index) {
-    const double z = z_um[static_cast<std::size_t>(index)];
-    focus.push(stack.read(index).view(), z);
-    data.steps.push_back(step_record(index, z));
-    ++data.frames.expected;
-    ++data.frames.ok;
-    if (on_slice) on_slice(index + 1, stack.slices());
+  std::vector<SliceImage> images;
+  std::vector<ZSlice> batch;
+  for (int first = 0; first < stack.slices(); first += StreamingFocusStack::kMaxBatch) {
+    const int end = std::min(first + StreamingFocusStack::kMaxBatch, stack.slices());
+    images.clear();
+    batch.clear();
+    for (int index = first; index < end; ++index) images.push_back(stack.read(index));
+    for (int index = first; index < end; ++index) {
+      const double z = z_um[static_cast<std::size_t>(index)];
+      batch.push_back({images[static_cast<std::size_t>(index - first)].view(), z});
+      data.steps.push_back(step_record(index, z));
+      ++data.frames.expected;
+      ++data.frames.ok;
+    }
+    focus.push(batch);
+    if (on_slice) on_slice(end, stack.slices());
   }
 }
 

@@ -19,7 +19,7 @@ struct ProcessOptions {
   std::filesystem::path out;     ///< result directory, must not exist
   ZSource z;
   FocusSettings focus;
-  PeakMethod peak = PeakMethod::kInverseRoot;
+  PeakMethod peak = PeakMethod::kFiveSample;
   std::vector<PeakMethod> extra_peaks;
   std::optional<double> pixel_pitch_um;  ///< > 0
   int threads = 0;                       ///< 0 = one a core

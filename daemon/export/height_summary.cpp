@@ -35,6 +35,8 @@ void count_reasons(std::uint8_t mask, HoleCounts& holes) {
   if ((mask & mask_reason::kLastSlice) != 0) ++holes.last_slice;
   if ((mask & mask_reason::kNotBracketed) != 0) ++holes.not_bracketed;
   if ((mask & mask_reason::kSaturated) != 0) ++holes.saturated;
+  if ((mask & mask_reason::kInsignificant) != 0) ++holes.insignificant;
+  if ((mask & mask_reason::kEdgeBleeding) != 0) ++holes.edge_bleeding;
 }
 
 }  // namespace
@@ -58,6 +60,10 @@ HeightSummary summarize_heights(const HeightMap& map) {
   values.low_um = um(quantile(valid, 0.005));
   values.high_um = um(quantile(valid, 0.995));
   summary.height = values;
+  valid.clear();
+  std::copy_if(map.sigma_m.pixels().begin(), map.sigma_m.pixels().end(), std::back_inserter(valid),
+               [](float sigma) { return std::isfinite(sigma); });
+  if (!valid.empty()) summary.sigma_median_um = median_um(valid);
   return summary;
 }
 

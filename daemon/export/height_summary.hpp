@@ -26,13 +26,16 @@ struct HoleCounts {
   std::size_t last_slice = 0;
   std::size_t not_bracketed = 0;
   std::size_t saturated = 0;
+  std::size_t insignificant = 0;
+  std::size_t edge_bleeding = 0;
 };
 
 struct HeightSummary {
   std::size_t points = 0;
   std::size_t valid = 0;
   HoleCounts holes;
-  std::optional<HeightValues> height;  ///< absent when every point is a hole
+  std::optional<double> sigma_median_um;  ///< absent when every point is a hole
+  std::optional<HeightValues> height;     ///< absent when every point is a hole
 
   [[nodiscard]] double valid_fraction() const {
     return points == 0 ? 0.0 : static_cast<double>(valid) / static_cast<double>(points);

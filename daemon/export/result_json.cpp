@@ -48,11 +48,10 @@ Json height_values(const HeightSummary& summary) {
 }
 
 Json holes(const HoleCounts& counts) {
-  return {{"low_prominence", counts.low_prominence},
-          {"first_slice", counts.first_slice},
-          {"last_slice", counts.last_slice},
-          {"not_bracketed", counts.not_bracketed},
-          {"saturated", counts.saturated}};
+  return {{"low_prominence", counts.low_prominence}, {"first_slice", counts.first_slice},
+          {"last_slice", counts.last_slice},         {"not_bracketed", counts.not_bracketed},
+          {"saturated", counts.saturated},           {"insignificant", counts.insignificant},
+          {"edge_bleeding", counts.edge_bleeding}};
 }
 
 Json values(const ResultData& data) {
@@ -63,6 +62,7 @@ Json values(const ResultData& data) {
   json["valid_points"] = summary.valid;
   json["valid_fraction"] = rounded(summary.valid_fraction(), 6);
   json["hole_points"] = holes(summary.holes);
+  json["sigma_median_um"] = summary.sigma_median_um ? um(*summary.sigma_median_um) : Json(nullptr);
   return json;
 }
 
@@ -72,9 +72,14 @@ Json focus(const ResultData& data) {
   json["height_px"] = data.map.height_m.height();
   json["pixel_pitch_x_um"] = data.pixel_pitch_x_um ? Json(*data.pixel_pitch_x_um) : Json(nullptr);
   json["pixel_pitch_y_um"] = data.pixel_pitch_y_um ? Json(*data.pixel_pitch_y_um) : Json(nullptr);
+  json["operator"] = focus_operator_name(data.focus.focus_operator);
   json["window_px"] = data.focus.window_px;
   json["distance_px"] = data.focus.distance_px;
   json["min_prominence"] = data.focus.min_prominence;
+  json["min_significance"] = data.focus.min_significance;
+  json["bin_slices"] = data.focus.bin_slices;
+  json["noise_grey"] = rounded(data.map.noise_grey, 3);
+  json["curve_width_um"] = data.map.curve_width_um > 0.0 ? um(data.map.curve_width_um) : Json(nullptr);
   json["peak"] = peak_method_name(data.peak);
   Json extra = Json::array();
   for (const auto& [method, map] : data.extra_maps) {

@@ -20,10 +20,10 @@ std::string title(const ResultData& data) {
   return data.job_id.empty() ? "height map" : data.job_id;
 }
 
-TiffTags tiff_tags(const ResultData& data, PeakMethod method) {
+TiffTags tiff_tags(const ResultData& data, PeakMethod method, const std::string& quantity = "height") {
   return {data.software_version,
-          title(data) + ": height in metres, NaN where invalid, peak " + std::string(peak_method_name(method)) +
-              (data.simulated ? ", SIMULATED" : ""),
+          title(data) + ": " + quantity + " in metres, NaN where invalid, peak " +
+              std::string(peak_method_name(method)) + (data.simulated ? ", SIMULATED" : ""),
           data.pixel_pitch_x_um, data.pixel_pitch_y_um};
 }
 
@@ -65,6 +65,7 @@ void write_result(AtomicDirectory& directory, const ResultData& data) {
     directory.add_file("height_" + std::string(peak_method_name(method)) + ".tiff",
                        encode_height_tiff(map.height_m, tiff_tags(data, method)));
   }
+  directory.add_file("sigma.tiff", encode_height_tiff(data.map.sigma_m, tiff_tags(data, data.peak, "standard error")));
   directory.add_file("height.gsf", encode_gsf(data.map.height_m, gsf_header(data)));
   directory.add_file("mask.png", encode_mask_png(data.map));
   directory.add_file("texture.png", encode_texture_png(data.map));

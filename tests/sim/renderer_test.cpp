@@ -154,12 +154,12 @@ TEST_F(ASimWorld, IsSharpestWhereItsSurfaceIs) {
   parameters.base_um = 30.0;
   parameters.readout_noise = 0.5;
   SimWorld world(parameters, axis_);
-  Plane<std::uint32_t> best(96, 64);
+  Plane<std::uint16_t> best(96, 64);
   Plane<double> best_z(96, 64);
   for (double z_um = -10.0; z_um <= 70.0; z_um += 2.0) {
     const auto pixels = slice(world, z_um);
     const auto sharpness =
-        sharpness_reference({PixelFormat::kMono8, 96, 64, 96, reinterpret_cast<const std::byte*>(pixels.data())}, 9, 1);
+        sharpness_reference({PixelFormat::kMono8, 96, 64, 96, reinterpret_cast<const std::byte*>(pixels.data())}, {});
     for (std::size_t i = 0; i < best.pixels().size(); ++i) {
       if (sharpness.pixels()[i] <= best.pixels()[i]) continue;
       best.pixels()[i] = sharpness.pixels()[i];

@@ -104,6 +104,7 @@ TEST_F(AMicroscope, GivesBitForBitTheMapThatOfflineProcessingGives) {
   offline.source = live / "slices";
   offline.out = folder_.path() / "offline";
   offline.z = ZFile{live / "slices" / "z.txt", LengthUnit::kMicrometre};
+  offline.focus.distance_px = 1;
   offline.peak = PeakMethod::kLogParabola;
   (void)ctl::process_stack(offline, {});
   for (const char* file : {"mask.png", "texture.png"}) {

@@ -23,7 +23,7 @@ struct Spot {
 HeightMap map_of(const std::vector<Spot>& spots, PixelFormat format = PixelFormat::kMono8, int grey = 100,
                  PeakMethod method = PeakMethod::kParabola) {
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, format, {.window_px = 3, .min_prominence = 0.5}, pool);
+  StreamingFocusStack stack(3, 3, format, {.window_px = 3, .distance_px = 1, .min_prominence = 0.5}, pool);
   for (const Spot& spot : spots) {
     if (format == PixelFormat::kMono8) {
       Plane<std::uint8_t> slice(3, 3, static_cast<std::uint8_t>(grey));
@@ -96,7 +96,7 @@ TEST(FocusHoles, SaturationIsFullScaleOfTheFormat) {
 TEST(FocusHoles, SaturationElsewhereInTheCurveIsNoReason) {
   // The spot is at full scale in the first slice, but a flat slice of full scale has no sharpness.
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .min_prominence = 0.5}, pool);
+  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .distance_px = 1, .min_prominence = 0.5}, pool);
   for (const int level : {-1, 10, 90, 10}) {
     Plane<std::uint8_t> slice(3, 3, level < 0 ? 255 : 100);
     if (level >= 0) slice.at(1, 1) = static_cast<std::uint8_t>(100 + level);
@@ -107,7 +107,7 @@ TEST(FocusHoles, SaturationElsewhereInTheCurveIsNoReason) {
 
 TEST(FocusHoles, AHeightNoStageCanHaveIsRefusedAndLeavesTheStackAsItWas) {
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .min_prominence = 0.5}, pool);
+  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .distance_px = 1, .min_prominence = 0.5}, pool);
   const Plane<std::uint8_t> slice(3, 3, 7);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double z_um : {std::nan(""), kInfinity, -kInfinity, 1.1e9, -1e300}) {

@@ -1,6 +1,7 @@
 #include "core/focus/sharpness_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -33,34 +34,26 @@ TYPED_TEST_SUITE(SharpnessRowsOf, Pixels);
 constexpr PixelFormat format_of(std::uint8_t) { return PixelFormat::kMono8; }
 constexpr PixelFormat format_of(std::uint16_t) { return PixelFormat::kMono16; }
 
-TYPED_TEST(SharpnessRowsOf, LaplacianEqualsItsScalarLawForEveryWidth) {
-  for (int width = 1; width <= 100; ++width) {
-    const PaddedImage<TypeParam> image(width, 3, static_cast<unsigned>(width));
-    std::vector<LaplacianOf<TypeParam>> expected(static_cast<std::size_t>(width), 0x5A);
-    std::vector<LaplacianOf<TypeParam>> actual(static_cast<std::size_t>(width), 0xA5);
-    for (int distance = 1; distance <= 7; ++distance) {
-      modified_laplacian_row_scalar(image.view.row(0), image.view.row(1), image.view.row(2), width, distance,
-                                    expected.data());
-      modified_laplacian_row(image.view.row(0), image.view.row(1), image.view.row(2), width, distance, actual.data());
-      ASSERT_EQ(expected, actual) << "width " << width << " distance " << distance;
-    }
-  }
-}
-
-TYPED_TEST(SharpnessRowsOf, EqualTheReferenceForEverySizeWindowAndStart) {
+TYPED_TEST(SharpnessRowsOf, EqualTheReferenceForEverySizeWindowOperatorAndStart) {
   for (const int width : {1, 2, 3, 4, 7, 8, 16, 31, 33, 64, 100}) {
     for (const int height : {1, 2, 3, 5, 9, 20}) {
       const PaddedImage<TypeParam> image(width, height, static_cast<unsigned>(width * 100 + height));
-      for (const int window : {3, 5, 9, 31, 63}) {
-        const int distance = 1 + (width + window) % 7;
-        const auto expected = sharpness_reference(image_view(image.view, format_of(TypeParam{})), window, distance);
-        SharpnessRows<TypeParam> rows(width, window, distance);
-        for (const int first : {0, height / 2, height - 1}) {
-          rows.begin(image.view, first, 1 << 17);
-          for (int y = first; y < height; ++y) {
-            rows.next();
-            ASSERT_TRUE(std::equal(rows.sharpness(), rows.sharpness() + width, expected.row(y)))
-                << width << " x " << height << " window " << window << " from row " << first << " at row " << y;
+      const PixelFormat format = format_of(TypeParam{});
+      for (const int window : {1, 3, 5, 9, 31, 63}) {
+        for (const FocusOperator op : kAllFocusOperators) {
+          if (window == 1 && op != FocusOperator::kIntensity) continue;
+          const FocusSettings settings{
+              .focus_operator = op, .window_px = window, .distance_px = 1 + (width + window) % 7};
+          const auto expected = sharpness_reference(image_view(image.view, format), settings);
+          SharpnessRows<TypeParam> rows(width, settings, format);
+          for (const int first : {0, height / 2, height - 1}) {
+            rows.begin(image.view, first);
+            for (int y = first; y < height; ++y) {
+              rows.next();
+              ASSERT_TRUE(std::equal(rows.codes(), rows.codes() + width, expected.row(y)))
+                  << focus_operator_name(op) << ' ' << width << " x " << height << " window " << window << " from row "
+                  << first << " at row " << y;
+            }
           }
         }
       }
@@ -74,48 +67,101 @@ TYPED_TEST(SharpnessRowsOf, MarkEveryWindowThatHoldsASaturatedPixel) {
   const int full = sizeof(TypeParam) == 1 ? 255 : 65535;
   PaddedImage<TypeParam> image(kWidth, kHeight, 3);
   for (auto& pixel : image.storage) pixel = static_cast<TypeParam>(std::min<int>(pixel, full - 1));
-  image.view.at(0, 0) = static_cast<TypeParam>(full);
+  image.view.at(8, 8) = static_cast<TypeParam>(full);
   image.view.at(20, 15) = static_cast<TypeParam>(full);
-  SharpnessRows<TypeParam> rows(kWidth, 9, 1);
+  image.view.at(1, 28) = static_cast<TypeParam>(full);
+  SharpnessRows<TypeParam> rows(kWidth, {}, format_of(TypeParam{}));
   for (const int first : {0, 14, 17}) {
-    rows.begin(image.view, first, full);
+    rows.begin(image.view, first);
     for (int y = first; y < kHeight; ++y) {
       rows.next();
       for (int x = 0; x < kWidth; ++x) {
-        const bool expected = (x <= 4 && y <= 4) || (std::abs(x - 20) <= 4 && std::abs(y - 15) <= 4);
+        const int columns = std::min({4, x, kWidth - 1 - x});
+        const int lines = std::min({4, y, kHeight - 1 - y});
+        bool expected = false;
+        for (const auto& [u, v] : {std::pair{8, 8}, {20, 15}, {1, 28}}) {
+          expected = expected || (std::abs(x - u) <= columns && std::abs(y - v) <= lines);
+        }
         ASSERT_EQ(rows.saturated()[x] != 0, expected) << x << ", " << y << " from row " << first;
       }
     }
   }
 }
 
-TEST(SharpnessReference, IsTheFormulaOnAKnownImage) {
-  Plane<std::uint8_t> image(5, 5, 10);
-  image.at(2, 2) = 20;  // one bright pixel: ML 40 there, 10 at its four neighbours
-  const auto sums = sharpness_reference(image_view(image.view(), PixelFormat::kMono8), 3, 1);
-  EXPECT_EQ(sums.at(2, 2), 80U);
-  EXPECT_EQ(sums.at(0, 0), 0U + 0U + 0U + 0U);
-  EXPECT_EQ(sums.at(1, 1), 40U + 10U + 10U);
+/// F of the reference at a pixel.
+double sharpness(const ImageView& image, const FocusSettings& settings, int x, int y) {
+  return sharpness_code(settings, image.format).decode(sharpness_reference(image, settings).at(x, y));
+}
+
+TEST(SharpnessReference, IsTheModifiedLaplacianOnAKnownImage) {
+  Plane<std::uint8_t> image(7, 7, 10);
+  image.at(3, 3) = 20;  // ML 40 there, 10 at its four neighbours
+  const FocusSettings settings{.window_px = 3, .distance_px = 1};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  EXPECT_EQ(sharpness(view, settings, 3, 3), 80.0);
+  EXPECT_EQ(sharpness(view, settings, 2, 2), 40.0 + 10.0 + 10.0);
+  EXPECT_EQ(sharpness(view, settings, 0, 0), 0.0);
 }
 
 TEST(SharpnessReference, LooksAtNeighboursAtItsDistance) {
-  Plane<std::uint8_t> image(7, 7, 10);
-  image.at(3, 3) = 20;  // ML 40 there, 10 three pixels up, down, left and right of it, nothing in between
-  const auto sums = sharpness_reference(image_view(image.view(), PixelFormat::kMono8), 3, 3);
-  EXPECT_EQ(sums.at(3, 3), 40U);
-  EXPECT_EQ(sums.at(3, 0), 10U);
-  EXPECT_EQ(sums.at(6, 3), 10U);
-  EXPECT_EQ(sums.at(1, 1), 0U);
+  Plane<std::uint8_t> image(9, 9, 10);
+  image.at(4, 4) = 20;  // ML 40 there, 10 three pixels up, down, left and right of it, nothing in between
+  const FocusSettings settings{.window_px = 3, .distance_px = 3};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  EXPECT_EQ(sharpness(view, settings, 4, 4), 40.0);
+  EXPECT_EQ(sharpness(view, settings, 4, 1), 10.0);
+  EXPECT_EQ(sharpness(view, settings, 2, 2), 0.0);
+}
+
+TEST(SharpnessReference, KeepsTheWindowCentredAtTheBorder) {
+  Plane<std::uint8_t> image(9, 9, 10);
+  image.at(1, 4) = 20;
+  const FocusSettings settings{.window_px = 5, .distance_px = 1};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  EXPECT_EQ(sharpness(view, settings, 0, 4), 10.0) << "one column: the neighbour's response, not the pixel's";
+  EXPECT_EQ(sharpness(view, settings, 1, 4), 80.0) << "three columns";
+}
+
+TEST(SharpnessReference, IsTheSobelGradientSquared) {
+  Plane<std::uint8_t> image(9, 9, 10);
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 5; x < 9; ++x) image.at(x, y) = 30;  // a vertical edge: gx = 4 * 20 on both sides of it
+  }
+  const FocusSettings settings{.focus_operator = FocusOperator::kTenengrad, .window_px = 3, .distance_px = 1};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  EXPECT_NEAR(sharpness(view, settings, 4, 4), 2 * 3 * 6400.0, 40.0);
+  EXPECT_EQ(sharpness(view, settings, 2, 4), 0.0);
+}
+
+TEST(SharpnessReference, IsTheGreyLevelItselfForTheIntensity) {
+  Plane<std::uint16_t> image(5, 5, 700);
+  image.at(2, 2) = 4000;
+  const FocusSettings settings{.focus_operator = FocusOperator::kIntensity, .window_px = 1};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono12);
+  EXPECT_NEAR(sharpness(view, settings, 2, 2), 4000.0, 1.0);
+  EXPECT_NEAR(sharpness(view, settings, 0, 0), 700.0, 1.0);
 }
 
 TEST(SharpnessReference, HoldsItsRangeAtFullContrast) {
-  Plane<std::uint16_t> image(63, 63);
-  for (int y = 0; y < 63; ++y) {
-    for (int x = 0; x < 63; ++x) image.at(x, y) = (x + y) % 2 == 0 ? 65535 : 0;
+  Plane<std::uint16_t> wide(65, 65);
+  Plane<std::uint8_t> narrow(65, 65);
+  for (int y = 0; y < 65; ++y) {
+    for (int x = 0; x < 65; ++x) {
+      wide.at(x, y) = (x + y) % 2 == 0 ? 65535 : 0;
+      narrow.at(x, y) = (x + y) % 2 == 0 ? 255 : 0;
+    }
   }
-  const auto sums = sharpness_reference(image_view(image.view(), PixelFormat::kMono16), 63, 1);
-  // Inside 4 * 65535; at the border the repeated edge halves one direction, in the corner both.
-  EXPECT_EQ(sums.at(31, 31), 61U * 61U * 262140U + 4U * 61U * 196605U + 4U * 131070U);
+  for (int window = 3; window <= 63; window += 2) {
+    const FocusSettings settings{.window_px = window, .distance_px = 1};
+    const double area = window * window;
+    const double expected_wide = area * 4 * 65535.0;
+    EXPECT_NEAR(sharpness(image_view(wide.view(), PixelFormat::kMono16), settings, 32, 32), expected_wide,
+                1e-3 * expected_wide)
+        << window;
+    EXPECT_NEAR(sharpness(image_view(narrow.view(), PixelFormat::kMono8), settings, 32, 32), area * 1020.0,
+                1e-3 * area * 1020.0)
+        << window;
+  }
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST(Recipe, TakesDefaultsBeyondTheScan) {
   EXPECT_EQ(recipe.id, "r");
   EXPECT_EQ(recipe.start_um, -7);
   EXPECT_EQ(recipe.slices, 21);
-  EXPECT_EQ(recipe.peak, PeakMethod::kInverseRoot);
+  EXPECT_EQ(recipe.peak, PeakMethod::kFiveSample);
   EXPECT_THAT(recipe.extra_peaks, IsEmpty());
   EXPECT_EQ(recipe.camera, CameraSettings{});
 }
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{with_scan(R"("focus": {"peak": "gauss"})"), "/focus/peak", "\"parabola\""},
         BadRecipe{with_scan(R"("focus": {"extra_peaks": ["nearest", "nearest"]})"), "/focus/extra_peaks",
                   "repetitions"},
-        BadRecipe{with_scan(R"("focus": {"extra_peaks": ["inverse_root"]})"), "/focus/extra_peaks", "already"},
+        BadRecipe{with_scan(R"("focus": {"extra_peaks": ["five_sample"]})"), "/focus/extra_peaks", "already"},
         BadRecipe{with_scan(R"("focus": {"min_prominence": 1.5})"), "/focus/min_prominence", "0..1"},
         BadRecipe{with_scan(R"("camera": {"pixel_format": "RGB8"})"), "/camera/pixel_format", "Mono8"},
         BadRecipe{with_scan(R"("camera": {"exposure_us": 0})"), "/camera/exposure_us", "above 0"},

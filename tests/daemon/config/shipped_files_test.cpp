@@ -84,7 +84,8 @@ TEST(ShippedFiles, HaveTheReferenceRecipe) {
   EXPECT_EQ(chapter.focus.window_px, 9);
   EXPECT_EQ(chapter.focus.min_prominence, 0.5);
   EXPECT_EQ(chapter.peak, PeakMethod::kLogParabola);
-  EXPECT_THAT(chapter.extra_peaks, ::testing::ElementsAre(PeakMethod::kNearest, PeakMethod::kParabola));
+  EXPECT_THAT(chapter.extra_peaks, ::testing::ElementsAre(PeakMethod::kNearest, PeakMethod::kParabola, PeakMethod::kFiveSample));
+  EXPECT_EQ(chapter.focus.distance_px, 1);
 }
 
 TEST(ShippedFiles, DescribeEveryKeyInTheReadme) {

@@ -31,7 +31,7 @@ TEST(ResultWriter, WritesEveryFileAndNothingElse) {
     names.insert(entry.path().filename().string());
   }
   EXPECT_THAT(names, testing::ElementsAre("height.gsf", "height.tiff", "height_nearest.tiff", "mask.png", "preview.png",
-                                          "result.json", "step_log.csv", "texture.png"));
+                                          "result.json", "sigma.tiff", "step_log.csv", "texture.png"));
 }
 
 TEST(ResultWriter, ListsTheFilesWithTheirTrueSizes) {
@@ -43,7 +43,7 @@ TEST(ResultWriter, ListsTheFilesWithTheirTrueSizes) {
   directory.commit();
 
   const json result = json::parse(test::read_text(scratch / "job/result.json"));
-  ASSERT_EQ(result["files"].size(), 7U);
+  ASSERT_EQ(result["files"].size(), 8U);
   EXPECT_EQ(result["files"][0], json({{"name", "slices/"}, {"files", 2}, {"size_bytes", 8}}));
   for (const auto& file : result["files"]) {
     if (file["name"] == "slices/") continue;
@@ -69,9 +69,16 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
   EXPECT_EQ(result["values"]["points"], 18);
   EXPECT_EQ(result["values"]["valid_points"], 16);
   EXPECT_NEAR(result["values"]["valid_fraction"].get<double>(), 16.0 / 18.0, 1e-6);
-  EXPECT_EQ(
-      result["values"]["hole_points"],
-      json({{"low_prominence", 1}, {"first_slice", 1}, {"last_slice", 0}, {"not_bracketed", 0}, {"saturated", 1}}));
+  EXPECT_EQ(result["values"]["hole_points"], json({{"low_prominence", 1},
+                                                    {"first_slice", 1},
+                                                    {"last_slice", 0},
+                                                    {"not_bracketed", 0},
+                                                    {"saturated", 1},
+                                                    {"insignificant", 0},
+                                                    {"edge_bleeding", 0}}));
+  EXPECT_EQ(result["values"]["sigma_median_um"], 0.2);
+  EXPECT_EQ(result["focus"]["noise_grey"], 1.5);
+  EXPECT_EQ(result["focus"]["curve_width_um"], 30.0);
   EXPECT_EQ(result["focus"]["peak"], "log_parabola");
   EXPECT_EQ(result["focus"]["pixel_pitch_y_um"], 4.0);
   EXPECT_EQ(result["focus"]["state_bytes_per_pixel"], 24.0);

@@ -12,8 +12,11 @@ namespace fvd::test {
 
 /// height[y][x] = x + 10 y um; the points of `hole` in the first row carry one reason each.
 inline HeightMap sample_map(int width = 6, int height = 3) {
-  HeightMap map{Plane<float>(width, height), Plane<std::uint8_t>(width, height), Plane<float>(width, height, 0.9F),
-                PixelFormat::kMono8, Plane<std::uint16_t>(width, height)};
+  HeightMap map = empty_map(width, height, PixelFormat::kMono8);
+  map.prominence = Plane<float>(width, height, 0.9F);
+  map.sigma_m = Plane<float>(width, height, 0.2e-6F);
+  map.noise_grey = 1.5;
+  map.curve_width_um = 30.0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       map.height_m.at(x, y) = static_cast<float>((x + 10 * y) * kMetresPerMicrometer);
@@ -26,6 +29,7 @@ inline HeightMap sample_map(int width = 6, int height = 3) {
 inline void make_hole(HeightMap& map, int x, int y, unsigned reasons) {
   map.mask.at(x, y) = static_cast<std::uint8_t>(reasons);
   map.height_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
+  map.sigma_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
 }
 
 inline ResultData sample_result() {

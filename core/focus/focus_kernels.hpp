@@ -1,0 +1,115 @@
+#pragma once
+
+/// The loops in which a scan spends its time, once for every kind of processor, chosen when the program starts.
+///
+/// One source, focus_kernels.inc, is compiled three times: without vector code ("scalar"), for the processor every
+/// build may assume ("baseline"), and for AVX2. All three give the same bits; the tests hold them against each other.
+/// The environment variable FVD_FORCE_KERNEL names the one to use.
+///
+/// Rows have shape [width] unless said otherwise, width >= 1; outputs do not overlap inputs. context: thread-safe.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace fvd {
+
+/// One row's state of focus curves that pass by once, as columns. Sharpness is in codes, see sharpness_code.hpp.
+struct CurveRow {
+  std::uint16_t* previous;    ///< the sample before
+  std::uint16_t* previous2;   ///< the one before that
+  std::uint16_t* peak;        ///< largest so far; of equal ones the first
+  std::uint16_t* left;        ///< the sample before the peak, 0 where there is none
+  std::uint16_t* left2;       ///< the one before that
+  std::uint16_t* right;       ///< the sample after the peak, 0 while there is none
+  std::uint16_t* right2;      ///< the one after that
+  std::uint16_t* minimum;     ///< smallest so far
+  std::uint16_t* peak_index;  ///< number of the peak's sample, 0-based
+  std::uint8_t* saturated;    ///< 1 if a pixel of the window was saturated at the peak
+};
+
+/// What a sample's number says about the heights about it; one entry a sample. u = (z - z of the sample) / scale.
+struct HeightTable {
+  const double* z_um;
+  const float* scale_um;  ///< mean distance to the neighbours
+  const float* u_left2;   ///< 0 where there is no such sample, or its z does not run on
+  const float* u_left;
+  const float* u_right;
+  const float* u_right2;
+  const std::int32_t* mask;  ///< mask_reason bits that follow from the number alone
+};
+
+/// What a fit needs beside the curve.
+struct FitParameters {
+  float min_prominence;
+  float min_significance;
+  float code_unit;  ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
+  bool root_code;
+};
+
+/// Where fits go; NaN in height and sigma exactly where mask is not 0.
+struct FitRow {
+  float* height_m;
+  float* sigma_m;
+  float* prominence;
+  std::uint8_t* mask;
+};
+
+struct FocusKernels {
+  std::string_view name;
+
+  /// ML of the row from the rows `distance` above and below; columns within `distance` of an end are left alone.
+  void (*laplacian_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
+                       int distance, std::uint16_t* out) noexcept;
+  void (*laplacian_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
+                        int distance, std::uint32_t* out) noexcept;
+  /// (gx^2 + gy^2) >> shift of the Sobel gradients; ends as above.
+  void (*tenengrad_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
+                       int distance, int shift, std::uint32_t* out) noexcept;
+  void (*tenengrad_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
+                        int distance, int shift, std::uint32_t* out) noexcept;
+
+  /// columns += entering - leaving; leaving = entering; scaled = columns / 2^shift, rounded.
+  void (*slide_u16)(std::uint16_t* columns, const std::uint16_t* entering, std::uint16_t* leaving, int shift, int width,
+                    std::uint16_t* scaled) noexcept;
+  /// columns += entering - leaving; leaving = entering.
+  void (*slide_u32)(std::uint32_t* columns, const std::uint32_t* entering, std::uint32_t* leaving, int width) noexcept;
+  /// out[x] = values[x] + .. + values[x + window - 1] for x = 0 .. width - window. scratch: shape [3][width].
+  void (*window_sums_u16)(const std::uint16_t* values, int window, int width, std::uint16_t* scratch,
+                          std::uint16_t* out) noexcept;
+  void (*window_sums_u32)(const std::uint32_t* values, int window, int width, std::uint32_t* scratch,
+                          std::uint32_t* out) noexcept;
+  /// out = round(gain * sqrt(sums)); sums < 2^31.
+  void (*root_code)(const std::uint32_t* sums, float gain, int width, std::uint16_t* out) noexcept;
+
+  std::uint8_t (*maximum_u8)(const std::uint8_t* row, int width) noexcept;
+  std::uint16_t (*maximum_u16)(const std::uint16_t* row, int width) noexcept;
+
+  /// sums += codes / 2^shift, rounded.
+  void (*add_to_bin)(std::uint16_t* sums, const std::uint16_t* codes, int shift, int width) noexcept;
+
+  /// Takes sample `index` >= 1 in; texture keeps the pixel of the peak's sample.
+  void (*update_u8)(const CurveRow& row, const std::uint16_t* codes, const std::uint8_t* saturated,
+                    const std::uint8_t* pixels, std::uint8_t* texture, int width, std::uint16_t index) noexcept;
+  void (*update_u16)(const CurveRow& row, const std::uint16_t* codes, const std::uint8_t* saturated,
+                     const std::uint16_t* pixels, std::uint16_t* texture, int width, std::uint16_t index) noexcept;
+
+  /// Sum of |I(-1,-1) - 2 I(0,-1) + I(1,-1) - 2 (..) + ..| over x = 1 .. width - 2 (Immerkaer, CVIU 64(2), 1996).
+  std::uint64_t (*noise_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below,
+                            int width) noexcept;
+  std::uint64_t (*noise_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below,
+                             int width) noexcept;
+
+  /// The five-sample fit, see five_sample_fit.hpp. noise: standard deviation of a sample, as a share of full scale.
+  void (*fit_five)(const CurveRow& row, const HeightTable& table, const float* noise, int width,
+                   const FitParameters& parameters, const FitRow& out) noexcept;
+};
+
+/// The fastest this processor runs, or the one FVD_FORCE_KERNEL names. Throws Error kBadInput (once, at the first call)
+/// for a name that is none or that this processor cannot run.
+[[nodiscard]] const FocusKernels& focus_kernels();
+
+/// All this processor runs, slowest first.
+[[nodiscard]] std::span<const FocusKernels* const> all_focus_kernels() noexcept;
+
+}  // namespace fvd

@@ -1,0 +1,40 @@
+#pragma once
+
+/// From one row's condensed focus curves to heights, their standard errors, prominence and reasons to be a hole.
+
+#include <vector>
+
+#include "core/focus/focus_kernels.hpp"
+#include "core/focus/focus_settings.hpp"
+#include "core/focus/sample_heights.hpp"
+#include "core/focus/sharpness_code.hpp"
+
+namespace fvd {
+
+/// What the noise of a pixel makes of a sample of the focus measure.
+///
+/// Modified Laplacian: the noise of the window's pixels adds up with random signs, sigma_F = c * window * sigma. With
+/// independent signs c is sqrt(12), the weights 2, 2, 1, 1, 1, 1 squared; neighbours that share theirs make it more.
+/// Tenengrad: the same of 2 g dg, so it grows with the root of F. Intensity: sigma_F = window * sigma.
+[[nodiscard]] double sample_noise(const FocusSettings& settings, double noise_grey, double sharpness) noexcept;
+
+/// context: const members from many threads.
+class RowFit {
+ public:
+  /// z of the samples; bins of how many slices.
+  RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method);
+
+  /// noise_grey: standard deviation of each pixel, shape [width]; overwritten. out: shape [width] each.
+  void fit(const CurveRow& row, float* noise_grey, int width, const FitRow& out) const noexcept;
+
+ private:
+  void fit_triples(const CurveRow& row, const float* noise, int width, const FitRow& out) const noexcept;
+
+  FocusSettings settings_;
+  SharpnessCode code_;
+  PeakMethod method_;
+  HeightTables heights_;
+  double bin_gain_;  // from the mean code of a bin's slices to the bin's code
+};
+
+}  // namespace fvd
