@@ -7,7 +7,8 @@ namespace fvd::sim {
 SimWorld::SimWorld(const WorldParameters& parameters, const AxisModel& axis)
     : axis_(axis),
       surface_(make_surface(parameters)),
-      renderer_(make_texture(surface_.poor, parameters.contrast, parameters.poor_contrast, parameters.seed),
+      renderer_(make_texture(parameters.texture, surface_.poor, parameters.contrast, parameters.poor_contrast,
+                             parameters.seed),
                 surface_.height_um,
                 {.defocus_px_per_um = parameters.defocus_px_per_um,
                  .readout_noise = parameters.readout_noise,

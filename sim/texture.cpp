@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <span>
 
 #include "sim/gaussian_transfer.hpp"
 
@@ -16,7 +17,21 @@ struct Octave {
   double sigma_px;
   double weight;
 };
-constexpr std::array<Octave, 4> kOctaves{{{0.6, 0.80}, {1.2, 0.45}, {3.0, 0.30}, {8.0, 0.25}}};
+constexpr std::array<Octave, 4> kGranite{{{0.6, 0.80}, {1.2, 0.45}, {3.0, 0.30}, {8.0, 0.25}}};
+constexpr std::array<Octave, 1> kFine{{{0.6, 1.0}}};
+constexpr std::array<Octave, 1> kWhite{{{0.0, 1.0}}};
+
+std::span<const Octave> octaves(TextureKind kind) {
+  switch (kind) {
+    case TextureKind::kGranite:
+      return kGranite;
+    case TextureKind::kFine:
+      return kFine;
+    case TextureKind::kWhite:
+      return kWhite;
+  }
+  return kGranite;
+}
 
 double sample_sd(const Plane<float>& plane) {
   double sum = 0.0;
@@ -31,13 +46,14 @@ double sample_sd(const Plane<float>& plane) {
 
 }  // namespace
 
-Plane<float> make_texture(const Plane<std::uint8_t>& poor, double contrast, double poor_contrast, std::uint64_t seed) {
+Plane<float> make_texture(TextureKind kind, const Plane<std::uint8_t>& poor, double contrast, double poor_contrast,
+                          std::uint64_t seed) {
   const int width = poor.width();
   const int height = poor.height();
   Plane<float> texture(width, height);
   std::mt19937_64 random(seed);
   std::normal_distribution<float> normal;
-  for (const Octave& octave : kOctaves) {
+  for (const Octave& octave : octaves(kind)) {
     Plane<float> white(width, height);
     for (float& value : white.pixels()) value = normal(random);
     const Plane<float> grains = FrequencyBlur(white).blurred(octave.sigma_px * octave.sigma_px);

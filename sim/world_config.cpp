@@ -11,6 +11,7 @@ namespace fvd::sim {
 namespace {
 
 const std::vector<std::string> kSurfaces{"chapter", "tilted", "sphere", "rough", "height_map"};
+const std::vector<std::string> kTextures{"granite", "fine", "white"};
 
 void describe(WorldParameters& world, Fields& fields) {
   std::string surface = kSurfaces[static_cast<std::size_t>(world.surface)];
@@ -30,6 +31,9 @@ void describe(WorldParameters& world, Fields& fields) {
   fields.text("height_map_file", file, 4096, "height_map: a GSF file");
   fields.number("defocus_px_per_um", world.defocus_px_per_um, positive(10.0), "sigma of the blur per um of defocus");
   fields.number("readout_noise", world.readout_noise, {0.0, 50.0}, "standard deviation in 8-bit grey levels");
+  std::string texture = kTextures[static_cast<std::size_t>(world.texture)];
+  fields.choice("texture", texture, kTextures, "grains of the surface");
+  world.texture = static_cast<TextureKind>(std::find(kTextures.begin(), kTextures.end(), texture) - kTextures.begin());
   fields.number("contrast", world.contrast, {0.0, 31.0}, "standard deviation of the texture in 8-bit grey levels");
   fields.number("poor_contrast", world.poor_contrast, {0.0, 1.0}, "contrast of the texture-poor patch, a fraction");
   fields.integer("seed", world.seed, {0, INT64_MAX}, "of texture, surface and noise");

@@ -10,6 +10,12 @@ namespace fvd::sim {
 
 enum class SurfaceKind { kChapter, kTilted, kSphere, kRough, kHeightMap };
 
+enum class TextureKind {
+  kGranite,  ///< grains of 0.6, 1.2, 3 and 8 pixels
+  kFine,     ///< grains of 0.6 pixels
+  kWhite,    ///< every pixel by itself
+};
+
 struct WorldParameters {
   SurfaceKind surface = SurfaceKind::kChapter;
   int width_px = 480;  ///< sensor; the chapter's surface needs exactly 480 x 360, a height map brings its own size
@@ -27,6 +33,7 @@ struct WorldParameters {
 
   double defocus_px_per_um = 0.04;  ///< sigma of the blur per um of defocus
   double readout_noise = 1.5;       ///< standard deviation in 8-bit grey levels
+  TextureKind texture = TextureKind::kGranite;
   double contrast = 28.0;           ///< standard deviation of the texture in 8-bit grey levels
   double poor_contrast = 0.03;      ///< of the texture-poor patch, as a fraction
   std::uint64_t seed = 1;           ///< of texture, surface and noise

@@ -43,7 +43,8 @@ struct HeightTable {
 struct FitParameters {
   float min_prominence;
   float min_significance;
-  float code_unit;  ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
+  float shape_error;  ///< see five_sample_fit.hpp
+  float code_unit;    ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
   bool root_code;
 };
 
@@ -100,9 +101,17 @@ struct FocusKernels {
   std::uint64_t (*noise_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below,
                              int width) noexcept;
 
-  /// The five-sample fit, see five_sample_fit.hpp. noise: standard deviation of a sample, as a share of full scale.
-  void (*fit_five)(const CurveRow& row, const HeightTable& table, const float* noise, int width,
-                   const FitParameters& parameters, const FitRow& out) noexcept;
+  /// The five-sample fit, see five_sample_fit.hpp. noise: standard deviation of a sample, least_amplitude: of peak less
+  /// minimum, below which a point is edge bleeding; both as shares of full scale.
+  void (*fit_five)(const CurveRow& row, const HeightTable& table, const float* noise, const float* least_amplitude,
+                   int width, const FitParameters& parameters, const FitRow& out) noexcept;
+  /// The largest peak less minimum, in shares.
+  float (*largest_amplitude)(const std::uint16_t* peak, const std::uint16_t* minimum, float code_unit, bool root_code,
+                             int width) noexcept;
+  /// sigma = sqrt(sigma^2 + (factor * gradient)^2), gradient from heights `reach` to either side; a missing one is 0.
+  /// upper, lower: rows of heights `reach` above and below. Columns within `reach` of an end are left alone.
+  void (*add_slope_error)(const float* height, const float* upper, const float* lower, int reach, float factor,
+                          int width, float* sigma) noexcept;
 };
 
 /// The fastest this processor runs, or the one FVD_FORCE_KERNEL names. Throws Error kBadInput (once, at the first call)

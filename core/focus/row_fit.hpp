@@ -2,6 +2,7 @@
 
 /// From one row's condensed focus curves to heights, their standard errors, prominence and reasons to be a hole.
 
+#include <optional>
 #include <vector>
 
 #include "core/focus/focus_kernels.hpp"
@@ -24,11 +25,23 @@ class RowFit {
   /// z of the samples; bins of how many slices.
   RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method);
 
-  /// noise_grey: standard deviation of each pixel, shape [width]; overwritten. out: shape [width] each.
-  void fit(const CurveRow& row, float* noise_grey, int width, const FitRow& out) const noexcept;
+  /// noise_grey: standard deviation of each pixel, shape [width]; overwritten. least_amplitude: of peak less minimum
+  /// as shares, below which a point is edge bleeding, shape [width]. out: shape [width] each.
+  void fit(const CurveRow& row, float* noise_grey, const float* least_amplitude, int width,
+           const FitRow& out) const noexcept;
+
+  /// Full width at half maximum of one curve, from the peak and its neighbours; nothing where they enclose no maximum.
+  [[nodiscard]] std::optional<double> curve_width_um(const CurveRow& row, int x) const noexcept;
+
+  /// A code's share of full scale.
+  [[nodiscard]] double share(std::uint16_t code) const noexcept {
+    const double value = code * SharpnessCode::kUnit;
+    return code_.root ? value * value : value;
+  }
 
  private:
-  void fit_triples(const CurveRow& row, const float* noise, int width, const FitRow& out) const noexcept;
+  void fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
+                   const FitRow& out) const noexcept;
 
   FocusSettings settings_;
   SharpnessCode code_;

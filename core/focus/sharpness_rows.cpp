@@ -72,13 +72,13 @@ Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings
   const int radius = settings.window_px / 2;
   const float gain = root_gain(code, gradient_shift<Pixel>(settings.focus_operator));
   for (int y = 0; y < image.height; ++y) {
-    const int rows = std::min({radius, y, image.height - 1 - y});
+    const WindowReach rows(y, radius, image.height);
     for (int x = 0; x < image.width; ++x) {
-      const int columns = std::min({radius, x, image.width - 1 - x});
+      const WindowReach columns(x, radius, image.width);
       std::uint64_t sum = 0;
-      for (int u = x - columns; u <= x + columns; ++u) {
+      for (int u = columns.first; u <= columns.last; ++u) {
         std::uint64_t column = 0;
-        for (int v = y - rows; v <= y + rows; ++v) column += values.at(u, v);
+        for (int v = rows.first; v <= rows.last; ++v) column += values.at(u, v);
         sum += code.root ? column : linear_code(column, code.shift);
       }
       codes.at(x, y) = code.root ? root_code(sum, gain) : static_cast<std::uint16_t>(sum);
@@ -91,9 +91,9 @@ Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings
 template <typename Sum>
 void sum_ends(const Sum* values, int width, int radius, Sum* out) {
   const auto at = [&](int x) {
-    const int reach = std::min({radius, x, width - 1 - x});
+    const WindowReach reach(x, radius, width);
     Sum sum = 0;
-    for (int u = x - reach; u <= x + reach; ++u) sum = static_cast<Sum>(sum + values[u]);
+    for (int u = reach.first; u <= reach.last; ++u) sum = static_cast<Sum>(sum + values[u]);
     out[x] = sum;
   };
   const int left_end = std::min(radius, width);
@@ -164,7 +164,7 @@ void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first) noexce
     clear(wide_columns_);
   }
   std::fill(saturated_columns_.begin(), saturated_columns_.end(), std::uint16_t{0});
-  low_ = first - std::min({radius_, first, image.height - 1 - first});
+  low_ = WindowReach(first, radius_, image.height).first;
   high_ = low_;
 }
 
@@ -259,9 +259,9 @@ void SharpnessRows<Pixel>::leave(int y) noexcept {
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::next() noexcept {
-  const int reach = std::min({radius_, y_, image_.height - 1 - y_});
-  while (high_ <= y_ + reach) enter(high_++);
-  while (low_ < y_ - reach) leave(low_++);
+  const WindowReach reach(y_, radius_, image_.height);
+  while (high_ <= reach.last) enter(high_++);
+  while (low_ < reach.first) leave(low_++);
   if (narrow_) {
     emit_narrow();
   } else {

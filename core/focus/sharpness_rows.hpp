@@ -4,8 +4,9 @@
 ///
 ///   F(x,y) = sum of the operator's values over the window about (x,y)
 ///
-/// Outside the image the edge pixel is repeated. Near the image's border the window shrinks on both sides alike, so
-/// that it stays centred: a clipped one would look past the pixel into the image, which tilts every slope there.
+/// Outside the image the edge pixel is repeated. Near the image's border the window shrinks on both sides alike, to
+/// half its size at the least, so that it stays centred: a clipped one would look past the pixel into the image, which
+/// tilts every slope there. What still reaches beyond the border is cut off.
 ///
 /// Operators, with neighbours at distance d:
 ///   modified Laplacian (Nayar and Nakagawa, IEEE PAMI 16(8), 1994): |2 I - I(x-d) - I(x+d)| + |2 I - I(y-d) - I(y+d)|;
@@ -15,6 +16,7 @@
 ///
 /// Running column sums and sums in powers of three make the cost nearly independent of the window.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +25,17 @@
 #include "core/image.hpp"
 
 namespace fvd {
+
+/// The rows, or columns, of the window about `centre`: first and last.
+struct WindowReach {
+  WindowReach(int centre, int radius, int size) noexcept {
+    const int reach = std::max(std::min({radius, centre, size - 1 - centre}), (radius + 1) / 2);
+    first = std::max(0, centre - reach);
+    last = std::min(size - 1, centre + reach);
+  }
+  int first;
+  int last;
+};
 
 /// Pixel: std::uint8_t or std::uint16_t. All memory is taken by the constructor.
 /// context: one thread; one scanner a thread and slice.

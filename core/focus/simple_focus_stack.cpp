@@ -5,9 +5,9 @@
 #include <cassert>
 
 #include "core/error.hpp"
+#include "core/focus/map_finish.hpp"
 #include "core/focus/noise_probe.hpp"
 #include "core/focus/peak_accumulator.hpp"
-#include "core/focus/row_fit.hpp"
 #include "core/focus/sharpness_rows.hpp"
 #include "core/pipeline/worker_pool.hpp"
 
@@ -28,10 +28,10 @@ Plane<std::uint16_t> widened(const ImageView& slice) {
 }
 
 bool window_saturated(const Plane<std::uint16_t>& pixels, int x, int y, int radius, int level) {
-  const int columns = std::min({radius, x, pixels.width() - 1 - x});
-  const int rows = std::min({radius, y, pixels.height() - 1 - y});
-  for (int v = y - rows; v <= y + rows; ++v) {
-    for (int u = x - columns; u <= x + columns; ++u) {
+  const WindowReach columns(x, radius, pixels.width());
+  const WindowReach rows(y, radius, pixels.height());
+  for (int v = rows.first; v <= rows.last; ++v) {
+    for (int u = columns.first; u <= columns.last; ++u) {
       if (pixels.at(u, v) >= level) return true;
     }
   }
@@ -53,31 +53,35 @@ std::vector<std::uint16_t> binned(const std::vector<std::uint16_t>& codes, std::
   return samples;
 }
 
-/// A curve's condensed form in the columns that a fit reads, one pixel wide.
-struct OneCurve {
-  OneCurve(const std::vector<std::uint16_t>& samples, std::size_t peak_at, bool window_saturated)
-      : saturated(window_saturated ? 1 : 0) {
+/// A row's curves in their condensed form.
+struct CondensedRow {
+  explicit CondensedRow(int width) : saturated(static_cast<std::size_t>(width)) {
+    for (auto& column : columns) column.resize(static_cast<std::size_t>(width));
+  }
+  void set(int x, const std::vector<std::uint16_t>& samples, std::size_t peak_at, bool window_saturated) {
     const auto at = [&](std::ptrdiff_t offset) -> std::uint16_t {
       const auto i = static_cast<std::ptrdiff_t>(peak_at) + offset;
       return i < 0 || i >= static_cast<std::ptrdiff_t>(samples.size()) ? std::uint16_t{0}
                                                                        : samples[static_cast<std::size_t>(i)];
     };
-    values = {0,
-              0,
-              at(0),
-              at(-1),
-              at(-2),
-              at(1),
-              at(2),
-              *std::min_element(samples.begin(), samples.end()),
-              static_cast<std::uint16_t>(peak_at)};
+    const std::array<std::uint16_t, 9> values{0,
+                                              0,
+                                              at(0),
+                                              at(-1),
+                                              at(-2),
+                                              at(1),
+                                              at(2),
+                                              *std::min_element(samples.begin(), samples.end()),
+                                              static_cast<std::uint16_t>(peak_at)};
+    for (std::size_t i = 0; i < values.size(); ++i) columns[i][static_cast<std::size_t>(x)] = values[i];
+    saturated[static_cast<std::size_t>(x)] = window_saturated ? 1 : 0;
   }
   [[nodiscard]] CurveRow row() {
-    return {&values[0], &values[1], &values[2], &values[3], &values[4],
-            &values[5], &values[6], &values[7], &values[8], &saturated};
+    return {columns[0].data(), columns[1].data(), columns[2].data(), columns[3].data(), columns[4].data(),
+            columns[5].data(), columns[6].data(), columns[7].data(), columns[8].data(), saturated.data()};
   }
-  std::array<std::uint16_t, 9> values{};
-  std::uint8_t saturated;
+  std::array<std::vector<std::uint16_t>, 9> columns;
+  std::vector<std::uint8_t> saturated;
 };
 
 }  // namespace
@@ -106,10 +110,9 @@ HeightMap SimpleFocusStack::finish(PeakMethod method) const {
   WorkerPool pool(1);
   NoiseProbe noise(width, height);
   for (const auto& slice : pixels_) noise.add(image_view(slice.view(), PixelFormat::kMono16), pool);
-  std::vector<float> noise_row(static_cast<std::size_t>(width));
+  CondensedRow condensed(width);
   std::vector<std::uint16_t> curve(sharpness_.size());
-  for (int y = 0; y < height; ++y) {
-    noise.noise_row(y, noise_row.data());
+  const auto curves = [&](int /*thread*/, int y, std::uint16_t* texture) {
     for (int x = 0; x < width; ++x) {
       for (std::size_t k = 0; k < curve.size(); ++k) curve[k] = sharpness_[k].at(x, y);
       const std::vector<std::uint16_t> samples = binned(curve, bin);
@@ -120,15 +123,14 @@ HeightMap SimpleFocusStack::finish(PeakMethod method) const {
       for (std::size_t k = first; k < end; ++k) {
         saturated = saturated || window_saturated(pixels_[k], x, y, settings_.window_px / 2, max_grey_level(format_));
       }
-      OneCurve one(samples, peak, saturated);
-      fit.fit(one.row(), &noise_row[static_cast<std::size_t>(x)], 1,
-              {&map.height_m.at(x, y), &map.sigma_m.at(x, y), &map.prominence.at(x, y), &map.mask.at(x, y)});
+      condensed.set(x, samples, peak, saturated);
       // The middle slice of the bin, or the first where the bin ends before its middle.
       const std::size_t middle = first + (bin - 1) / 2;
-      map.texture.at(x, y) = pixels_[middle < end ? middle : first].at(x, y);
+      if (texture != nullptr) texture[x] = pixels_[middle < end ? middle : first].at(x, y);
     }
-  }
-  map.noise_grey = noise.median();
+    return condensed.row();
+  };
+  finish_map(curves, fit, settings_, noise, pool, map);
   return map;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/focus/map_finish.hpp"
 #include "core/focus/noise_probe.hpp"
 #include "core/focus/peak_accumulator.hpp"
 #include "core/focus/row_fit.hpp"
@@ -54,22 +55,31 @@ class TypedStack {
     pool.run(bands, std::ref(scan_band));  // by reference: a copy of the captures would be allocated
   }
 
-  /// Rows [first, end) of the map.
-  void fit_rows(int first, int end, const SampleHeights& heights, const RowFit& fit, const NoiseProbe& noise,
-                HeightMap& map) const {
+  HeightMap finish(const SampleHeights& heights, const RowFit& fit, const NoiseProbe& noise, HeightMap map,
+                   WorkerPool& pool) {
     const int width = map.height_m.width();
-    PeakAccumulator<Pixel> scratch(width, 1, settings_.bin_slices > 1);
-    SliceBinner<Pixel> binner(width, settings_.bin_slices);
-    const StateRow<Pixel> row = scratch.row(0);
-    std::vector<float> noise_row(static_cast<std::size_t>(width));
-    for (int y = first; y < end; ++y) {
-      scratch.copy_row(peaks_, y);
-      if (heights.pending() > 0) binner.close(row, heights.samples(), heights.pending());
-      noise.noise_row(y, noise_row.data());
-      fit.fit(row.curve, noise_row.data(), width,
-              {map.height_m.row(y), map.sigma_m.row(y), map.prominence.row(y), map.mask.row(y)});
-      std::copy_n(row.texture, width, map.texture.row(y));
+    // An incomplete last bin is taken in on a copy: more slices may come.
+    struct Lane {
+      PeakAccumulator<Pixel> copy;
+      SliceBinner<Pixel> binner;
+    };
+    std::vector<Lane> lanes;
+    if (heights.pending() > 0) {
+      for (int i = 0; i < pool.threads(); ++i) lanes.push_back({{width, 1, true}, {width, settings_.bin_slices}});
     }
+    const auto curves = [&](int thread, int y, std::uint16_t* texture) {
+      StateRow<Pixel> row = peaks_.row(y);
+      if (!lanes.empty()) {
+        Lane& lane = lanes[static_cast<std::size_t>(thread)];
+        lane.copy.copy_row(peaks_, y);
+        row = lane.copy.row(0);
+        lane.binner.close(row, heights.samples(), heights.pending());
+      }
+      if (texture != nullptr) std::copy_n(row.texture, width, texture);
+      return row.curve;
+    };
+    finish_map(curves, fit, settings_, noise, pool, map);
+    return map;
   }
 
   [[nodiscard]] std::size_t state_bytes() const { return peaks_.memory_bytes(); }
@@ -199,19 +209,13 @@ std::size_t StreamingFocusStack::memory_bytes(int width, int height, PixelFormat
 
 HeightMap StreamingFocusStack::finish(PeakMethod method) const {
   if (slices() == 0) throw Error(ErrorCode::kBadSlice, "a height map needs slices; there are none");
-  const int height = impl_->height;
-  HeightMap map = empty_map(impl_->width, height, impl_->format);
   const RowFit fit(impl_->heights.means_um(), impl_->settings, impl_->format, method);
-  const int bands = impl_->pool->threads();
-  impl_->pool->run(bands, [&](int band) {
-    std::visit(
-        [&](const auto& stack) {
-          stack.fit_rows(height * band / bands, height * (band + 1) / bands, impl_->heights, fit, impl_->noise, map);
-        },
-        impl_->stack);
-  });
-  map.noise_grey = impl_->noise.median();
-  return map;
+  return std::visit(
+      [&](auto& stack) {
+        return stack.finish(impl_->heights, fit, impl_->noise, empty_map(impl_->width, impl_->height, impl_->format),
+                            *impl_->pool);
+      },
+      impl_->stack);
 }
 
 }  // namespace fvd

@@ -48,7 +48,7 @@ ExposureRequest whole(int width, int height, PixelFormat format = PixelFormat::k
 
 TEST(DefocusRenderer, EqualsTheDirectBlurInTheFrequencyDomain) {
   const Plane<std::uint8_t> rich(128, 96);
-  const Plane<float> texture = make_texture(rich, 28.0, 1.0, 5);
+  const Plane<float> texture = make_texture(TextureKind::kGranite, rich, 28.0, 1.0, 5);
   const Plane<float> flat(128, 96, 0.0F);
   DefocusRenderer renderer(texture, flat, {.readout_noise = 0.0, .threads = 1});
   const FrequencyBlur direct(texture);
@@ -91,7 +91,7 @@ TEST(DefocusRenderer, RepeatsItsNoiseFromTheSeedAndTheExposure) {
 
 TEST(DefocusRenderer, RendersARegionAsTheCutOutOfTheWhole) {
   const Plane<std::uint8_t> rich(64, 48);
-  DefocusRenderer renderer(make_texture(rich, 28.0, 1.0, 5), Plane<float>(64, 48, 10.0F),
+  DefocusRenderer renderer(make_texture(TextureKind::kGranite, rich, 28.0, 1.0, 5), Plane<float>(64, 48, 10.0F),
                            {.readout_noise = 0.0, .threads = 1});
   std::vector<std::uint8_t> all(64 * 48);
   renderer.render(30.0, whole(64, 48), std::as_writable_bytes(std::span(all)));
@@ -107,7 +107,7 @@ TEST(DefocusRenderer, RendersARegionAsTheCutOutOfTheWhole) {
 
 TEST(Texture, DoesNotSaturateAndHasItsContrast) {
   const Plane<std::uint8_t> rich(256, 256);
-  const Plane<float> texture = make_texture(rich, 28.0, 1.0, 9);
+  const Plane<float> texture = make_texture(TextureKind::kGranite, rich, 28.0, 1.0, 9);
   double squares = 0.0;
   for (const float value : texture.pixels()) {
     ASSERT_GT(value, 10.0F);

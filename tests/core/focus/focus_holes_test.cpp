@@ -1,7 +1,9 @@
 /// Points the stack must not give a height, each with its reason.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -23,7 +25,8 @@ struct Spot {
 HeightMap map_of(const std::vector<Spot>& spots, PixelFormat format = PixelFormat::kMono8, int grey = 100,
                  PeakMethod method = PeakMethod::kParabola) {
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, format, {.window_px = 3, .distance_px = 1, .min_prominence = 0.5}, pool);
+  StreamingFocusStack stack(3, 3, format,
+                            {.window_px = 3, .distance_px = 1, .min_prominence = 0.5, .min_significance = 0.0}, pool);
   for (const Spot& spot : spots) {
     if (format == PixelFormat::kMono8) {
       Plane<std::uint8_t> slice(3, 3, static_cast<std::uint8_t>(grey));
@@ -96,7 +99,8 @@ TEST(FocusHoles, SaturationIsFullScaleOfTheFormat) {
 TEST(FocusHoles, SaturationElsewhereInTheCurveIsNoReason) {
   // The spot is at full scale in the first slice, but a flat slice of full scale has no sharpness.
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .distance_px = 1, .min_prominence = 0.5}, pool);
+  StreamingFocusStack stack(3, 3, PixelFormat::kMono8,
+                            {.window_px = 3, .distance_px = 1, .min_prominence = 0.5, .min_significance = 0.0}, pool);
   for (const int level : {-1, 10, 90, 10}) {
     Plane<std::uint8_t> slice(3, 3, level < 0 ? 255 : 100);
     if (level >= 0) slice.at(1, 1) = static_cast<std::uint8_t>(100 + level);
@@ -105,9 +109,67 @@ TEST(FocusHoles, SaturationElsewhereInTheCurveIsNoReason) {
   EXPECT_EQ(middle(stack.finish(PeakMethod::kParabola)), 0U);
 }
 
+TEST(FocusHoles, NoiseAloneIsInsignificantWhateverItsProminence) {
+  // A window of 3 x 3 sums so little that noise alone makes a prominent curve.
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(100.0, 3.0);
+  WorkerPool pool(1);
+  StreamingFocusStack stack(100, 100, PixelFormat::kMono8, {.window_px = 3, .min_prominence = 0.3}, pool);
+  for (int k = 0; k < 40; ++k) {
+    Plane<std::uint8_t> slice(100, 100);
+    for (auto& pixel : slice.pixels()) pixel = static_cast<std::uint8_t>(std::lround(normal(random)));
+    stack.push(image_view(slice.view(), PixelFormat::kMono8), 10.0 * k);
+  }
+  const HeightMap map = stack.finish(PeakMethod::kFiveSample);
+  EXPECT_NEAR(map.noise_grey, 3.0, 0.3);
+  int prominent = 0;
+  int valid = 0;
+  for (const std::uint8_t reasons : map.mask.pixels()) {
+    prominent += (reasons & mask_reason::kLowProminence) == 0 ? 1 : 0;
+    valid += reasons == 0 ? 1 : 0;
+  }
+  EXPECT_GT(prominent, 5000) << "prominence alone would let them pass";
+  EXPECT_LE(valid, 3);
+}
+
+TEST(FocusHoles, TheBlurOfABrightEdgeIsNoSurface) {
+  // A bright half plane in focus at 100 um beside a dark one without texture: out of focus its light reaches across.
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0.0, 0.7);
+  std::vector<double> texture(64 * 32);
+  for (double& value : texture) value = 20.0 * noise(random);
+  WorkerPool pool(1);
+  StreamingFocusStack stack(64, 32, PixelFormat::kMono8, {.min_prominence = 0.3}, pool);
+  for (int k = 0; k < 21; ++k) {
+    const double blur = 0.04 * std::abs(10.0 * k - 100.0) + 0.3;
+    Plane<std::uint8_t> slice(64, 32);
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const double lit = 0.5 * (1.0 + std::erf((x - 32) / (blur * std::sqrt(2.0))));
+        const double grain = x >= 32 ? texture[static_cast<std::size_t>(y * 64 + x)] * std::exp(-blur) : 0.0;
+        slice.at(x, y) = static_cast<std::uint8_t>(std::clamp(20.0 + 140.0 * lit + grain + noise(random), 0.0, 254.0));
+      }
+    }
+    stack.push(image_view(slice.view(), PixelFormat::kMono8), 10.0 * k);
+  }
+  const HeightMap map = stack.finish(PeakMethod::kFiveSample);
+  int bled = 0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 25; ++x) {  // a window from the edge and further
+      EXPECT_NE(map.mask.at(x, y), 0) << x << ", " << y;
+      bled += (map.mask.at(x, y) & mask_reason::kEdgeBleeding) != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(bled, 100);
+  int kept = 0;
+  for (int x = 40; x < 60; ++x) kept += map.mask.at(x, 16) == 0 ? 1 : 0;
+  EXPECT_GE(kept, 18) << "the bright surface itself";
+}
+
 TEST(FocusHoles, AHeightNoStageCanHaveIsRefusedAndLeavesTheStackAsItWas) {
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .distance_px = 1, .min_prominence = 0.5}, pool);
+  StreamingFocusStack stack(3, 3, PixelFormat::kMono8,
+                            {.window_px = 3, .distance_px = 1, .min_prominence = 0.5, .min_significance = 0.0}, pool);
   const Plane<std::uint8_t> slice(3, 3, 7);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double z_um : {std::nan(""), kInfinity, -kInfinity, 1.1e9, -1e300}) {

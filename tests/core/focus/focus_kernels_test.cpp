@@ -2,8 +2,10 @@
 
 #include "core/focus/focus_kernels.hpp"
 
+#include <array>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -224,9 +226,11 @@ TEST(FocusKernels, FitAlike) {
         if (x % 11 == 0) columns[2][x] = columns[7][x] = 0;
       }
       const std::vector<float> noise(static_cast<std::size_t>(width), 0.01F);
+      const std::vector<float> least(static_cast<std::size_t>(width), 0.02F);
       std::vector<float> floats(static_cast<std::size_t>(3 * width + kGuard), 5.0F);
       std::vector<std::uint8_t> mask(static_cast<std::size_t>(width + kGuard), 0x5A);
-      kernels.fit_five(curves.row(), tables.view(), noise.data(), width, {0.4F, 3.0F, 1.0F / 65535.0F, root},
+      kernels.fit_five(curves.row(), tables.view(), noise.data(), least.data(), width,
+                       {0.4F, 3.0F, 0.05F, 1.0F / 65535.0F, root},
                        {floats.data(), floats.data() + width, floats.data() + 2 * width, mask.data()});
       std::vector<std::uint32_t> all(floats.size());
       std::memcpy(all.data(), floats.data(), floats.size() * sizeof(float));
@@ -234,6 +238,27 @@ TEST(FocusKernels, FitAlike) {
       return all;
     });
   }
+}
+
+TEST(FocusKernels, FindTheSameAmplitudesAndSlopes) {
+  for (const bool root : {false, true}) {
+    expect_same("largest_amplitude", [root](const FocusKernels& kernels, int width, std::mt19937& random) {
+      const auto peak = random_row<std::uint16_t>(width, random);
+      const auto minimum = random_row<std::uint16_t>(width, random);
+      return std::vector<float>{kernels.largest_amplitude(peak.data(), minimum.data(), 1.0F / 65535.0F, root, width)};
+    });
+  }
+  expect_same("add_slope_error", [](const FocusKernels& kernels, int width, std::mt19937& random) {
+    std::array<std::vector<float>, 4> rows;
+    for (auto& row : rows) {
+      for (int x = 0; x < width + kGuard; ++x) {
+        row.push_back(random() % 9 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                        : static_cast<float>(random() % 1000) * 1e-6F);
+      }
+    }
+    kernels.add_slope_error(rows[0].data(), rows[1].data(), rows[2].data(), 4, 0.3F, width, rows[3].data());
+    return rows[3];
+  });
 }
 
 TEST(FocusKernels, AreThoseThatTheEnvironmentNames) {

@@ -202,7 +202,8 @@ TEST(StreamingFocusStack, NeedsTheSameMemoryForFewAndForManySlices) {
 TEST(StreamingFocusStack, TakesNoMoreThanItsIndexCanCount) {
   const Scan scan = make_scan(PixelFormat::kMono8, Surface::kRandom, 1, 1, 2, 5);
   WorkerPool pool(1);
-  StreamingFocusStack stack(1, 1, PixelFormat::kMono8, {.window_px = 3, .distance_px = 1, .min_prominence = 0.0}, pool);
+  StreamingFocusStack stack(1, 1, PixelFormat::kMono8,
+                            {.window_px = 3, .distance_px = 1, .min_prominence = 0.0, .min_significance = 0.0}, pool);
   for (int k = 0; k < StreamingFocusStack::kMaxSlices; ++k) stack.push(scan.slice(0), k);
   EXPECT_THROW(stack.push(scan.slice(0), 1e6), Error);
   EXPECT_EQ(stack.slices(), StreamingFocusStack::kMaxSlices);
@@ -211,7 +212,8 @@ TEST(StreamingFocusStack, TakesNoMoreThanItsIndexCanCount) {
 /// A stack of 3 x 3 slices of uniform contrast per slice.
 HeightMap of_contrasts(const std::vector<int>& contrasts, int base = 100) {
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, {.window_px = 3, .distance_px = 1, .min_prominence = 0.5}, pool);
+  StreamingFocusStack stack(3, 3, PixelFormat::kMono8,
+                            {.window_px = 3, .distance_px = 1, .min_prominence = 0.5, .min_significance = 0.0}, pool);
   double z_um = 0.0;
   for (const int contrast : contrasts) {
     Plane<std::uint8_t> slice(3, 3, static_cast<std::uint8_t>(base));

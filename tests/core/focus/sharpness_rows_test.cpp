@@ -1,6 +1,7 @@
 #include "core/focus/sharpness_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -76,11 +77,11 @@ TYPED_TEST(SharpnessRowsOf, MarkEveryWindowThatHoldsASaturatedPixel) {
     for (int y = first; y < kHeight; ++y) {
       rows.next();
       for (int x = 0; x < kWidth; ++x) {
-        const int columns = std::min({4, x, kWidth - 1 - x});
-        const int lines = std::min({4, y, kHeight - 1 - y});
+        const WindowReach columns(x, 4, kWidth);
+        const WindowReach lines(y, 4, kHeight);
         bool expected = false;
         for (const auto& [u, v] : {std::pair{8, 8}, {20, 15}, {1, 28}}) {
-          expected = expected || (std::abs(x - u) <= columns && std::abs(y - v) <= lines);
+          expected = expected || (columns.first <= u && u <= columns.last && lines.first <= v && v <= lines.last);
         }
         ASSERT_EQ(rows.saturated()[x] != 0, expected) << x << ", " << y << " from row " << first;
       }
@@ -114,12 +115,22 @@ TEST(SharpnessReference, LooksAtNeighboursAtItsDistance) {
 }
 
 TEST(SharpnessReference, KeepsTheWindowCentredAtTheBorder) {
-  Plane<std::uint8_t> image(9, 9, 10);
-  image.at(1, 4) = 20;
-  const FocusSettings settings{.window_px = 5, .distance_px = 1};
-  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
-  EXPECT_EQ(sharpness(view, settings, 0, 4), 10.0) << "one column: the neighbour's response, not the pixel's";
-  EXPECT_EQ(sharpness(view, settings, 1, 4), 80.0) << "three columns";
+  for (const auto& [centre, first, last] : {std::array{0, 0, 2},
+                                            {1, 0, 3},
+                                            {2, 0, 4},
+                                            {3, 0, 6},
+                                            {4, 0, 8},
+                                            {5, 1, 9},
+                                            {16, 13, 19},
+                                            {18, 16, 19},
+                                            {19, 17, 19}}) {
+    const WindowReach reach(centre, 4, 20);
+    EXPECT_EQ(reach.first, first) << centre;
+    EXPECT_EQ(reach.last, last) << centre;
+  }
+  const WindowReach whole(1, 31, 3);
+  EXPECT_EQ(whole.first, 0);
+  EXPECT_EQ(whole.last, 2);
 }
 
 TEST(SharpnessReference, IsTheSobelGradientSquared) {

@@ -1,0 +1,127 @@
+#pragma once
+
+/// Scans with known truth for bench_accuracy: of a simulated world on an ideal axis, and of the generated stacks.
+
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "core/focus/streaming_focus_stack.hpp"
+#include "core/pipeline/worker_pool.hpp"
+#include "sim/axis_model.hpp"
+#include "sim/sim_world.hpp"
+
+namespace fvd::bench {
+
+/// Mean and RMS of height minus truth, and of the standard errors that went with the heights.
+struct ErrorSum {
+  double sum = 0.0;
+  double squares = 0.0;
+  double predicted = 0.0;
+  double count = 0.0;
+  double largest = 0.0;
+
+  void add(double error, double sigma) {
+    sum += error;
+    squares += error * error;
+    predicted += sigma * sigma;
+    count += 1.0;
+    largest = std::max(largest, std::abs(error));
+  }
+  void add(const ErrorSum& other) {
+    sum += other.sum;
+    squares += other.squares;
+    predicted += other.predicted;
+    count += other.count;
+    largest = std::max(largest, other.largest);
+  }
+  [[nodiscard]] double rms() const { return std::sqrt(squares / count); }
+  [[nodiscard]] double bias() const { return sum / count; }
+  [[nodiscard]] double sigma_ratio() const { return std::sqrt(predicted / squares); }
+};
+
+/// Slices at given heights of a world, each z as it really was unless `reported` tells otherwise.
+class WorldScan {
+ public:
+  explicit WorldScan(const sim::WorldParameters& parameters) : world_(parameters, axis_) {}
+
+  [[nodiscard]] const sim::Surface& surface() const { return world_.surface(); }
+
+  /// One Mono8 slice; z is rounded to the axis' step, 0.01 um.
+  [[nodiscard]] std::vector<std::byte> slice(double z_um, std::uint64_t index) {
+    time_ += std::chrono::seconds(5);
+    axis_.move_to(time_, static_cast<std::int32_t>(std::lround(z_um * 100)), 1e6, 1e7, 1e7);
+    time_ += std::chrono::seconds(5);
+    sim::ExposureRequest request;
+    request.width = world_.sensor_width();
+    request.height = world_.sensor_height();
+    request.start = time_;
+    request.end = time_ + std::chrono::milliseconds(5);
+    request.exposure_index = index;
+    std::vector<std::byte> pixels(static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height));
+    world_.render(request, pixels);
+    return pixels;
+  }
+
+  /// A whole scan into a stack. reported(k, z) is the z the stack is told.
+  [[nodiscard]] std::unique_ptr<StreamingFocusStack> scan(
+      double start_um, double step_um, int slices, const FocusSettings& settings, WorkerPool& pool,
+      const std::function<double(int, double)>& actual = [](int, double z) { return z; }) {
+    auto stack = std::make_unique<StreamingFocusStack>(world_.sensor_width(), world_.sensor_height(),
+                                                       PixelFormat::kMono8, settings, pool);
+    for (int k = 0; k < slices; ++k) {
+      const double z_um = std::round((start_um + step_um * k) * 100) / 100;
+      const auto pixels = slice(actual(k, z_um), static_cast<std::uint64_t>(k));
+      stack->push(
+          {PixelFormat::kMono8, world_.sensor_width(), world_.sensor_height(), world_.sensor_width(), pixels.data()},
+          z_um);
+    }
+    return stack;
+  }
+
+ private:
+  static sim::AxisParameters ideal_axis() {
+    sim::AxisParameters axis;
+    axis.power_on_position_um = 0.0;
+    return axis;
+  }
+
+  sim::AxisModel axis_{ideal_axis()};
+  HostTime time_ = HostClock::now();
+  sim::SimWorld world_;
+};
+
+struct Reference {
+  const char* key;
+  const char* folder;
+  double slices_per_truth;  ///< what one unit of truth.tiff is in slices
+  double first_slice;       ///< what truth.tiff gives the first slice, in slices
+};
+inline constexpr Reference kReferences[]{{"cou1_rms", "generated-cou1", 1.0, 0.0},
+                                         {"cou6_rms", "generated-cou6", 1.0, 0.0},
+                                         {"cone31_rms", "generated-cone31", 1 / 0.002, 0.09 / 0.002}};
+
+/// A stack with truth from the folder of reference data; z counts slices.
+class ReferenceScan {
+ public:
+  /// A 16-bit stack is taken as 8 bit, divided by 256. Throws Error for a folder that holds none.
+  ReferenceScan(const std::filesystem::path& folder, const Reference& reference, const FocusSettings& settings,
+                WorkerPool& pool);
+
+  [[nodiscard]] ErrorSum figures(PeakMethod method) const;
+  /// Points with a truth.
+  [[nodiscard]] double points() const { return points_; }
+
+ private:
+  cv::Mat truth_slices_;
+  double points_ = 0.0;
+  std::unique_ptr<StreamingFocusStack> stack_;
+};
+
+}  // namespace fvd::bench
