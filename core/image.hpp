@@ -2,11 +2,13 @@
 
 /// Two-dimensional data: row 0 on top, x right, y down; strides in elements so that rows may be padded.
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
+#include <utility>
 
 namespace fvd {
 
@@ -31,40 +33,55 @@ template <typename T>
 class Plane {
  public:
   Plane() = default;
-  Plane(int width, int height, T fill = T{})
-      : width_(width),
-        height_(height),
-        data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
-  Plane(Plane&&) noexcept = default;
-  Plane& operator=(Plane&&) noexcept = default;
+  Plane(int width, int height, T fill = T{}) : Plane(unset(width, height)) { std::fill_n(data_.get(), size(), fill); }
+  /// Contents are whatever the memory held: for who writes all of it, from several threads.
+  [[nodiscard]] static Plane unset(int width, int height) {
+    Plane plane;
+    plane.width_ = width;
+    plane.height_ = height;
+    plane.data_ = std::make_unique_for_overwrite<T[]>(plane.size());
+    return plane;
+  }
+  Plane(Plane&& other) noexcept
+      : width_(std::exchange(other.width_, 0)),
+        height_(std::exchange(other.height_, 0)),
+        data_(std::move(other.data_)) {}
+  Plane& operator=(Plane&& other) noexcept {
+    width_ = std::exchange(other.width_, 0);
+    height_ = std::exchange(other.height_, 0);
+    data_ = std::move(other.data_);
+    return *this;
+  }
   Plane(const Plane&) = delete;
   Plane& operator=(const Plane&) = delete;
   ~Plane() = default;
 
   [[nodiscard]] Plane clone() const {
-    Plane copy;
-    copy.width_ = width_;
-    copy.height_ = height_;
-    copy.data_ = data_;
+    Plane copy = unset(width_, height_);
+    std::copy_n(data_.get(), size(), copy.data_.get());
     return copy;
   }
 
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] int height() const noexcept { return height_; }
-  [[nodiscard]] bool empty() const noexcept { return data_.empty(); }
-  [[nodiscard]] T* row(int y) { return data_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
-  [[nodiscard]] const T* row(int y) const { return data_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
+  [[nodiscard]] bool empty() const noexcept { return size() == 0; }
+  [[nodiscard]] T* row(int y) { return data_.get() + static_cast<std::ptrdiff_t>(y) * width_; }
+  [[nodiscard]] const T* row(int y) const { return data_.get() + static_cast<std::ptrdiff_t>(y) * width_; }
   [[nodiscard]] T& at(int x, int y) { return row(y)[x]; }
   [[nodiscard]] const T& at(int x, int y) const { return row(y)[x]; }
-  [[nodiscard]] std::span<T> pixels() { return data_; }
-  [[nodiscard]] std::span<const T> pixels() const { return data_; }
-  [[nodiscard]] PlaneView<T> view() { return {data_.data(), width_, height_, width_}; }
-  [[nodiscard]] PlaneView<const T> view() const { return {data_.data(), width_, height_, width_}; }
+  [[nodiscard]] std::span<T> pixels() { return {data_.get(), size()}; }
+  [[nodiscard]] std::span<const T> pixels() const { return {data_.get(), size()}; }
+  [[nodiscard]] PlaneView<T> view() { return {data_.get(), width_, height_, width_}; }
+  [[nodiscard]] PlaneView<const T> view() const { return {data_.get(), width_, height_, width_}; }
 
  private:
+  [[nodiscard]] std::size_t size() const noexcept {
+    return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  }
+
   int width_ = 0;
   int height_ = 0;
-  std::vector<T> data_;
+  std::unique_ptr<T[]> data_;
 };
 
 /// GenICam PFNC names of the formats fvd measures with. More than 8 bits means 16-bit little-endian, LSB aligned.

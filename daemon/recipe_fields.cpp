@@ -94,6 +94,8 @@ void describe_focus(Recipe& recipe, Fields& fields) {
                 "(peak - minimum) / peak of the focus curve; below it a point is a hole");
   fields.number("min_significance", recipe.focus.min_significance, {0.0, 1e6},
                 "(peak - minimum) / noise of a sample; below it a point is a hole");
+  fields.boolean("stage_correction", recipe.focus.stage_correction,
+                 "seek the stage's errors in the focus curves and correct heights by them where the surface lets it");
 }
 
 }  // namespace

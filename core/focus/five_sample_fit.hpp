@@ -15,7 +15,7 @@ namespace fvd {
 
 inline constexpr float kFloorShare = 0.9F;
 inline constexpr float kSmallestShare = 1e-3F;      ///< of the peak: what a sample at the floor counts as
-inline constexpr float kShapeError = 0.036F;        ///< standard deviation over b / (1 + b / 2), in sample distances
+inline constexpr float kShapeError = 0.0385F;       ///< standard deviation over b / (1 + 0.9 b), in sample distances
 inline constexpr float kBinnedShapeError = 0.016F;  ///< the same where samples are bins
 
 }  // namespace fvd

@@ -28,6 +28,14 @@ struct CurveRow {
   std::uint8_t* saturated;    ///< 1 if a pixel of the window was saturated at the peak
 };
 
+/// A row of one sample: codes, whether its window was saturated, pixels. Texture: std::uint8_t or std::uint16_t.
+template <typename Texture>
+struct Sample {
+  const std::uint16_t* codes;
+  const std::uint8_t* saturated;
+  const Texture* pixels;
+};
+
 /// What a sample's number says about the heights about it; one entry a sample. u = (z - z of the sample) / scale.
 struct HeightTable {
   const double* z_um;
@@ -60,8 +68,6 @@ struct FocusKernels {
   std::string_view name;
 
   /// ML of the row from the rows `distance` above and below; columns within `distance` of an end are left alone.
-  void (*laplacian_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
-                       int distance, std::uint16_t* out) noexcept;
   void (*laplacian_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                         int distance, std::uint32_t* out) noexcept;
   /// (gx^2 + gy^2) >> shift of the Sobel gradients; ends as above.
@@ -70,9 +76,11 @@ struct FocusKernels {
   void (*tenengrad_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                         int distance, int shift, std::uint32_t* out) noexcept;
 
-  /// columns += entering - leaving; leaving = entering; scaled = columns / 2^shift, rounded.
-  void (*slide_u16)(std::uint16_t* columns, const std::uint16_t* entering, std::uint16_t* leaving, int shift, int width,
-                    std::uint16_t* scaled) noexcept;
+  /// The same of an 8-bit row, value by value, at once with the sums over the window's rows that it enters:
+  /// columns += value - slot; slot = value; scaled = columns / 2^shift, rounded. Ends as above.
+  void (*enter_laplacian_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
+                             int distance, int shift, std::uint16_t* columns, std::uint16_t* slot,
+                             std::uint16_t* scaled) noexcept;
   /// columns += entering - leaving; leaving = entering.
   void (*slide_u32)(std::uint32_t* columns, const std::uint32_t* entering, std::uint32_t* leaving, int width) noexcept;
   /// out[x] = values[x] + .. + values[x + window - 1] for x = 0 .. width - window. scratch: shape [3][width].
@@ -89,11 +97,12 @@ struct FocusKernels {
   /// sums += codes / 2^shift, rounded.
   void (*add_to_bin)(std::uint16_t* sums, const std::uint16_t* codes, int shift, int width) noexcept;
 
-  /// Takes sample `index` >= 1 in; texture keeps the pixel of the peak's sample.
-  void (*update_u8)(const CurveRow& row, const std::uint16_t* codes, const std::uint8_t* saturated,
-                    const std::uint8_t* pixels, std::uint8_t* texture, int width, std::uint16_t index) noexcept;
-  void (*update_u16)(const CurveRow& row, const std::uint16_t* codes, const std::uint8_t* saturated,
-                     const std::uint16_t* pixels, std::uint16_t* texture, int width, std::uint16_t index) noexcept;
+  /// Takes successive samples in, the first of number first_index >= 1; texture keeps the pixel of the peak's sample.
+  /// The rows of the state, and texture, have room for width rounded up to 16.
+  void (*update_u8)(const CurveRow& row, const Sample<std::uint8_t>* samples, int count, std::uint8_t* texture,
+                    int width, int first_index) noexcept;
+  void (*update_u16)(const CurveRow& row, const Sample<std::uint16_t>* samples, int count, std::uint16_t* texture,
+                     int width, int first_index) noexcept;
 
   /// Sum of |I(-1,-1) - 2 I(0,-1) + I(1,-1) - 2 (..) + ..| over x = 1 .. width - 2 (Immerkaer, CVIU 64(2), 1996).
   std::uint64_t (*noise_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below,

@@ -5,6 +5,7 @@
 namespace fvd::kernels_avx2 {
 
 #define FVD_KERNEL_NAME "avx2"
+#define FVD_KERNEL_AVX2
 #include "core/focus/focus_kernels.inc"
 
 }  // namespace fvd::kernels_avx2

@@ -49,6 +49,7 @@ struct FocusSettings {
   double min_prominence = 0.5;    ///< (peak - minimum) / peak of the focus curve, 0..1; below it a point is a hole
   double min_significance = 6.0;  ///< (peak - minimum) / noise of a sample, >= 0; below it a point is a hole
   int bin_slices = 1;             ///< successive slices whose sharpness is summed to one sample of the curve, 1..64
+  bool stage_correction = true;   ///< see stage_correction.hpp; with the five-sample peak only
 };
 
 /// The bin that puts samples about 0.4 of the curve's full width at half maximum apart, where a peak is placed best: a

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/focus/stage_correction.hpp"
 #include "core/image.hpp"
 
 namespace fvd {
@@ -28,19 +29,20 @@ struct HeightMap {
   Plane<float> prominence;   ///< 0..1
   PixelFormat texture_format = PixelFormat::kMono8;
   Plane<std::uint16_t> texture;  ///< all-in-focus: grey level at the peak slice, 0..max_grey_level(texture_format)
+  StageCorrection stage;         ///< what the scan says about the stage, and whether heights were corrected by it
   double noise_grey = 0.0;       ///< standard deviation of a pixel in grey levels, median over the image
   double curve_width_um = 0.0;   ///< full width at half maximum of the focus curve, median of valid points; 0 unknown
 };
 
-/// All planes allocated, all zero.
+/// All planes allocated, contents to be written.
 [[nodiscard]] inline HeightMap empty_map(int width, int height, PixelFormat format) {
   HeightMap map;
-  map.height_m = Plane<float>(width, height);
-  map.mask = Plane<std::uint8_t>(width, height);
-  map.sigma_m = Plane<float>(width, height);
-  map.prominence = Plane<float>(width, height);
+  map.height_m = Plane<float>::unset(width, height);
+  map.mask = Plane<std::uint8_t>::unset(width, height);
+  map.sigma_m = Plane<float>::unset(width, height);
+  map.prominence = Plane<float>::unset(width, height);
   map.texture_format = format;
-  map.texture = Plane<std::uint16_t>(width, height);
+  map.texture = Plane<std::uint16_t>::unset(width, height);
   return map;
 }
 

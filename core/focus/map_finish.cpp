@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/focus/five_sample_fit.hpp"
 #include "core/focus/peak_tiles.hpp"
 #include "core/focus/sharpness_rows.hpp"
 
@@ -17,10 +18,10 @@ namespace {
 constexpr float kWeightOffset = 0.038F;
 
 /// Every so many rows and columns a curve's width is looked at.
-constexpr int kWidthEvery = 4;
+constexpr int kWidthEvery = 8;
 
-/// The share of the full window that is left about a pixel near the border: its sums are smaller by as much, their noise
-/// by its root.
+/// The share of the full window that is left about a pixel near the border: its sums are smaller by as much, their
+/// noise by its root.
 double window_share(int centre, int window, int size) {
   const WindowReach reach(centre, window / 2, size);
   return static_cast<double>(reach.last - reach.first + 1) / window;
@@ -62,45 +63,128 @@ double median(std::vector<float>& values) {
   return static_cast<double>(*middle);
 }
 
-}  // namespace
+/// About how many points the stage's errors are sought in.
+constexpr double kTuples = 10000.0;
 
-void finish_map(const CurveSource& curves, const RowFit& fit, const FocusSettings& settings, const NoiseProbe& noise,
-                WorkerPool& pool, HeightMap& map) {
-  const int width = map.height_m.width();
-  const int height = map.height_m.height();
-  const int bands = pool.threads();
-  PeakTiles tiles(width, height, settings.window_px + settings.distance_px,
-                  sharpness_code(settings, map.texture_format).root);
-  pool.run(bands, [&](int band) {
-    for (int row = tiles.rows() * band / bands; row < tiles.rows() * (band + 1) / bands; ++row) {
-      for (int y = tiles.first(row); y < tiles.end(row); ++y) tiles.add_row(y, curves(band, y, nullptr));
-    }
-  });
-  std::vector<std::vector<float>> widths(static_cast<std::size_t>(bands));
-  pool.run(bands, [&](int band) {
-    std::vector<float> noise_row(static_cast<std::size_t>(width));
-    std::vector<float> least(static_cast<std::size_t>(width));
-    for (int y = height * band / bands; y < height * (band + 1) / bands; ++y) {
-      const CurveRow row = curves(band, y, map.texture.row(y));
-      noise.noise_row(y, noise_row.data());
-      tiles.least_amplitude(y, least.data());
-      shrink_windows(y, width, height, settings.window_px, noise_row.data(), least.data());
-      fit.fit(row, noise_row.data(), least.data(), width,
-              {map.height_m.row(y), map.sigma_m.row(y), map.prominence.row(y), map.mask.row(y)});
-      if (y % kWidthEvery != 0) continue;
-      for (int x = 0; x < width; x += kWidthEvery) {
-        if (map.mask.at(x, y) != 0) continue;
+/// What a band of rows gives beside its part of the map.
+struct BandFigures {
+  std::vector<float> widths_um;
+  std::vector<CurveTuple> tuples;
+};
+
+CurveTuple tuple_of(const RowFit& fit, const CurveRow& row, int x, float noise, float height_m) {
+  const double floor = static_cast<double>(kFloorShare) * fit.share(row.minimum[x]);
+  const double amplitude = fit.share(row.peak[x]) - floor;
+  const auto share = [&](std::uint16_t code) {
+    return static_cast<float>(std::max(0.0, (fit.share(code) - floor) / amplitude));
+  };
+  CurveTuple tuple;
+  tuple.index = row.peak_index[x];
+  tuple.share = {share(row.left2[x]), share(row.left[x]), 1.0F, share(row.right[x]), share(row.right2[x])};
+  tuple.noise = static_cast<float>(static_cast<double>(noise) / amplitude);
+  tuple.height_um = height_m * 1e6F;
+  return tuple;
+}
+
+/// One pass over the image.
+class Pass {
+ public:
+  Pass(const CurveSource& curves, const FocusSettings& settings, const NoiseProbe& noise, WorkerPool& pool,
+       HeightMap& map)
+      : curves_(curves),
+        settings_(settings),
+        noise_(noise),
+        pool_(pool),
+        map_(map),
+        width_(map.height_m.width()),
+        height_(map.height_m.height()),
+        tiles_(width_, height_, settings.window_px + settings.distance_px,
+               sharpness_code(settings, map.texture_format).root),
+        tuple_every_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kTuples)))) {
+    const int bands = pool.threads();
+    pool.run(bands, [&](int band) {
+      for (int row = tiles_.rows() * band / bands; row < tiles_.rows() * (band + 1) / bands; ++row) {
+        for (int y = tiles_.first(row); y < tiles_.end(row); ++y) tiles_.add_row(y, curves_(band, y, nullptr));
+      }
+    });
+  }
+
+  /// All planes but what slopes add to sigma. One entry a band, in the order of rows.
+  std::vector<BandFigures> fit(const RowFit& fit, bool with_tuples) {
+    const int bands = pool_.threads();
+    std::vector<BandFigures> figures(static_cast<std::size_t>(bands));
+    pool_.run(bands, [&](int band) {
+      std::vector<float> noise_row(static_cast<std::size_t>(width_));
+      std::vector<float> least(static_cast<std::size_t>(width_));
+      for (int y = height_ * band / bands; y < height_ * (band + 1) / bands; ++y) {
+        const CurveRow row = curves_(band, y, map_.texture.row(y));
+        noise_.noise_row(y, noise_row.data());
+        tiles_.least_amplitude(y, least.data());
+        shrink_windows(y, width_, height_, settings_.window_px, noise_row.data(), least.data());
+        fit.fit(row, noise_row.data(), least.data(), width_,
+                {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
+        look_at(fit, row, y, noise_row, with_tuples, figures[static_cast<std::size_t>(band)]);
+      }
+    });
+    return figures;
+  }
+
+ private:
+  void look_at(const RowFit& fit, const CurveRow& row, int y, const std::vector<float>& noise, bool with_tuples,
+               BandFigures& figures) const {
+    if (y % kWidthEvery == 0) {
+      for (int x = 0; x < width_; x += kWidthEvery) {
+        if (map_.mask.at(x, y) != 0) continue;
         const auto curve_width = fit.curve_width_um(row, x);
-        if (curve_width) widths[static_cast<std::size_t>(band)].push_back(static_cast<float>(*curve_width));
+        if (curve_width) figures.widths_um.push_back(static_cast<float>(*curve_width));
       }
     }
-  });
+    if (!with_tuples || y % tuple_every_ != 0) return;
+    for (int x = 0; x < width_; x += tuple_every_) {
+      if (map_.mask.at(x, y) != 0) continue;
+      figures.tuples.push_back(tuple_of(fit, row, x, noise[static_cast<std::size_t>(x)], map_.height_m.at(x, y)));
+    }
+  }
+
+  const CurveSource& curves_;
+  const FocusSettings& settings_;
+  const NoiseProbe& noise_;
+  WorkerPool& pool_;
+  HeightMap& map_;
+  int width_;
+  int height_;
+  PeakTiles tiles_;
+  int tuple_every_;
+};
+
+template <typename Values>
+Values joined(const std::vector<BandFigures>& figures, Values BandFigures::*member) {
+  Values all;
+  for (const BandFigures& band : figures) all.insert(all.end(), (band.*member).begin(), (band.*member).end());
+  return all;
+}
+
+}  // namespace
+
+void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
+                PeakMethod method, const NoiseProbe& noise, WorkerPool& pool, HeightMap& map) {
+  Pass pass(curves, settings, noise, pool, map);
+  const bool correct = settings.stage_correction && method == PeakMethod::kFiveSample;
+  auto figures = pass.fit(RowFit(z_um, settings, map.texture_format, method), correct);
+  if (correct) {
+    map.stage = solve_stage_correction(joined(figures, &BandFigures::tuples), z_um);
+  } else {
+    map.stage.reason = "not asked for";
+  }
+  if (map.stage.applied) {
+    std::vector<double> corrected = z_um;
+    for (std::size_t k = 0; k < corrected.size(); ++k) corrected[k] += map.stage.offsets_um[k];
+    figures = pass.fit(RowFit(corrected, settings, map.texture_format, method), false);
+  }
   add_slope_errors(settings, pool, map);
   map.noise_grey = noise.median();
-  for (std::size_t band = 1; band < widths.size(); ++band) {
-    widths[0].insert(widths[0].end(), widths[band].begin(), widths[band].end());
-  }
-  map.curve_width_um = median(widths[0]);
+  auto widths = joined(figures, &BandFigures::widths_um);
+  map.curve_width_um = median(widths);
 }
 
 }  // namespace fvd

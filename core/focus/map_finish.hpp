@@ -16,8 +16,8 @@ namespace fvd {
 /// is where the row's grey levels go, or nullptr.
 using CurveSource = std::function<CurveRow(int thread, int y, std::uint16_t* texture)>;
 
-/// Fills all planes and figures of an empty_map.
-void finish_map(const CurveSource& curves, const RowFit& fit, const FocusSettings& settings, const NoiseProbe& noise,
-                WorkerPool& pool, HeightMap& map);
+/// Fills all planes and figures of an empty_map. z_um: of the samples.
+void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
+                PeakMethod method, const NoiseProbe& noise, WorkerPool& pool, HeightMap& map);
 
 }  // namespace fvd

@@ -11,9 +11,9 @@ namespace fvd {
 namespace {
 
 constexpr int kTile_px = 128;
-constexpr int kEveryRow = 8;
+constexpr int kEveryRow = 16;
 constexpr double kRounding = 0.28867513459481287;  // 1 / sqrt(12) grey levels
-/// The least of some tens of estimates of 3 % standard error lies low by so much.
+/// The least of some tens of estimates of 4 % standard error lies low by so much.
 constexpr double kLeastIsLow = 1.06;
 
 }  // namespace

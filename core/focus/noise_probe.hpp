@@ -5,7 +5,7 @@
 ///
 /// J. Immerkaer, "Fast noise variance estimation", CVIU 64(2), 1996: the mask [1 -2 1; -2 4 -2; 1 -2 1] does not see
 /// smooth images; of white noise it makes sigma = sqrt(pi / 2) / 6 * mean |response|. Here the mean is taken over tiles
-/// of about 128 x 128 pixels, every eighth row of them, and each tile keeps its least.
+/// of about 128 x 128 pixels, every sixteenth row of them, and each tile keeps its least.
 
 #include <vector>
 

@@ -67,39 +67,36 @@ int bin_shift(int bin_slices) noexcept {
 }
 
 template <typename Texture>
-void start_peaks(const StateRow<Texture>& row, const std::uint16_t* codes, const std::uint8_t* saturated,
-                 const Texture* pixels, int width) noexcept {
+void start_peaks(const StateRow<Texture>& row, const Sample<Texture>& sample, int width) noexcept {
   const CurveRow& curve = row.curve;
-  std::copy_n(codes, width, curve.previous);
-  std::copy_n(codes, width, curve.peak);
-  std::copy_n(codes, width, curve.minimum);
+  std::copy_n(sample.codes, width, curve.previous);
+  std::copy_n(sample.codes, width, curve.peak);
+  std::copy_n(sample.codes, width, curve.minimum);
   for (std::uint16_t* field : {curve.previous2, curve.left, curve.left2, curve.right, curve.right2, curve.peak_index}) {
     std::fill_n(field, width, std::uint16_t{0});
   }
-  std::copy_n(pixels, width, row.texture);
-  std::copy_n(saturated, width, curve.saturated);
+  std::copy_n(sample.pixels, width, row.texture);
+  std::copy_n(sample.saturated, width, curve.saturated);
 }
 
 template <typename Texture>
-void update_peaks(const FocusKernels& kernels, const StateRow<Texture>& row, const std::uint16_t* codes,
-                  const std::uint8_t* saturated, const Texture* pixels, int width, int index) noexcept {
-  const auto number = static_cast<std::uint16_t>(index);
+void update_peaks(const FocusKernels& kernels, const StateRow<Texture>& row, std::span<const Sample<Texture>> samples,
+                  int width, int first_index) noexcept {
+  const int count = static_cast<int>(samples.size());
   if constexpr (std::is_same_v<Texture, std::uint8_t>) {
-    kernels.update_u8(row.curve, codes, saturated, pixels, row.texture, width, number);
+    kernels.update_u8(row.curve, samples.data(), count, row.texture, width, first_index);
   } else {
-    kernels.update_u16(row.curve, codes, saturated, pixels, row.texture, width, number);
+    kernels.update_u16(row.curve, samples.data(), count, row.texture, width, first_index);
   }
 }
 
 template class PeakAccumulator<std::uint8_t>;
 template class PeakAccumulator<std::uint16_t>;
-template void start_peaks(const StateRow<std::uint8_t>&, const std::uint16_t*, const std::uint8_t*, const std::uint8_t*,
-                          int) noexcept;
-template void start_peaks(const StateRow<std::uint16_t>&, const std::uint16_t*, const std::uint8_t*,
-                          const std::uint16_t*, int) noexcept;
-template void update_peaks(const FocusKernels&, const StateRow<std::uint8_t>&, const std::uint16_t*,
-                           const std::uint8_t*, const std::uint8_t*, int, int) noexcept;
-template void update_peaks(const FocusKernels&, const StateRow<std::uint16_t>&, const std::uint16_t*,
-                           const std::uint8_t*, const std::uint16_t*, int, int) noexcept;
+template void start_peaks(const StateRow<std::uint8_t>&, const Sample<std::uint8_t>&, int) noexcept;
+template void start_peaks(const StateRow<std::uint16_t>&, const Sample<std::uint16_t>&, int) noexcept;
+template void update_peaks(const FocusKernels&, const StateRow<std::uint8_t>&, std::span<const Sample<std::uint8_t>>,
+                           int, int) noexcept;
+template void update_peaks(const FocusKernels&, const StateRow<std::uint16_t>&, std::span<const Sample<std::uint16_t>>,
+                           int, int) noexcept;
 
 }  // namespace fvd

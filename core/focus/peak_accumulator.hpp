@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/focus/focus_kernels.hpp"
@@ -54,15 +55,14 @@ class PeakAccumulator {
 /// By how many bits the codes of a bin's slices are shifted so that their sum fits 16 bits: 0 for 1 slice, 6 for 64.
 [[nodiscard]] int bin_shift(int bin_slices) noexcept;
 
-/// Takes sample 0 in: initialises the row. codes, saturated, pixels: shape [width].
+/// Takes sample 0 in: initialises the row.
 template <typename Texture>
-void start_peaks(const StateRow<Texture>& row, const std::uint16_t* codes, const std::uint8_t* saturated,
-                 const Texture* pixels, int width) noexcept;
+void start_peaks(const StateRow<Texture>& row, const Sample<Texture>& sample, int width) noexcept;
 
-/// Takes sample `index` >= 1 in.
+/// Takes successive samples in, the first of number first_index >= 1.
 template <typename Texture>
-void update_peaks(const FocusKernels& kernels, const StateRow<Texture>& row, const std::uint16_t* codes,
-                  const std::uint8_t* saturated, const Texture* pixels, int width, int index) noexcept;
+void update_peaks(const FocusKernels& kernels, const StateRow<Texture>& row, std::span<const Sample<Texture>> samples,
+                  int width, int first_index) noexcept;
 
 extern template class PeakAccumulator<std::uint8_t>;
 extern template class PeakAccumulator<std::uint16_t>;

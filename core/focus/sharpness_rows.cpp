@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <type_traits>
 
 namespace fvd {
 
@@ -169,57 +168,79 @@ void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first) noexce
 }
 
 template <typename Pixel>
-template <typename Sum>
-void SharpnessRows<Pixel>::compute_row(int y, Sum* out) noexcept {
+void SharpnessRows<Pixel>::compute_row(int y, std::uint32_t* out) noexcept {
   const Pixel* above = image_.row(std::max(y - distance_, 0));
   const Pixel* row = image_.row(y);
   const Pixel* below = image_.row(std::min(y + distance_, image_.height - 1));
-  const int left_end = std::min(distance_, width_);
-  const int right_begin = std::max(left_end, width_ - distance_);
-  if constexpr (std::is_same_v<Sum, std::uint16_t>) {
-    if constexpr (sizeof(Pixel) == 1) kernels_.laplacian_u8(above, row, below, width_, distance_, out);
-  } else if (operator_ == FocusOperator::kIntensity) {
+  if (operator_ == FocusOperator::kIntensity) {
     std::copy_n(row, width_, out);
     return;
+  }
+  if constexpr (sizeof(Pixel) == 1) {
+    kernels_.tenengrad_u8(above, row, below, width_, distance_, code_.operator_shift, out);
   } else if (operator_ == FocusOperator::kTenengrad) {
-    if constexpr (sizeof(Pixel) == 1) {
-      kernels_.tenengrad_u8(above, row, below, width_, distance_, code_.operator_shift, out);
-    } else {
-      kernels_.tenengrad_u16(above, row, below, width_, distance_, code_.operator_shift, out);
-    }
+    kernels_.tenengrad_u16(above, row, below, width_, distance_, code_.operator_shift, out);
   } else {
-    if constexpr (sizeof(Pixel) == 2) kernels_.laplacian_u16(above, row, below, width_, distance_, out);
+    kernels_.laplacian_u16(above, row, below, width_, distance_, out);
   }
-  const auto end = [&](int x) {
-    out[x] = static_cast<Sum>(operator_value(operator_, above, row, below, x, width_, distance_, code_.operator_shift));
-  };
-  for (int x = 0; x < left_end; ++x) end(x);
-  for (int x = right_begin; x < width_; ++x) end(x);
+  for_ends([&](int x) {
+    out[x] = operator_value(operator_, above, row, below, x, width_, distance_, code_.operator_shift);
+  });
+}
+
+/// Calls at(x) for the columns whose neighbours lie beyond the image.
+template <typename Pixel>
+template <typename At>
+void SharpnessRows<Pixel>::for_ends(At at) noexcept {
+  const int left_end = std::min(distance_, width_);
+  for (int x = 0; x < left_end; ++x) at(x);
+  for (int x = std::max(left_end, width_ - distance_); x < width_; ++x) at(x);
 }
 
 template <typename Pixel>
-template <typename Sum>
-void SharpnessRows<Pixel>::enter(Columns<Sum>& columns, int y) noexcept {
+void SharpnessRows<Pixel>::enter(Narrow& columns, int y) noexcept {
+  if constexpr (sizeof(Pixel) == 1) {
+    // The slot holds the row that leaves, `window` rows above, or zeros.
+    std::uint16_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
+    const Pixel* above = image_.row(std::max(y - distance_, 0));
+    const Pixel* row = image_.row(y);
+    const Pixel* below = image_.row(std::min(y + distance_, image_.height - 1));
+    kernels_.enter_laplacian_u8(above, row, below, width_, distance_, code_.shift, columns.sums.data(), slot,
+                                columns.scaled.data());
+    for_ends([&](int x) {
+      const auto column = static_cast<std::size_t>(x);
+      const auto value =
+          static_cast<std::uint16_t>(operator_value(operator_, above, row, below, x, width_, distance_, 0));
+      columns.sums[column] = static_cast<std::uint16_t>(columns.sums[column] + value - slot[x]);
+      slot[x] = value;
+      columns.scaled[column] = linear_code(columns.sums[column], code_.shift);
+    });
+  }
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::enter(Wide& columns, int y) noexcept {
   compute_row(y, columns.fresh.data());
-  // The slot holds the row that leaves, `window` rows above, or zeros.
-  Sum* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
-  if constexpr (std::is_same_v<Sum, std::uint16_t>) {
-    kernels_.slide_u16(columns.sums.data(), columns.fresh.data(), slot, code_.shift, width_, columns.scaled.data());
-  } else {
-    kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
+  std::uint32_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
+  kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::leave(Narrow& columns, int y) noexcept {
+  std::uint16_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
+  for (int x = 0; x < width_; ++x) {
+    const auto column = static_cast<std::size_t>(x);
+    columns.sums[column] = static_cast<std::uint16_t>(columns.sums[column] - slot[x]);
+    columns.scaled[column] = linear_code(columns.sums[column], code_.shift);
+    slot[x] = 0;
   }
 }
 
 template <typename Pixel>
-template <typename Sum>
-void SharpnessRows<Pixel>::leave(Columns<Sum>& columns, int y) noexcept {
-  std::fill(columns.fresh.begin(), columns.fresh.end(), Sum{0});
-  Sum* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
-  if constexpr (std::is_same_v<Sum, std::uint16_t>) {
-    kernels_.slide_u16(columns.sums.data(), columns.fresh.data(), slot, code_.shift, width_, columns.scaled.data());
-  } else {
-    kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
-  }
+void SharpnessRows<Pixel>::leave(Wide& columns, int y) noexcept {
+  std::uint32_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
+  std::fill(columns.fresh.begin(), columns.fresh.end(), 0U);
+  kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
 }
 
 template <typename Pixel>

@@ -75,15 +75,16 @@ class SharpnessRows {
   template <typename Sum>
   void resize(Columns<Sum>& columns);
   template <typename Sum>
-  void enter(Columns<Sum>& columns, int y) noexcept;
-  template <typename Sum>
-  void leave(Columns<Sum>& columns, int y) noexcept;
-  template <typename Sum>
   void clear(Columns<Sum>& columns) noexcept;
+  void enter(Narrow& columns, int y) noexcept;
+  void enter(Wide& columns, int y) noexcept;
+  void leave(Narrow& columns, int y) noexcept;
+  void leave(Wide& columns, int y) noexcept;
   void enter(int y) noexcept;
   void leave(int y) noexcept;
-  template <typename Sum>
-  void compute_row(int y, Sum* out) noexcept;
+  void compute_row(int y, std::uint32_t* out) noexcept;
+  template <typename At>
+  void for_ends(At at) noexcept;
   void emit_narrow() noexcept;
   void emit_wide() noexcept;
   [[nodiscard]] bool row_saturated(int y) const noexcept;

@@ -106,7 +106,6 @@ HeightMap SimpleFocusStack::finish(PeakMethod method) const {
   HeightMap map = empty_map(width, height, format_);
   SampleHeights heights(settings_.bin_slices, static_cast<int>(z_um_.size()));
   for (const double z : z_um_) heights.push(z);
-  const RowFit fit(heights.means_um(), settings_, format_, method);
   WorkerPool pool(1);
   NoiseProbe noise(width, height);
   for (const auto& slice : pixels_) noise.add(image_view(slice.view(), PixelFormat::kMono16), pool);
@@ -130,7 +129,7 @@ HeightMap SimpleFocusStack::finish(PeakMethod method) const {
     }
     return condensed.row();
   };
-  finish_map(curves, fit, settings_, noise, pool, map);
+  finish_map(curves, heights.means_um(), settings_, method, noise, pool, map);
   return map;
 }
 

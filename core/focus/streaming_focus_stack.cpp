@@ -1,6 +1,7 @@
 #include "core/focus/streaming_focus_stack.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -11,7 +12,6 @@
 #include "core/focus/map_finish.hpp"
 #include "core/focus/noise_probe.hpp"
 #include "core/focus/peak_accumulator.hpp"
-#include "core/focus/row_fit.hpp"
 #include "core/focus/sharpness_rows.hpp"
 #include "core/focus/slice_binner.hpp"
 #include "core/pipeline/worker_pool.hpp"
@@ -44,18 +44,19 @@ class TypedStack {
       for (std::size_t k = 0; k < slices.size(); ++k) band.scanners[k].begin(slices[k].image.as<Pixel>(), first);
       for (int y = first; y < end; ++y) {
         const auto row = peaks_.row(y);
+        std::array<Sample<Pixel>, StreamingFocusStack::kMaxBatch> samples;
         for (std::size_t k = 0; k < slices.size(); ++k) {
           auto& scanner = band.scanners[k];
           scanner.next();
-          band.binner.add(row, scanner.codes(), scanner.saturated(), slices[k].image.as<Pixel>().row(y),
-                          index + static_cast<int>(k));
+          samples[k] = {scanner.codes(), scanner.saturated(), slices[k].image.as<Pixel>().row(y)};
         }
+        band.binner.add(row, std::span(samples).first(slices.size()), index);
       }
     };
     pool.run(bands, std::ref(scan_band));  // by reference: a copy of the captures would be allocated
   }
 
-  HeightMap finish(const SampleHeights& heights, const RowFit& fit, const NoiseProbe& noise, HeightMap map,
+  HeightMap finish(const SampleHeights& heights, PeakMethod method, const NoiseProbe& noise, HeightMap map,
                    WorkerPool& pool) {
     const int width = map.height_m.width();
     // An incomplete last bin is taken in on a copy: more slices may come.
@@ -78,7 +79,7 @@ class TypedStack {
       if (texture != nullptr) std::copy_n(row.texture, width, texture);
       return row.curve;
     };
-    finish_map(curves, fit, settings_, noise, pool, map);
+    finish_map(curves, heights.means_um(), settings_, method, noise, pool, map);
     return map;
   }
 
@@ -209,10 +210,9 @@ std::size_t StreamingFocusStack::memory_bytes(int width, int height, PixelFormat
 
 HeightMap StreamingFocusStack::finish(PeakMethod method) const {
   if (slices() == 0) throw Error(ErrorCode::kBadSlice, "a height map needs slices; there are none");
-  const RowFit fit(impl_->heights.means_um(), impl_->settings, impl_->format, method);
   return std::visit(
       [&](auto& stack) {
-        return stack.finish(impl_->heights, fit, impl_->noise, empty_map(impl_->width, impl_->height, impl_->format),
+        return stack.finish(impl_->heights, method, impl_->noise, empty_map(impl_->width, impl_->height, impl_->format),
                             *impl_->pool);
       },
       impl_->stack);

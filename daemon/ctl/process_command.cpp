@@ -46,6 +46,7 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   options.focus.min_prominence = arguments.min_prominence;
   options.focus.min_significance = arguments.min_significance;
   options.focus.bin_slices = arguments.bin_slices;
+  options.focus.stage_correction = arguments.stage_correction;
   options.peak = *peak_method_from_name(arguments.peak);  // the parser lets only known names through
   for (const auto& name : arguments.extra_peaks) options.extra_peaks.push_back(*peak_method_from_name(name));
   if (arguments.pixel_pitch_um != 0.0) options.pixel_pitch_um = arguments.pixel_pitch_um;
@@ -110,6 +111,8 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
       ->capture_default_str();
   command.add_option("--min-significance", a.min_significance, "points whose curve rises by less noise become holes")
       ->capture_default_str();
+  command.add_flag("--stage-correction", a.stage_correction,
+                   "seek the stage's errors in the focus curves and correct heights by them");
   command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");
   command.add_option("--part", a.part_id, "part id to write into the result; default: the name of the source");
   command.add_option("--threads", a.threads, "0: one a core")->check(CLI::Range(0, 256))->capture_default_str();

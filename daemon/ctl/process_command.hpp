@@ -34,6 +34,7 @@ struct ProcessArguments {
   int distance_px = 2;
   std::string focus_operator = "modified_laplacian";
   int bin_slices = 1;
+  bool stage_correction = false;  ///< recorded z are taken as they are unless asked for
   double min_significance = FocusSettings{}.min_significance;
   double min_prominence = 0.5;
   std::string peak = "five_sample";

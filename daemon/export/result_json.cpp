@@ -90,6 +90,13 @@ Json focus(const ResultData& data) {
   return json;
 }
 
+Json stage_health(const StageCorrection& stage) {
+  return {{"corrected", stage.applied},
+          {"reason", text_or_null(stage.reason)},
+          {"offsets_rms_um", um(stage.rms_um)},
+          {"offset_error_um", um(stage.standard_error_um)}};
+}
+
 Json frames(const FrameCounts& counts) {
   return {{"expected", counts.expected}, {"ok", counts.ok},       {"incomplete", counts.incomplete},
           {"missing", counts.missing},   {"stale", counts.stale}, {"underrun", counts.underrun}};
@@ -154,6 +161,7 @@ std::string result_json_text(const ResultData& data, const std::optional<WriteRe
   json["frames"] = frames(data.frames);
   json["slices"] = slices(data);
   json["steps"] = steps(data.step_summary);
+  json["stage_in_curves"] = stage_health(data.map.stage);
   json["times"] = {{"prepare_ms", ms(data.times.prepare_ms)},
                    {"scan_ms", ms(data.times.scan_ms)},
                    {"finish_ms", ms(data.times.finish_ms)}};

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -115,6 +116,8 @@ class ReferenceScan {
                 WorkerPool& pool);
 
   [[nodiscard]] ErrorSum figures(PeakMethod method) const;
+  /// Why the stage's errors were not corrected; empty where they were.
+  [[nodiscard]] std::string stage_reason() const { return stack_->finish(PeakMethod::kFiveSample).stage.reason; }
   /// Points with a truth.
   [[nodiscard]] double points() const { return points_; }
 

@@ -97,7 +97,8 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
       const double slope = (curve.at(u + 0.002) - curve.at(u - 0.002)) / 0.004;
       information += slope * slope / kCurves;
     }
-    binner.add(row, codes.data(), nothing.data(), nothing.data(), k);
+    const Sample<std::uint8_t> sample{codes.data(), nothing.data(), nothing.data()};
+    binner.add(row, std::span(&sample, 1), k);
     heights.push(z);
   }
   if (heights.pending() > 0) binner.close(row, heights.samples(), heights.pending());

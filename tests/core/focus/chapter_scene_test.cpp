@@ -184,12 +184,20 @@ TEST_F(TheChapterScene, IsMeasuredBetterByTheLogParabola) {
   EXPECT_NEAR(log_parabola.mean_um[2] - log_parabola.mean_um[1], 50.0, 0.1);
 }
 
-TEST_F(TheChapterScene, IsMeasuredBestByTheInverseRoot) {
+TEST_F(TheChapterScene, IsMeasuredBetterStillByTheInverseRoot) {
   const Figures inverse_root = figures(PeakMethod::kInverseRoot);
   EXPECT_LE(inverse_root.rms_um, 0.25);
   EXPECT_GE(inverse_root.rms_um, 0.09) << "below the bound of any unbiased method";
   EXPECT_NEAR(inverse_root.mean_um[1] - inverse_root.mean_um[0], 50.0, 0.1);
   EXPECT_NEAR(inverse_root.mean_um[2] - inverse_root.mean_um[1], 50.0, 0.1);
+}
+
+TEST_F(TheChapterScene, IsMeasuredBestOfAllByFiveSamples) {
+  const Figures five = figures(PeakMethod::kFiveSample);
+  EXPECT_LE(five.rms_um, 0.20);
+  EXPECT_NEAR(five.mean_um[0], 0.0, 0.1);
+  EXPECT_NEAR(five.mean_um[1] - five.mean_um[0], 50.0, 0.1);
+  EXPECT_NEAR(five.mean_um[2] - five.mean_um[1], 50.0, 0.1);
 }
 
 TEST_F(TheChapterScene, IsValidEverywhere) { EXPECT_GE(figures(PeakMethod::kParabola).valid, 0.999); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -249,6 +250,64 @@ TEST(StreamingFocusStack, TakesTheFirstOfEqualPeaks) {
 
 TEST(StreamingFocusStack, KeepsTheGreyLevelOfThePeakSlice) {
   EXPECT_EQ(of_contrasts({10, 90, 20}).texture.at(1, 1), 190);
+}
+
+/// Heights of a scan whose z are changed by `change`; order backwards if asked for.
+Plane<float> heights_with(const Scan& scan, const std::function<double(double)>& change, bool backwards = false) {
+  Scan changed = scan;
+  for (double& z : changed.z_um) z = change(z);
+  if (backwards) {
+    std::reverse(changed.z_um.begin(), changed.z_um.end());
+    std::reverse(changed.slices.begin(), changed.slices.end());
+  }
+  FocusSettings settings;
+  settings.stage_correction = false;
+  return stream(changed, settings, PeakMethod::kFiveSample, 2).height_m;
+}
+
+TEST(StreamingFocusStack, FollowsAShiftAScaleAndTheReversedOrderOfZ) {
+  const Scan scan = make_scan(PixelFormat::kMono16, Surface::kTilted, 60, 40, 24, 3);
+  const Plane<float> plain = heights_with(scan, [](double z) { return z; });
+  const Plane<float> shifted = heights_with(scan, [](double z) { return z + 1000.0; });
+  const Plane<float> scaled = heights_with(scan, [](double z) { return 2.0 * z; });
+  const Plane<float> reversed = heights_with(
+      scan, [](double z) { return z; }, true);
+  int compared = 0;
+  int ties = 0;
+  for (std::size_t i = 0; i < plain.pixels().size(); ++i) {
+    const double height_um = static_cast<double>(plain.pixels()[i]) * 1e6;
+    if (std::isnan(height_um)) continue;
+    EXPECT_NEAR(static_cast<double>(shifted.pixels()[i]) * 1e6, height_um + 1000.0, 2e-4);
+    EXPECT_NEAR(static_cast<double>(scaled.pixels()[i]) * 1e6, 2.0 * height_um, 1e-4);
+    // Of two equal samples the first counts as the peak, which is the other one backwards.
+    const double difference = std::abs(static_cast<double>(reversed.pixels()[i]) * 1e6 - height_um);
+    EXPECT_LT(difference, 0.3);
+    ties += difference > 1e-3 ? 1 : 0;
+    ++compared;
+  }
+  EXPECT_GT(compared, 1500);
+  EXPECT_LT(ties, compared / 100);
+}
+
+TEST(StreamingFocusStack, DoesNotMindTheLossOfASliceFarFromThePeakAndLittleOfOneNearIt) {
+  const Scan flat = make_scan(PixelFormat::kMono16, Surface::kStepped, 10, 40, 24, 9);  // all of it at 20 um
+  FocusSettings settings;
+  settings.stage_correction = false;
+  const auto without = [&](std::size_t lost) {
+    Scan rest = flat;
+    rest.slices.erase(rest.slices.begin() + static_cast<std::ptrdiff_t>(lost));
+    rest.z_um.erase(rest.z_um.begin() + static_cast<std::ptrdiff_t>(lost));
+    return stream(rest, settings, PeakMethod::kFiveSample, 1);
+  };
+  const HeightMap whole = stream(flat, settings, PeakMethod::kFiveSample, 1);
+  const HeightMap far = without(20);
+  const HeightMap near = without(6);  // two slices above the surface
+  for (int y = 8; y < 32; ++y) {
+    ASSERT_EQ(whole.mask.at(5, y), 0);
+    EXPECT_NEAR(static_cast<double>(far.height_m.at(5, y)), static_cast<double>(whole.height_m.at(5, y)), 2e-8);
+    EXPECT_NEAR(static_cast<double>(near.height_m.at(5, y)), static_cast<double>(whole.height_m.at(5, y)),
+                6.0 * static_cast<double>(whole.sigma_m.at(5, y)));
+  }
 }
 
 TEST(StreamingFocusStack, RefusesAMapWithoutSlices) {

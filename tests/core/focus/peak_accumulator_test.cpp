@@ -41,7 +41,8 @@ TYPED_TEST(APeakAccumulator, KeepsWhatTheWholeCurveSays) {
       std::vector<SliceRow<TypeParam>> slices;
       for (int k = 0; k < 12; ++k) {
         const auto& slice = slices.emplace_back(width, random);
-        binner.add(row, slice.codes.data(), slice.saturated.data(), slice.pixels.data(), k);
+        const Sample<TypeParam> sample{slice.codes.data(), slice.saturated.data(), slice.pixels.data()};
+        binner.add(row, std::span(&sample, 1), k);
       }
       for (int x = 0; x < width; ++x) {
         const auto i = static_cast<std::size_t>(x);
@@ -74,7 +75,8 @@ TYPED_TEST(APeakAccumulator, SumsTheSlicesOfABin) {
     std::vector<SliceRow<TypeParam>> slices;
     for (int k = 0; k < 3 * bin; ++k) {
       const auto& slice = slices.emplace_back(kWidth, random);
-      binner.add(row, slice.codes.data(), slice.saturated.data(), slice.pixels.data(), k);
+      const Sample<TypeParam> sample{slice.codes.data(), slice.saturated.data(), slice.pixels.data()};
+      binner.add(row, std::span(&sample, 1), k);
     }
     const int shift = bin_shift(bin);
     for (int x = 0; x < kWidth; ++x) {

@@ -77,6 +77,8 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
                                                     {"insignificant", 0},
                                                     {"edge_bleeding", 0}}));
   EXPECT_EQ(result["values"]["sigma_median_um"], 0.2);
+  EXPECT_EQ(result["stage_in_curves"]["corrected"], false);
+  EXPECT_EQ(result["stage_in_curves"]["offsets_rms_um"], 0.0);
   EXPECT_EQ(result["focus"]["noise_grey"], 1.5);
   EXPECT_EQ(result["focus"]["curve_width_um"], 30.0);
   EXPECT_EQ(result["focus"]["peak"], "log_parabola");

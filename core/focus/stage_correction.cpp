@@ -1,0 +1,224 @@
+#include "core/focus/stage_correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <Eigen/Dense>
+
+namespace fvd {
+
+namespace {
+
+constexpr int kMaxSamples = 512;  // the system is solved densely
+constexpr std::size_t kMinTuples = 1000;
+constexpr int kFractions = 4;         // of a step, each to be seen
+constexpr int kMinInFraction = 10;    // tuples
+constexpr double kMinCoverage = 0.9;  // of the fractions between the lowest and the highest peak
+constexpr int kMinSteps = 6;          // between these
+constexpr double kPrior = 0.2;        // of a step: what a stage's error is thought to be at the most
+constexpr double kMinErrors = 3.0;    // standard errors that the offsets must exceed
+constexpr int kIterations = 3;
+constexpr double kMostLeftOver = 0.6;  // of the curves' departure from a parabola: the stage must be to blame for more
+constexpr double kMinInformation = 50.0;  // over that of the prior, for a sample to count as seen
+constexpr double kLeastOffset = 0.015;    // of a step: below it the shape of the curves is to blame
+
+StageCorrection off(const std::string& reason) {
+  StageCorrection correction;
+  correction.reason = reason;
+  return correction;
+}
+
+/// The share of fractions of a step between the peaks' 2nd and 98th percentile that enough peaks lie in, and how many
+/// steps that is.
+struct Coverage {
+  double share = 0.0;
+  double steps = 0.0;
+};
+
+Coverage coverage(std::span<const CurveTuple> tuples, const std::vector<double>& z_um) {
+  std::vector<double> places;  // in samples, with fraction
+  places.reserve(tuples.size());
+  for (const CurveTuple& tuple : tuples) {
+    const auto i = static_cast<std::size_t>(tuple.index);
+    const double off_um = static_cast<double>(tuple.height_um) - z_um[i];
+    const double towards = (z_um[i + 1] - z_um[i]) * off_um > 0.0 ? z_um[i + 1] - z_um[i] : z_um[i] - z_um[i - 1];
+    places.push_back(static_cast<double>(i) + off_um / towards);
+  }
+  std::sort(places.begin(), places.end());
+  const double low = places[places.size() / 50];
+  const double high = places[places.size() - 1 - places.size() / 50];
+  Coverage result;
+  result.steps = high - low;
+  const int bins = std::max(1, static_cast<int>(result.steps * kFractions));
+  std::vector<int> counts(static_cast<std::size_t>(bins));
+  for (const double place : places) {
+    const int bin = static_cast<int>((place - low) / result.steps * bins);
+    if (bin >= 0 && bin < bins) ++counts[static_cast<std::size_t>(bin)];
+  }
+  const auto seen = std::count_if(counts.begin(), counts.end(), [](int count) { return count >= kMinInFraction; });
+  result.share = static_cast<double>(seen) / bins;
+  return result;
+}
+
+/// Adds what one curve says about its samples' offsets, in units of `step`. Returns what its parabola leaves over, in
+/// squares of its noise.
+double add_tuple(const CurveTuple& tuple, const std::vector<double>& z_um, double step, Eigen::MatrixXd& normal,
+                 Eigen::VectorXd& right) {
+  using Vector5 = Eigen::Matrix<double, 5, 1>;
+  Eigen::Matrix<double, 5, 3> powers;
+  Vector5 g;
+  Vector5 root_weight;
+  const double origin = z_um[static_cast<std::size_t>(tuple.index)];
+  for (int j = 0; j < 5; ++j) {
+    const int k = tuple.index + j - 2;
+    const auto share = static_cast<double>(tuple.share[static_cast<std::size_t>(j)]);
+    const bool present = share > 0.0 && k >= 0 && k < static_cast<int>(z_um.size());
+    const double u = present ? (z_um[static_cast<std::size_t>(k)] - origin) / step : 0.0;
+    root_weight(j) = present ? share * share : 0.0;
+    g(j) = present ? -1.0 / std::sqrt(share) : 0.0;
+    powers.row(j) << 1.0, u, u * u;
+  }
+  const Eigen::Matrix<double, 5, 3> weighted = root_weight.asDiagonal() * powers;
+  const Eigen::Matrix3d gram = weighted.transpose() * weighted;
+  const Eigen::LDLT<Eigen::Matrix3d> solver(gram);
+  const Vector5 target = root_weight.cwiseProduct(g);
+  const Eigen::Vector3d fit = solver.solve(weighted.transpose() * target);
+  if (!(fit(2) < 0.0)) return 0.0;
+  // What an offset of each sample moves, less what the parabola takes up of it.
+  const Eigen::Matrix<double, 5, 5> rest =
+      Eigen::Matrix<double, 5, 5>::Identity() - weighted * solver.solve(weighted.transpose());
+  const Vector5 slope = (fit(1) + 2.0 * fit(2) * powers.col(1).array()).matrix();
+  const Eigen::Matrix<double, 5, 5> design = rest * root_weight.cwiseProduct(slope).asDiagonal();
+  const Vector5 residual = rest * target;
+  const double variance = 0.25 * std::pow(static_cast<double>(tuple.noise), 2) + 1e-6;
+  const Eigen::Matrix<double, 5, 5> information = design.transpose() * design / variance;
+  const Vector5 pull = design.transpose() * residual / variance;
+  if (!information.allFinite() || !pull.allFinite()) return 0.0;
+  for (int j = 0; j < 5; ++j) {
+    const int k = tuple.index + j - 2;
+    if (root_weight(j) == 0.0) continue;
+    right(k) += pull(j);
+    for (int i = 0; i < 5; ++i) {
+      if (root_weight(i) != 0.0) normal(k, tuple.index + i - 2) += information(j, i);
+    }
+  }
+  return residual.squaredNorm() / variance;
+}
+
+/// What no scan can tell: a shift and a stretch leave no trace, and curves that lean to one side, for reasons of
+/// optics, look exactly like an offset that grows with the square of z. Projects it out.
+class SlowPart {
+ public:
+  SlowPart(const std::vector<double>& z_um, const std::vector<std::size_t>& seen) {
+    const auto rows = static_cast<Eigen::Index>(seen.size());
+    Eigen::MatrixXd powers(rows, kPowers);
+    const double middle = (z_um[seen.front()] + z_um[seen.back()]) / 2;
+    const double half = std::max(1e-9, std::abs(z_um[seen.back()] - z_um[seen.front()]) / 2);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      const double x = (z_um[seen[static_cast<std::size_t>(row)]] - middle) / half;
+      powers.row(row) << 1.0, x, x * x;
+    }
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
+    basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(rows, kPowers);
+  }
+  [[nodiscard]] Eigen::MatrixXd removed_from(const Eigen::MatrixXd& columns) const {
+    return columns - basis_ * (basis_.transpose() * columns);
+  }
+
+ private:
+  static constexpr Eigen::Index kPowers = 3;
+  Eigen::MatrixXd basis_;
+};
+
+}  // namespace
+
+StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const std::vector<double>& z_um) {
+  std::ostringstream why;
+  if (z_um.size() > static_cast<std::size_t>(kMaxSamples)) {
+    why << z_um.size() << " samples, at most " << kMaxSamples << " are solved for: sum slices to bins";
+    return off(why.str());
+  }
+  if (tuples.size() < kMinTuples) {
+    why << "only " << tuples.size() << " of the points looked at are valid, " << kMinTuples << " are needed";
+    return off(why.str());
+  }
+  const Coverage seen = coverage(tuples, z_um);
+  if (seen.steps < kMinSteps) {
+    why << "the surface spans " << std::round(10.0 * seen.steps) / 10.0 << " steps, " << kMinSteps << " are needed";
+    return off(why.str());
+  }
+  if (seen.share < kMinCoverage) {
+    why << "the surface covers " << std::round(100.0 * seen.share) << " % of the heights between its ends, "
+        << 100.0 * kMinCoverage << " % are needed";
+    return off(why.str());
+  }
+  const auto count = static_cast<Eigen::Index>(z_um.size());
+  const double step = std::abs(z_um.back() - z_um.front()) / static_cast<double>(z_um.size() - 1);
+  constexpr double kPriorWeight = 1.0 / (kPrior * kPrior);
+  std::vector<double> corrected = z_um;
+  Eigen::MatrixXd normal;
+  double left_over_before = 0.0;
+  double left_over = 0.0;
+  for (int iteration = 0; iteration <= kIterations; ++iteration) {
+    normal = Eigen::MatrixXd::Identity(count, count) * kPriorWeight;
+    Eigen::VectorXd right(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      right(k) = -(corrected[i] - z_um[i]) / step * kPriorWeight;
+    }
+    left_over = 0.0;
+    for (const CurveTuple& tuple : tuples) left_over += add_tuple(tuple, corrected, step, normal, right);
+    if (iteration == 0) left_over_before = left_over;
+    if (iteration == kIterations) break;  // only to see what is left over now
+    const Eigen::VectorXd change = normal.ldlt().solve(right);
+    for (Eigen::Index k = 0; k < count; ++k) corrected[static_cast<std::size_t>(k)] += step * change(k);
+  }
+
+  std::vector<std::size_t> samples;  // that the curves say something about
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (normal(k, k) > kMinInformation * kPriorWeight) samples.push_back(static_cast<std::size_t>(k));
+  }
+  if (samples.size() < static_cast<std::size_t>(kMinSteps)) return off("too few samples lie near a peak");
+  const SlowPart slow(z_um, samples);
+  const auto rows = static_cast<Eigen::Index>(samples.size());
+  const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+  Eigen::MatrixXd seen_covariance(rows, rows);
+  Eigen::MatrixXd offsets(rows, 1);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const std::size_t k = samples[static_cast<std::size_t>(row)];
+    offsets(row, 0) = corrected[k] - z_um[k];
+    for (Eigen::Index column = 0; column < rows; ++column) {
+      seen_covariance(row, column) = covariance(static_cast<Eigen::Index>(k),
+                                                static_cast<Eigen::Index>(samples[static_cast<std::size_t>(column)]));
+    }
+  }
+  offsets = slow.removed_from(offsets);
+  const Eigen::MatrixXd fast = slow.removed_from(slow.removed_from(seen_covariance).transpose());
+
+  StageCorrection correction;
+  correction.standard_error_um = step * std::sqrt(std::max(0.0, fast.trace()) / static_cast<double>(rows));
+  correction.rms_um = std::sqrt(offsets.squaredNorm() / static_cast<double>(rows));
+  const double least = std::max(kMinErrors * correction.standard_error_um, kLeastOffset * step);
+  if (correction.rms_um < least) {
+    why << "offsets of " << correction.rms_um << " um rms are within what curves of another shape and noise make, "
+        << least << " um";
+    correction.reason = why.str();
+    return correction;
+  }
+  if (left_over > kMostLeftOver * left_over_before) {
+    why << "offsets of " << correction.rms_um << " um rms would explain only "
+        << std::round(100.0 * (1.0 - left_over / left_over_before)) << " % of what the curves leave over, "
+        << 100.0 * (1.0 - kMostLeftOver) << " % are needed";
+    correction.reason = why.str();
+    return correction;
+  }
+  correction.applied = true;
+  correction.offsets_um.assign(z_um.size(), 0.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    correction.offsets_um[samples[i]] = offsets(static_cast<Eigen::Index>(i), 0);
+  }
+  return correction;
+}
+
+}  // namespace fvd
