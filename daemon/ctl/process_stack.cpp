@@ -113,9 +113,8 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   data.times.finish_ms = milliseconds_since(finish_start);
   data.step_summary = summarize_steps(data.steps);
 
-  write_result(options.out, data);
-  return {stack.list().description,   stack.slices(), stack.width(), stack.height(), data.state_bytes_per_pixel,
-          summarize_heights(data.map)};
+  const HeightSummary summary = write_result(options.out, data);
+  return {stack.list().description, stack.slices(), stack.width(), stack.height(), data.state_bytes_per_pixel, summary};
 }
 
 }  // namespace fvd::ctl

@@ -54,8 +54,7 @@ Json holes(const HoleCounts& counts) {
           {"edge_bleeding", counts.edge_bleeding}};
 }
 
-Json values(const ResultData& data) {
-  const HeightSummary summary = summarize_heights(data.map);
+Json values(const HeightSummary& summary) {
   Json json;
   json["height"] = height_values(summary);
   json["points"] = summary.points;
@@ -150,13 +149,14 @@ Json file_list(const std::vector<AtomicDirectory::File>& files) {
 
 }  // namespace
 
-std::string result_json_text(const ResultData& data, const std::optional<WriteReport>& report) {
+std::string result_json_text(const ResultData& data, const HeightSummary& summary,
+                             const std::optional<WriteReport>& report) {
   Json json;
   json["job"] = {{"job_id", text_or_null(data.job_id)},
                  {"seq", data.seq ? Json(*data.seq) : Json(nullptr)},
                  {"part_id", text_or_null(data.part_id)},
                  {"recipe", text_or_null(data.recipe_id)}};
-  json["values"] = values(data);
+  json["values"] = values(summary);
   json["focus"] = focus(data);
   json["frames"] = frames(data.frames);
   json["slices"] = slices(data);

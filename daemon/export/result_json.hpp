@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/export/atomic_directory.hpp"
+#include "daemon/export/height_summary.hpp"
 #include "daemon/export/result_data.hpp"
 
 namespace fvd {
@@ -19,6 +20,7 @@ struct WriteReport {
 
 /// Pretty-printed JSON, ASCII only, keys in a fixed order, null for whatever is unknown or not finite; heights rounded
 /// to 0.1 nm. With a report also "files" and times.write_ms.
-[[nodiscard]] std::string result_json_text(const ResultData& data, const std::optional<WriteReport>& report = {});
+[[nodiscard]] std::string result_json_text(const ResultData& data, const HeightSummary& summary,
+                                           const std::optional<WriteReport>& report = {});
 
 }  // namespace fvd

@@ -1,7 +1,9 @@
 #include "daemon/export/result_writer.hpp"
 
 #include <chrono>
+#include <future>
 #include <string>
+#include <utility>
 
 #include "daemon/export/gsf.hpp"
 #include "daemon/export/height_summary.hpp"
@@ -58,8 +60,14 @@ PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
 
 }  // namespace
 
-void write_result(AtomicDirectory& directory, const ResultData& data) {
+HeightSummary write_result(AtomicDirectory& directory, const ResultData& data) {
   const auto start = std::chrono::steady_clock::now();
+  // Compressing the images takes longer than all the rest; it runs beside it.
+  auto texture = std::async(std::launch::async, [&data] { return encode_texture_png(data.map); });
+  auto summary_and_preview = std::async(std::launch::async, [&data] {
+    const HeightSummary summary = summarize_heights(data.map);
+    return std::pair(summary, encode_preview_png(data.map, summary, preview_text(data, summary)));
+  });
   directory.add_file("height.tiff", encode_height_tiff(data.map.height_m, tiff_tags(data, data.peak)));
   for (const auto& [method, map] : data.extra_maps) {
     directory.add_file("height_" + std::string(peak_method_name(method)) + ".tiff",
@@ -68,18 +76,20 @@ void write_result(AtomicDirectory& directory, const ResultData& data) {
   directory.add_file("sigma.tiff", encode_height_tiff(data.map.sigma_m, tiff_tags(data, data.peak, "standard error")));
   directory.add_file("height.gsf", encode_gsf(data.map.height_m, gsf_header(data)));
   directory.add_file("mask.png", encode_mask_png(data.map));
-  directory.add_file("texture.png", encode_texture_png(data.map));
-  const HeightSummary summary = summarize_heights(data.map);
-  directory.add_file("preview.png", encode_preview_png(data.map, summary, preview_text(data, summary)));
+  directory.add_file("texture.png", texture.get());
+  const auto [summary, preview] = summary_and_preview.get();
+  directory.add_file("preview.png", preview);
   directory.add_file("step_log.csv", step_csv(data.steps));
   const double write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  directory.add_file("result.json", result_json_text(data, WriteReport{directory.files(), write_ms}));
+  directory.add_file("result.json", result_json_text(data, summary, WriteReport{directory.files(), write_ms}));
+  return summary;
 }
 
-void write_result(const std::filesystem::path& final_dir, const ResultData& data) {
+HeightSummary write_result(const std::filesystem::path& final_dir, const ResultData& data) {
   AtomicDirectory directory(final_dir);
-  write_result(directory, data);
+  const HeightSummary summary = write_result(directory, data);
   directory.commit();
+  return summary;
 }
 
 }  // namespace fvd

@@ -19,6 +19,8 @@ namespace {
 using nlohmann::json;
 using test::ScratchDir;
 
+std::string json_of(const ResultData& data) { return result_json_text(data, summarize_heights(data.map)); }
+
 TEST(ResultWriter, WritesEveryFileAndNothingElse) {
   const ScratchDir scratch;
   ResultData data = test::sample_result();
@@ -62,7 +64,7 @@ TEST(ResultWriter, LeavesNothingWhenTheTargetExists) {
 }
 
 TEST(ResultJson, TellsValuesFramesAndOrigin) {
-  const json result = json::parse(result_json_text(test::sample_result()));
+  const json result = json::parse(json_of(test::sample_result()));
   EXPECT_EQ(result["job"], json({{"job_id", "J7"}, {"seq", 4711}, {"part_id", "part-42"}, {"recipe", "chapter"}}));
   EXPECT_EQ(result["values"]["height"],
             json({{"min_um", 2.0}, {"max_um", 25.0}, {"mean_um", 14.0}, {"median_um", 13.5}}));
@@ -70,12 +72,12 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
   EXPECT_EQ(result["values"]["valid_points"], 16);
   EXPECT_NEAR(result["values"]["valid_fraction"].get<double>(), 16.0 / 18.0, 1e-6);
   EXPECT_EQ(result["values"]["hole_points"], json({{"low_prominence", 1},
-                                                    {"first_slice", 1},
-                                                    {"last_slice", 0},
-                                                    {"not_bracketed", 0},
-                                                    {"saturated", 1},
-                                                    {"insignificant", 0},
-                                                    {"edge_bleeding", 0}}));
+                                                   {"first_slice", 1},
+                                                   {"last_slice", 0},
+                                                   {"not_bracketed", 0},
+                                                   {"saturated", 1},
+                                                   {"insignificant", 0},
+                                                   {"edge_bleeding", 0}}));
   EXPECT_EQ(result["values"]["sigma_median_um"], 0.2);
   EXPECT_EQ(result["stage_in_curves"]["corrected"], false);
   EXPECT_EQ(result["stage_in_curves"]["offsets_rms_um"], 0.0);
@@ -106,7 +108,7 @@ TEST(ResultJson, HasNullWhereNothingIsKnown) {
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 6; ++x) test::make_hole(data.map, x, y, mask_reason::kLowProminence);
   }
-  const std::string text = result_json_text(data);
+  const std::string text = json_of(data);
   const json result = json::parse(text);
   EXPECT_TRUE(result["job"]["job_id"].is_null());
   EXPECT_TRUE(result["job"]["seq"].is_null());
@@ -120,7 +122,7 @@ TEST(ResultJson, HasNullWhereNothingIsKnown) {
 TEST(ResultJson, SurvivesTextThatIsNotUtf8) {
   ResultData data = test::sample_result();
   data.source = "folder \xFF\xFE";
-  EXPECT_TRUE(json::accept(result_json_text(data)));
+  EXPECT_TRUE(json::accept(json_of(data)));
 }
 
 TEST(StepCsv, HasOneRowASliceUnderNamesWithUnits) {
