@@ -29,9 +29,10 @@ struct HeightMap {
   Plane<float> prominence;   ///< 0..1
   PixelFormat texture_format = PixelFormat::kMono8;
   Plane<std::uint16_t> texture;  ///< all-in-focus: grey level at the peak slice, 0..max_grey_level(texture_format)
-  StageCorrection stage;         ///< what the scan says about the stage, and whether heights were corrected by it
-  double noise_grey = 0.0;       ///< standard deviation of a pixel in grey levels, median over the image
-  double curve_width_um = 0.0;   ///< full width at half maximum of the focus curve, median of valid points; 0 unknown
+  Plane<std::uint8_t> colour;  ///< shape [height][3 * width]: blue, green, red at the peak slice; empty for grey slices
+  StageCorrection stage;       ///< what the scan says about the stage, and whether heights were corrected by it
+  double noise_grey = 0.0;     ///< standard deviation of a pixel in grey levels, median over the image
+  double curve_width_um = 0.0;  ///< full width at half maximum of the focus curve, median of valid points; 0 unknown
 };
 
 /// All planes allocated, contents to be written.

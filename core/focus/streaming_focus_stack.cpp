@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/focus/colour_texture.hpp"
 #include "core/focus/map_finish.hpp"
 #include "core/focus/noise_probe.hpp"
 #include "core/focus/peak_accumulator.hpp"
@@ -26,8 +27,11 @@ namespace {
 template <typename Pixel>
 class TypedStack {
  public:
-  TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, int bands)
-      : height_(height), peaks_(width, height, settings.bin_slices > 1), settings_(settings) {
+  TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, int bands, bool colour)
+      : height_(height),
+        peaks_(width, height, settings.bin_slices > 1),
+        colour_(colour ? width : 0, colour ? height : 0, settings.bin_slices),
+        settings_(settings) {
     for (int band = 0; band < bands; ++band) {
       auto& lanes = bands_.emplace_back(SliceBinner<Pixel>(width, settings.bin_slices));
       for (int k = 0; k < StreamingFocusStack::kMaxBatch; ++k) lanes.scanners.emplace_back(width, settings, format);
@@ -51,6 +55,7 @@ class TypedStack {
           samples[k] = {scanner.codes(), scanner.saturated(), slices[k].image.as<Pixel>().row(y)};
         }
         band.binner.add(row, std::span(samples).first(slices.size()), index);
+        colour_.add_row(y, row.curve.peak_index, slices, index);
       }
     };
     pool.run(bands, std::ref(scan_band));  // by reference: a copy of the captures would be allocated
@@ -59,6 +64,7 @@ class TypedStack {
   HeightMap finish(const SampleHeights& heights, PeakMethod method, const NoiseProbe& noise, HeightMap map,
                    WorkerPool& pool) {
     const int width = map.height_m.width();
+    if (!colour_.empty()) map.colour = Plane<std::uint8_t>::unset(3 * width, height_);
     // An incomplete last bin is taken in on a copy: more slices may come.
     struct Lane {
       PeakAccumulator<Pixel> copy;
@@ -76,14 +82,19 @@ class TypedStack {
         row = lane.copy.row(0);
         lane.binner.close(row, heights.samples(), heights.pending());
       }
-      if (texture != nullptr) std::copy_n(row.texture, width, texture);
+      if (texture != nullptr) {
+        std::copy_n(row.texture, width, texture);
+        const int pending = lanes.empty() ? -1 : heights.samples() - 1;
+        if (!colour_.empty()) colour_.copy_row(y, row.curve.peak_index, pending, map.colour.row(y));
+      }
       return row.curve;
     };
     finish_map(curves, heights.means_um(), settings_, method, noise, pool, map);
     return map;
   }
 
-  [[nodiscard]] std::size_t state_bytes() const { return peaks_.memory_bytes(); }
+  [[nodiscard]] std::size_t state_bytes() const { return peaks_.memory_bytes() + colour_.memory_bytes(); }
+  [[nodiscard]] bool colour() const { return !colour_.empty(); }
 
   [[nodiscard]] static std::size_t memory_bytes(int width, int height, const FocusSettings& settings, int bands) {
     return PeakAccumulator<Pixel>::memory_bytes(width, height, settings.bin_slices > 1) +
@@ -100,6 +111,7 @@ class TypedStack {
 
   int height_;
   PeakAccumulator<Pixel> peaks_;
+  ColourTexture colour_;
   FocusSettings settings_;
   std::vector<Band> bands_;  // one a thread
 };
@@ -117,18 +129,18 @@ constexpr std::size_t kMapBytesPerPixel =
 struct StreamingFocusStack::Impl {
   using Typed = std::variant<TypedStack<std::uint8_t>, TypedStack<std::uint16_t>>;
 
-  static Typed make(int width, int height, PixelFormat format, const FocusSettings& settings, int bands) {
-    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, format, settings, bands);
-    return TypedStack<std::uint16_t>(width, height, format, settings, bands);
+  static Typed make(int width, int height, PixelFormat format, const FocusSettings& settings, int bands, bool colour) {
+    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, format, settings, bands, colour);
+    return TypedStack<std::uint16_t>(width, height, format, settings, bands, colour);
   }
 
-  Impl(int w, int h, PixelFormat f, const FocusSettings& s, WorkerPool& p)
+  Impl(int w, int h, PixelFormat f, const FocusSettings& s, WorkerPool& p, bool colour)
       : width(w),
         height(h),
         format(f),
         settings(s),
         pool(&p),
-        stack(make(w, h, f, s, p.threads())),
+        stack(make(w, h, f, s, p.threads(), colour)),
         heights(s.bin_slices, kMaxSlices),
         noise(w, h) {}
 
@@ -160,13 +172,13 @@ struct StreamingFocusStack::Impl {
 };
 
 StreamingFocusStack::StreamingFocusStack(int width, int height, PixelFormat format, const FocusSettings& settings,
-                                         WorkerPool& pool) {
+                                         WorkerPool& pool, bool colour) {
   check_focus_settings(settings);
   if (width < 1 || height < 1) {
     throw Error(ErrorCode::kBadInput,
                 "slices of " + shape(width, height, format) + ": width and height must be at least 1");
   }
-  impl_ = std::make_unique<Impl>(width, height, format, settings, pool);
+  impl_ = std::make_unique<Impl>(width, height, format, settings, pool, colour);
 }
 
 StreamingFocusStack::~StreamingFocusStack() = default;
@@ -181,6 +193,10 @@ void StreamingFocusStack::push(const ImageView& slice, double z_um) {
 void StreamingFocusStack::push(std::span<const ZSlice> slices) {
   for (std::size_t k = 0; k < slices.size(); ++k) {
     impl_->check(slices[k].image, slices[k].z_um, this->slices() + static_cast<int>(k));
+    if (slices[k].colour == nullptr && std::visit([](const auto& stack) { return stack.colour(); }, impl_->stack)) {
+      throw Error(ErrorCode::kBadSlice, "slice " + std::to_string(this->slices() + static_cast<int>(k)) +
+                                            " is grey, the ones before it are in colour");
+    }
   }
   for (std::size_t first = 0; first < slices.size(); first += kMaxBatch) {
     const auto batch = slices.subspan(first, std::min<std::size_t>(kMaxBatch, slices.size() - first));

@@ -18,6 +18,7 @@ class WorkerPool;
 struct ZSlice {
   ImageView image;
   double z_um = 0.0;
+  const std::uint8_t* colour = nullptr;  ///< shape [height][width][3] contiguous; read by stacks with colour only
 };
 
 /// Keeps per pixel the peak of the focus curve with two neighbours on either side, the peak's number, and the curve's
@@ -30,13 +31,16 @@ class StreamingFocusStack {
   static constexpr double kMaxHeight_um = 1e9;  ///< a kilometre: a z beyond it is no stage position
 
   /// Allocates everything it will ever need. width, height >= 1. pool outlives the stack.
+  /// colour: every slice comes with its colours, and the map gets an all-in-focus image in colour.
   /// Throws Error kBadInput for settings out of range.
-  StreamingFocusStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool);
+  StreamingFocusStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool,
+                      bool colour = false);
   ~StreamingFocusStack();
   StreamingFocusStack(StreamingFocusStack&&) noexcept;
   StreamingFocusStack& operator=(StreamingFocusStack&&) noexcept;
 
-  /// Adds one slice at its measured z. Throws Error kBadSlice if size or format differ, z is not a number within
+  /// Adds one slice at its measured z. Throws Error kBadSlice if size or format differ, colours are missing, z is not a
+  /// number within
   /// +-kMaxHeight_um, or the stack is full; the stack is unchanged then. Allocates nothing.
   void push(const ImageView& slice, double z_um);
 

@@ -69,7 +69,8 @@ void push_slices(StreamingFocusStack& focus, const RecordedStack& stack, const s
     for (int index = first; index < end; ++index) images.push_back(stack.read(index));
     for (int index = first; index < end; ++index) {
       const double z = z_um[static_cast<std::size_t>(index)];
-      batch.push_back({images[static_cast<std::size_t>(index - first)].view(), z});
+      const SliceImage& image = images[static_cast<std::size_t>(index - first)];
+      batch.push_back({image.view(), z, image.colour.empty() ? nullptr : image.colour.data()});
       data.steps.push_back(step_record(index, z));
       ++data.frames.expected;
       ++data.frames.ok;
@@ -98,7 +99,7 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
-  StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), options.focus, pool);
+  StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), options.focus, pool, stack.colour());
   ResultData data;
   describe(data, options, stack);
   data.state_bytes_per_pixel = focus.state_bytes_per_pixel();

@@ -29,6 +29,10 @@ std::string encode_mask_png(const HeightMap& map) {
 }
 
 std::string encode_texture_png(const HeightMap& map) {
+  if (!map.colour.empty()) {
+    const std::uint8_t* colours = map.colour.row(0);
+    return png_bytes(cv::Mat(map.colour.height(), map.colour.width() / 3, CV_8UC3, const_cast<std::uint8_t*>(colours)));
+  }
   const bool narrow = map.texture_format == PixelFormat::kMono8;
   cv::Mat image(map.texture.height(), map.texture.width(), narrow ? CV_8U : CV_16U);
   if (narrow) {

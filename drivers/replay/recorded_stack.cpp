@@ -20,6 +20,7 @@ RecordedStack::RecordedStack(const std::filesystem::path& source) : list_(find_s
   width_ = first.width;
   height_ = first.height;
   format_ = first.format;
+  colour_ = !first.colour.empty();
 }
 
 SliceImage RecordedStack::read(int index) const {

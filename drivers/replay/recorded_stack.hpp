@@ -23,6 +23,8 @@ class RecordedStack {
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] int height() const noexcept { return height_; }
   [[nodiscard]] PixelFormat format() const noexcept { return format_; }
+  /// Whether the first slice has colours; others are not held to it.
+  [[nodiscard]] bool colour() const noexcept { return colour_; }
 
   /// Decodes one slice, 0 <= index < slices(). Throws Error kBadInput naming the file: see read_slice(); also for
   /// another size or format than the first slice's.
@@ -33,6 +35,7 @@ class RecordedStack {
   int width_ = 0;
   int height_ = 0;
   PixelFormat format_ = PixelFormat::kMono8;
+  bool colour_ = false;
 };
 
 }  // namespace fvd

@@ -72,6 +72,19 @@ cv::Mat decode(const SliceLocation& location) {
   }
 }
 
+/// For people: 16 bit keep their upper 8.
+std::vector<std::uint8_t> colour_of(const cv::Mat& image) {
+  cv::Mat narrow;
+  image.convertTo(narrow, CV_8U, image.depth() == CV_16U ? 1.0 / 257.0 : 1.0);
+  cv::Mat colour(narrow.rows, narrow.cols, CV_8UC3);
+  if (narrow.channels() == 4) {
+    cv::cvtColor(narrow, colour, cv::COLOR_BGRA2BGR);
+  } else {
+    narrow.copyTo(colour);
+  }
+  return {colour.data, colour.data + colour.total() * colour.elemSize()};
+}
+
 cv::Mat luminance(const cv::Mat& image, const SliceLocation& location) {
   cv::Mat grey;
   switch (image.channels()) {
@@ -103,12 +116,13 @@ SliceImage read_slice(const SliceLocation& location) {
     refuse(location, "has pixels that are not 8 or 16 bit unsigned integers");
   }
   const cv::Mat grey = luminance(image, location);
-  SliceImage slice{format_of(grey, location), grey.cols, grey.rows, {}};
+  SliceImage slice{format_of(grey, location), grey.cols, grey.rows, {}, {}};
   const std::size_t row_bytes = grey.elemSize() * static_cast<std::size_t>(grey.cols);
   slice.pixels.resize(row_bytes * static_cast<std::size_t>(grey.rows));
   for (int y = 0; y < grey.rows; ++y) {
     std::memcpy(slice.pixels.data() + row_bytes * static_cast<std::size_t>(y), grey.ptr(y), row_bytes);
   }
+  if (image.channels() > 1) slice.colour = colour_of(image);
   return slice;
 }
 

@@ -2,6 +2,7 @@
 
 /// Decoding of one recorded slice.
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -16,16 +17,17 @@ struct SliceImage {
   int width = 0;
   int height = 0;
   std::vector<std::byte> pixels;
+  std::vector<std::uint8_t> colour;  ///< shape [height][width][3], blue, green, red, 8 bit each; empty for a grey file
 
   [[nodiscard]] ImageView view() const {
     return {format, width, height, static_cast<std::ptrdiff_t>(width) * bytes_per_pixel(format), pixels.data()};
   }
 };
 
-/// Reads 8 or 16 bit, grey or colour. Colour becomes luminance Y = 0.299 R + 0.587 G + 0.114 B (ITU-R BT.601), an alpha
-/// channel is ignored. 16-bit files are Mono16, except a PGM, whose largest grey level may say Mono10 or Mono12.
-/// Throws Error kBadInput, naming the file: unreadable, corrupt or truncated, another kind of pixel, a multi-page file
-/// where one slice was expected.
+/// Reads 8 or 16 bit, grey or colour. Sharpness is that of the luminance: colour becomes Y = 0.299 R + 0.587 G + 0.114
+/// B (ITU-R BT.601), an alpha channel is ignored. 16-bit files are Mono16, except a PGM, whose largest grey level may
+/// say Mono10 or Mono12. Throws Error kBadInput, naming the file: unreadable, corrupt or truncated, another kind of
+/// pixel, a multi-page file where one slice was expected.
 [[nodiscard]] SliceImage read_slice(const SliceLocation& location);
 
 /// Pages of a TIFF file; 0 if it cannot be read.

@@ -310,6 +310,48 @@ TEST(StreamingFocusStack, DoesNotMindTheLossOfASliceFarFromThePeakAndLittleOfOne
   }
 }
 
+TEST(StreamingFocusStack, KeepsTheColoursOfThePeak) {
+  const Scan scan = make_scan(PixelFormat::kMono8, Surface::kTilted, 30, 20, 23, 11);
+  // The colours of a slice name it.
+  std::vector<std::vector<std::uint8_t>> colours;
+  for (std::size_t k = 0; k < scan.slices.size(); ++k) {
+    auto& colour = colours.emplace_back(30 * 20 * 3);
+    for (std::size_t i = 0; i < colour.size(); ++i) colour[i] = static_cast<std::uint8_t>(10 * k + i % 3);
+  }
+  for (const int bin : {1, 2, 5}) {  // 23 slices leave a bin open
+    for (const std::size_t batch : {std::size_t{1}, std::size_t{4}, std::size_t{23}}) {
+      WorkerPool pool(2);
+      StreamingFocusStack stack(30, 20, PixelFormat::kMono8, {.bin_slices = bin}, pool, true);
+      std::vector<ZSlice> slices;
+      for (std::size_t k = 0; k < scan.slices.size(); ++k) {
+        slices.push_back({scan.slice(k), scan.z_um[k], colours[k].data()});
+      }
+      for (std::size_t first = 0; first < slices.size(); first += batch) {
+        stack.push(std::span(slices).subspan(first, std::min(batch, slices.size() - first)));
+      }
+      const HeightMap map = stack.finish(PeakMethod::kNearest);
+      for (int y = 0; y < 20; ++y) {
+        for (int x = 0; x < 30; ++x) {
+          const int slice = map.colour.at(3 * x, y) / 10;
+          ASSERT_EQ(map.colour.at(3 * x + 2, y), 10 * slice + 2);
+          const auto expected = static_cast<std::uint8_t>(
+              scan.slices[static_cast<std::size_t>(slice)][static_cast<std::size_t>(30 * y + x)]);
+          ASSERT_EQ(map.texture.at(x, y), expected)
+              << "grey and colour are of one slice; bin " << bin << ", batch " << batch << ", at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST(StreamingFocusStack, RefusesAGreySliceAmongColours) {
+  WorkerPool pool(1);
+  StreamingFocusStack stack(4, 4, PixelFormat::kMono8, {}, pool, true);
+  const Plane<std::uint8_t> slice(4, 4);
+  EXPECT_THROW(stack.push(image_view(slice.view(), PixelFormat::kMono8), 0), Error);
+  EXPECT_EQ(stack.slices(), 0);
+}
+
 TEST(StreamingFocusStack, RefusesAMapWithoutSlices) {
   WorkerPool pool(1);
   const StreamingFocusStack stack(4, 4, PixelFormat::kMono8, {}, pool);

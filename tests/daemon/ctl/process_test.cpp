@@ -37,6 +37,18 @@ Outcome process(std::vector<std::string> arguments) {
 
 cv::Mat read_float(const fs::path& path) { return cv::imread(path.string(), cv::IMREAD_UNCHANGED); }
 
+TEST(Process, MakesTheAllInFocusImageInTheColoursOfTheSlices) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 11, 4.0, CV_16UC3);
+  ASSERT_EQ(process({scratch / "in", "--z-step-um", "10", "--out", scratch / "out"}).code, kExitOk);
+  const cv::Mat texture = cv::imread((scratch / "out/texture.png").string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(texture.type(), CV_8UC3);
+  const cv::Mat sharpest = test::pattern_slice(4, 4.0, CV_16UC3);
+  for (const auto& [x, y] : {std::pair{7, 7}, {20, 15}, {33, 22}}) {
+    EXPECT_NEAR(texture.at<cv::Vec3b>(y, x)[1], sharpest.at<cv::Vec3w>(y, x)[1] / 257.0, 1.0);
+  }
+}
+
 TEST(Process, MakesAHeightMapOfRecordedSlices) {
   const ScratchDir scratch;
   test::write_stack(scratch / "in", "s", ".png", 11, 4.0);
