@@ -76,14 +76,24 @@ void NoiseProbe::noise_row(int y, float* out) const noexcept {
   }
 }
 
-double NoiseProbe::median() const {
+std::vector<float> NoiseProbe::sigmas() const {
   std::vector<float> sigmas;
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) sigmas.push_back(sigma(column, row));
   }
-  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
-  std::nth_element(sigmas.begin(), middle, sigmas.end());
+  return sigmas;
+}
+
+double NoiseProbe::median() const {
+  std::vector<float> values = sigmas();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
   return static_cast<double>(*middle);
+}
+
+double NoiseProbe::least() const {
+  const std::vector<float> values = sigmas();
+  return static_cast<double>(*std::min_element(values.begin(), values.end()));
 }
 
 }  // namespace fvd

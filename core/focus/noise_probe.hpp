@@ -28,11 +28,13 @@ class NoiseProbe {
 
   /// Of the tiles, in grey levels.
   [[nodiscard]] double median() const;
+  [[nodiscard]] double least() const;
 
  private:
   template <typename Pixel>
   void add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept;
   [[nodiscard]] float sigma(int column, int tile_row) const noexcept;
+  [[nodiscard]] std::vector<float> sigmas() const;
 
   const FocusKernels& kernels_;
   int width_;

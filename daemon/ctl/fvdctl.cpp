@@ -12,6 +12,7 @@
 #include "daemon/ctl/job_commands.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/rpc_client.hpp"
+#include "daemon/ctl/suggest_command.hpp"
 #include "daemon/version.hpp"
 
 namespace fvd::ctl {
@@ -30,6 +31,7 @@ struct Arguments {
   std::string method;
   std::string params = "{}";
   ProcessArguments process;
+  std::string image;
 };
 
 RpcClient connect(const Arguments& arguments) {
@@ -148,6 +150,11 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   sub = command("process", "make a height map of recorded slices, without a daemon",
                 [&] { return run_process(a.process, terminal); });
   add_process_options(*sub, a.process);
+
+  command("suggest", "suggest a recipe's focus settings from one sharp image of a surface",
+          [&] { return run_suggest(a.image, terminal); })
+      ->add_option("image", a.image, "PNG, TIFF, JPEG or PGM; a slice where most of the surface is in focus")
+      ->required();
 }
 
 int fail(const Terminal& terminal, const std::string& message, int code) {

@@ -1,0 +1,84 @@
+#include "core/focus/focus_suggestion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+
+#include "core/error.hpp"
+#include "core/focus/noise_probe.hpp"
+#include "core/focus/row_fit.hpp"
+#include "core/pipeline/worker_pool.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr double kEnough = 0.5;        // of the largest response
+constexpr double kTargetNoise = 0.01;  // of the peak
+constexpr int kLeastWindow = 5;
+constexpr int kLargestWindow = 31;
+constexpr int kLeastSide = 32;
+
+template <typename Pixel>
+double mean_laplacian(PlaneView<const Pixel> image, int distance) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (int y = distance; y < image.height - distance; ++y) {
+    for (int x = distance; x < image.width - distance; ++x) {
+      const int centre = 2 * image.at(x, y);
+      sum += std::abs(centre - image.at(x - distance, y) - image.at(x + distance, y)) +
+             std::abs(centre - image.at(x, y - distance) - image.at(x, y + distance));
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+FocusSuggestion suggest_focus(const ImageView& sharp) {
+  if (sharp.width < kLeastSide || sharp.height < kLeastSide) {
+    throw Error(ErrorCode::kBadInput, "an image of " + std::to_string(sharp.width) + " x " +
+                                          std::to_string(sharp.height) + " pixels: at least 32 x 32 are needed");
+  }
+  WorkerPool pool(1);
+  NoiseProbe probe(sharp.width, sharp.height);
+  probe.add(sharp, pool);
+  FocusSuggestion suggestion;
+  suggestion.noise_grey = probe.least();
+  // |2 I - I - I| of white noise is that of a normal distribution of 6 sigma^2, twice.
+  const double of_noise = 2.0 * std::sqrt(2.0 / std::numbers::pi * 6.0) * suggestion.noise_grey;
+  std::array<double, kMaxDistancePx> response{};
+  for (int distance = 1; distance <= kMaxDistancePx; ++distance) {
+    const double mean = sharp.format == PixelFormat::kMono8 ? mean_laplacian(sharp.as<std::uint8_t>(), distance)
+                                                            : mean_laplacian(sharp.as<std::uint16_t>(), distance);
+    // Texture and noise add as squares.
+    response[static_cast<std::size_t>(distance - 1)] = std::sqrt(std::max(0.0, mean * mean - of_noise * of_noise));
+  }
+  const double largest = *std::max_element(response.begin(), response.end());
+  if (!(largest > of_noise)) {
+    throw Error(ErrorCode::kBadInput, "the image shows no texture above its noise of " +
+                                          std::to_string(suggestion.noise_grey) +
+                                          " grey levels: is it in focus, and lit so that the surface shows?");
+  }
+  const auto enough =
+      std::find_if(response.begin(), response.end(), [&](double value) { return value >= kEnough * largest; });
+  suggestion.distance_px = static_cast<int>(enough - response.begin()) + 1;
+  suggestion.response_grey = *enough;
+  FocusSettings settings;
+  const auto noise_over_peak = [&](int window) {
+    settings.window_px = window;
+    return sample_noise(settings, suggestion.noise_grey, 0.0) / (window * window * suggestion.response_grey);
+  };
+  suggestion.window_px = kLeastWindow;
+  while (suggestion.window_px < kLargestWindow && noise_over_peak(suggestion.window_px) > kTargetNoise) {
+    suggestion.window_px += 2;
+  }
+  suggestion.sample_noise = noise_over_peak(suggestion.window_px);
+  return suggestion;
+}
+
+}  // namespace fvd

@@ -1,0 +1,14 @@
+#pragma once
+
+/// The command `fvdctl suggest`: focus settings for a surface from one sharp image of it.
+
+#include <string>
+
+#include "daemon/ctl/fvdctl.hpp"
+
+namespace fvd::ctl {
+
+/// Prints the settings as keys of a recipe, and what they rest on. Throws Error kBadInput naming the file.
+[[nodiscard]] int run_suggest(const std::string& image, const Terminal& terminal);
+
+}  // namespace fvd::ctl
