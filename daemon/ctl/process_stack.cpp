@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <thread>
 
 #include "core/error.hpp"
@@ -58,15 +59,16 @@ void describe(ResultData& data, const ProcessOptions& options, const RecordedSta
   data.slices_planned = stack.slices();
 }
 
-void push_slices(StreamingFocusStack& focus, const RecordedStack& stack, const std::vector<double>& z_um,
-                 ResultData& data, const std::function<void(int, int)>& on_slice) {
+void push_slices(StreamingFocusStack& focus, WorkerPool& pool, const RecordedStack& stack,
+                 const std::vector<double>& z_um, ResultData& data, const std::function<void(int, int)>& on_slice) {
   std::vector<SliceImage> images;
   std::vector<ZSlice> batch;
   for (int first = 0; first < stack.slices(); first += StreamingFocusStack::kMaxBatch) {
     const int end = std::min(first + StreamingFocusStack::kMaxBatch, stack.slices());
-    images.clear();
     batch.clear();
-    for (int index = first; index < end; ++index) images.push_back(stack.read(index));
+    images.resize(static_cast<std::size_t>(end - first));
+    const auto read = [&](int i) { images[static_cast<std::size_t>(i)] = stack.read(first + i); };
+    pool.run(end - first, std::ref(read));  // decoding takes as long as computing
     for (int index = first; index < end; ++index) {
       const double z = z_um[static_cast<std::size_t>(index)];
       const SliceImage& image = images[static_cast<std::size_t>(index - first)];
@@ -106,7 +108,7 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   data.times.prepare_ms = milliseconds_since(start);
 
   const auto scan_start = SteadyClock::now();
-  push_slices(focus, stack, z_um, data, on_slice);
+  push_slices(focus, pool, stack, z_um, data, on_slice);
   data.times.scan_ms = milliseconds_since(scan_start);
 
   const auto finish_start = SteadyClock::now();

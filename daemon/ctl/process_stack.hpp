@@ -35,7 +35,7 @@ struct ProcessReport {
   HeightSummary summary;
 };
 
-/// Reads one slice at a time; writes only after the last one was good. on_slice(done, total) follows each slice.
+/// Reads a few slices at a time; writes only after the last one was good. on_slice(done, total) follows each slice.
 /// Throws Error kBadInput naming the file, kStorageWrite, kStorageFull; nothing is left in `out` then.
 ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice);
 
