@@ -5,6 +5,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/support/setup.sh"
 
 fvd_install_packages
 fvd_build
-# Only the thread sanitizer reads this; it says which libraries' locks it cannot see.
-export TSAN_OPTIONS="suppressions=$FVD_ROOT/tests/tsan.supp ${TSAN_OPTIONS:-}"
+# Only the thread sanitizer reads this: which libraries' locks it cannot see, and that a test's forked child starts threads.
+export TSAN_OPTIONS="suppressions=$FVD_ROOT/tests/tsan.supp die_after_fork=0 ${TSAN_OPTIONS:-}"
 ctest --test-dir "$FVD_BUILD" --output-on-failure --no-tests=error -j2 "$@"

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <future>
 #include <string>
-#include <utility>
 
 #include "daemon/export/gsf.hpp"
 #include "daemon/export/height_summary.hpp"
@@ -58,15 +57,25 @@ PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
   return text;
 }
 
+struct Images {
+  HeightSummary summary;
+  std::string mask;
+  std::string texture;
+  std::string preview;
+};
+
 }  // namespace
 
 HeightSummary write_result(AtomicDirectory& directory, const ResultData& data) {
   const auto start = std::chrono::steady_clock::now();
-  // Compressing the images takes longer than all the rest; it runs beside it.
-  auto texture = std::async(std::launch::async, [&data] { return encode_texture_png(data.map); });
-  auto summary_and_preview = std::async(std::launch::async, [&data] {
-    const HeightSummary summary = summarize_heights(data.map);
-    return std::pair(summary, encode_preview_png(data.map, summary, preview_text(data, summary)));
+  // Compressing the images takes longer than all the rest; it runs beside it, on one thread.
+  auto encoding = std::async(std::launch::async, [&data] {
+    Images images;
+    images.summary = summarize_heights(data.map);
+    images.mask = encode_mask_png(data.map);
+    images.texture = encode_texture_png(data.map);
+    images.preview = encode_preview_png(data.map, images.summary, preview_text(data, images.summary));
+    return images;
   });
   directory.add_file("height.tiff", encode_height_tiff(data.map.height_m, tiff_tags(data, data.peak)));
   for (const auto& [method, map] : data.extra_maps) {
@@ -75,14 +84,14 @@ HeightSummary write_result(AtomicDirectory& directory, const ResultData& data) {
   }
   directory.add_file("sigma.tiff", encode_height_tiff(data.map.sigma_m, tiff_tags(data, data.peak, "standard error")));
   directory.add_file("height.gsf", encode_gsf(data.map.height_m, gsf_header(data)));
-  directory.add_file("mask.png", encode_mask_png(data.map));
-  directory.add_file("texture.png", texture.get());
-  const auto [summary, preview] = summary_and_preview.get();
-  directory.add_file("preview.png", preview);
+  const Images images = encoding.get();
+  directory.add_file("mask.png", images.mask);
+  directory.add_file("texture.png", images.texture);
+  directory.add_file("preview.png", images.preview);
   directory.add_file("step_log.csv", step_csv(data.steps));
   const double write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  directory.add_file("result.json", result_json_text(data, summary, WriteReport{directory.files(), write_ms}));
-  return summary;
+  directory.add_file("result.json", result_json_text(data, images.summary, WriteReport{directory.files(), write_ms}));
+  return images.summary;
 }
 
 HeightSummary write_result(const std::filesystem::path& final_dir, const ResultData& data) {
