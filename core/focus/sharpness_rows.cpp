@@ -1,7 +1,6 @@
 #include "core/focus/sharpness_rows.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdlib>
 

@@ -139,6 +139,11 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
     why << z_um.size() << " samples, at most " << kMaxSamples << " are solved for: sum slices to bins";
     return off(why.str());
   }
+  const bool upwards = z_um.back() > z_um.front();
+  const auto out_of_order = [upwards](double a, double b) { return upwards ? !(a < b) : !(a > b); };
+  if (std::adjacent_find(z_um.begin(), z_um.end(), out_of_order) != z_um.end()) {
+    return off("the samples' heights do not run one way");
+  }
   if (tuples.size() < kMinTuples) {
     why << "only " << tuples.size() << " of the points looked at are valid, " << kMinTuples << " are needed";
     return off(why.str());

@@ -36,7 +36,7 @@ struct StageCorrection {
   std::vector<double> offsets_um;  ///< to be added to each sample's z; empty where not applied
 };
 
-/// z_um: measured z of the samples. Tuples: some thousand valid points spread over the image.
+/// z_um: measured z of the samples, at least one. Tuples: some thousand valid points spread over the image.
 [[nodiscard]] StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples,
                                                      const std::vector<double>& z_um);
 

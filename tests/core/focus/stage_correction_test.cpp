@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gtest/gtest.h"
@@ -91,6 +92,18 @@ TEST(StageCorrection, SaysWhyTheSurfaceTellsTooLittle) {
   std::erase_if(steps, [](const CurveTuple& t) { return t.height_um > 80.0F && t.height_um < 220.0F; });
   EXPECT_NE(solve_stage_correction(steps, reported()).reason.find("covers"), std::string::npos);
   EXPECT_NE(solve_stage_correction(tuples_of(good), std::vector<double>(600)).reason.find("600"), std::string::npos);
+}
+
+TEST(StageCorrection, RefusesHeightsThatDoNotRunOneWay) {
+  const auto tuples = tuples_of({});
+  auto turned = reported();
+  std::swap(turned[20], turned[21]);
+  EXPECT_NE(solve_stage_correction(tuples, turned).reason.find("one way"), std::string::npos);
+  std::vector<double> there_and_back = reported();
+  there_and_back.back() = there_and_back.front();
+  EXPECT_NE(solve_stage_correction(tuples, there_and_back).reason.find("one way"), std::string::npos);
+  const std::vector<double> equal(kSamples, 5.0);
+  EXPECT_NE(solve_stage_correction(tuples, equal).reason.find("one way"), std::string::npos);
 }
 
 }  // namespace
