@@ -37,15 +37,16 @@ struct Sample {
 };
 
 /// What a sample's number says about the heights about it; one entry a sample. u = (z - z of the sample) / scale.
-struct HeightTable {
-  const double* z_um;
-  const float* scale_um;  ///< mean distance to the neighbours
-  const float* u_left2;   ///< 0 where there is no such sample, or its z does not run on
-  const float* u_left;
-  const float* u_right;
-  const float* u_right2;
-  const std::int32_t* mask;  ///< mask_reason bits that follow from the number alone
+struct alignas(32) HeightEntry {
+  float z_um = 0.0F;
+  float scale_um = 1.0F;  ///< mean distance to the neighbours
+  float u_left2 = 0.0F;   ///< 0 where there is no such sample, or its z does not run on
+  float u_left = 0.0F;
+  float u_right = 0.0F;
+  float u_right2 = 0.0F;
+  std::int32_t mask = 0;  ///< mask_reason bits that follow from the number alone
 };
+using HeightTable = std::span<const HeightEntry>;
 
 /// What a fit needs beside the curve.
 struct FitParameters {
@@ -112,11 +113,11 @@ struct FocusKernels {
 
   /// The five-sample fit, see five_sample_fit.hpp. noise: standard deviation of a sample, least_amplitude: of peak less
   /// minimum, below which a point is edge bleeding; both as shares of full scale.
-  void (*fit_five)(const CurveRow& row, const HeightTable& table, const float* noise, const float* least_amplitude,
-                   int width, const FitParameters& parameters, const FitRow& out) noexcept;
-  /// The largest peak less minimum, in shares.
-  float (*largest_amplitude)(const std::uint16_t* peak, const std::uint16_t* minimum, float code_unit, bool root_code,
-                             int width) noexcept;
+  void (*fit_five)(const CurveRow& row, HeightTable table, const float* noise, const float* least_amplitude, int width,
+                   const FitParameters& parameters, const FitRow& out) noexcept;
+  /// highest = max(highest, peak less minimum), both codes squared first where they are roots. 0 <= minimum <= peak.
+  void (*raise_amplitudes)(const std::uint16_t* peak, const std::uint16_t* minimum, bool root_code, int width,
+                           std::uint32_t* highest) noexcept;
   /// sigma = sqrt(sigma^2 + (factor * gradient)^2), gradient from heights `reach` to either side; a missing one is 0.
   /// upper, lower: rows of heights `reach` above and below. Columns within `reach` of an end are left alone.
   void (*add_slope_error)(const float* height, const float* upper, const float* lower, int reach, float factor,

@@ -27,18 +27,56 @@ double window_share(int centre, int window, int size) {
   return static_cast<double>(reach.last - reach.first + 1) / window;
 }
 
-/// Adapts what was computed for full windows to those of row y.
-void shrink_windows(int y, int width, int height, int window, float* noise, float* least_amplitude) {
-  const double rows = window_share(y, window, height);
-  const int inner = rows < 1.0 ? width : std::min(window / 2, width);  // all columns, or those at the ends
-  const auto shrink = [&](int x) {
-    const double share = rows * window_share(x, window, width);
-    noise[x] *= static_cast<float>(std::sqrt(share));
-    least_amplitude[x] *= static_cast<float>(share);
+/// What a row's points are judged by: the same for all rows of a tile, but near the upper and the lower border.
+class Limits {
+ public:
+  Limits(const NoiseProbe& noise, const PeakTiles& tiles, int width, int height, int window)
+      : noise_(noise),
+        tiles_(tiles),
+        width_(width),
+        height_(height),
+        window_(window),
+        noise_grey_(static_cast<std::size_t>(width)),
+        least_(static_cast<std::size_t>(width)) {}
+
+  /// For row y; whatever row came before.
+  void move_to(int y) {
+    const Key key{noise_.tile_row(y), tiles_.tile_row(y), window_share(y, window_, height_)};
+    if (key == key_) return;
+    key_ = key;
+    noise_.noise_row(key.noise_row, noise_grey_.data());
+    tiles_.least_amplitude(key.peak_row, least_.data());
+    const int inner = key.share < 1.0 ? width_ : std::min(window_ / 2, width_);  // all columns, or those at the ends
+    for (int x = 0; x < inner; ++x) shrink(x);
+    for (int x = std::max(inner, width_ - window_ / 2); x < width_; ++x) shrink(x);
+  }
+  /// Standard deviation of a pixel, and the least amplitude that is no bleeding. Shape [width] each.
+  [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
+  [[nodiscard]] const float* least() const noexcept { return least_.data(); }
+
+ private:
+  struct Key {
+    int noise_row = -1;
+    int peak_row = -1;
+    double share = 0.0;  // of a full window's rows
+    bool operator==(const Key&) const = default;
   };
-  for (int x = 0; x < inner; ++x) shrink(x);
-  for (int x = std::max(inner, width - window / 2); x < width; ++x) shrink(x);
-}
+
+  void shrink(int x) {
+    const double share = key_.share * window_share(x, window_, width_);
+    noise_grey_[static_cast<std::size_t>(x)] *= static_cast<float>(std::sqrt(share));
+    least_[static_cast<std::size_t>(x)] *= static_cast<float>(share);
+  }
+
+  const NoiseProbe& noise_;
+  const PeakTiles& tiles_;
+  int width_;
+  int height_;
+  int window_;
+  Key key_;
+  std::vector<float> noise_grey_;
+  std::vector<float> least_;
+};
 
 void add_slope_errors(const FocusSettings& settings, WorkerPool& pool, HeightMap& map) {
   const int reach = settings.window_px / 2;
@@ -98,15 +136,22 @@ class Pass {
         map_(map),
         width_(map.height_m.width()),
         height_(map.height_m.height()),
-        tiles_(width_, height_, settings.window_px + settings.distance_px,
-               sharpness_code(settings, map.texture_format).root),
+        root_code_(sharpness_code(settings, map.texture_format).root),
+        tiles_(width_, height_, settings.window_px + settings.distance_px, root_code_),
         tuple_every_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kTuples)))) {
     const int bands = pool.threads();
     pool.run(bands, [&](int band) {
+      std::vector<std::uint32_t> highest(static_cast<std::size_t>(width_));
       for (int row = tiles_.rows() * band / bands; row < tiles_.rows() * (band + 1) / bands; ++row) {
-        for (int y = tiles_.first(row); y < tiles_.end(row); ++y) tiles_.add_row(y, curves_(band, y, nullptr));
+        std::fill(highest.begin(), highest.end(), 0U);
+        for (int y = tiles_.first(row); y < tiles_.end(row); ++y) {
+          const CurveRow curve = curves_(band, y, nullptr);
+          focus_kernels().raise_amplitudes(curve.peak, curve.minimum, root_code_, width_, highest.data());
+        }
+        tiles_.set_row(row, highest.data());
       }
     });
+    tiles_.spread();
   }
 
   /// All planes but what slopes add to sigma. One entry a band, in the order of rows.
@@ -114,14 +159,12 @@ class Pass {
     const int bands = pool_.threads();
     std::vector<BandFigures> figures(static_cast<std::size_t>(bands));
     pool_.run(bands, [&](int band) {
-      std::vector<float> noise_row(static_cast<std::size_t>(width_));
-      std::vector<float> least(static_cast<std::size_t>(width_));
+      Limits limits(noise_, tiles_, width_, height_, settings_.window_px);
+      std::vector<float> noise_row(static_cast<std::size_t>(width_));  // of a sample, as shares
       for (int y = height_ * band / bands; y < height_ * (band + 1) / bands; ++y) {
         const CurveRow row = curves_(band, y, map_.texture.row(y));
-        noise_.noise_row(y, noise_row.data());
-        tiles_.least_amplitude(y, least.data());
-        shrink_windows(y, width_, height_, settings_.window_px, noise_row.data(), least.data());
-        fit.fit(row, noise_row.data(), least.data(), width_,
+        limits.move_to(y);
+        fit.fit(row, limits.noise_grey(), limits.least(), width_, noise_row.data(),
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
         look_at(fit, row, y, noise_row, with_tuples, figures[static_cast<std::size_t>(band)]);
       }
@@ -153,6 +196,7 @@ class Pass {
   HeightMap& map_;
   int width_;
   int height_;
+  bool root_code_;
   PeakTiles tiles_;
   int tuple_every_;
 };

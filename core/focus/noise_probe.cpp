@@ -68,9 +68,13 @@ float NoiseProbe::sigma(int column, int tile_row) const noexcept {
   return static_cast<float>(std::max(kRounding, kLeastIsLow * std::sqrt(std::numbers::pi / 2) / 6.0 * least));
 }
 
-void NoiseProbe::noise_row(int y, float* out) const noexcept {
+int NoiseProbe::tile_row(int y) const noexcept {
   int tile_row = 0;
   while (y >= height_ * (tile_row + 1) / rows_) ++tile_row;
+  return tile_row;
+}
+
+void NoiseProbe::noise_row(int tile_row, float* out) const noexcept {
   for (int column = 0; column < columns_; ++column) {
     std::fill(out + width_ * column / columns_, out + width_ * (column + 1) / columns_, sigma(column, tile_row));
   }

@@ -23,8 +23,11 @@ class NoiseProbe {
   /// Looks at one slice of the constructor's size.
   void add(const ImageView& slice, WorkerPool& pool) noexcept;
 
-  /// Standard deviation in grey levels at each pixel of row y, at least that of rounding, 1 / sqrt(12). Shape [width].
-  void noise_row(int y, float* out) const noexcept;
+  [[nodiscard]] int tile_row(int y) const noexcept;
+
+  /// Standard deviation in grey levels at each pixel of a row of tiles, at least that of rounding, 1 / sqrt(12).
+  /// Shape [width].
+  void noise_row(int tile_row, float* out) const noexcept;
 
   /// Of the tiles, in grey levels.
   [[nodiscard]] double median() const;

@@ -6,6 +6,7 @@
 /// a peak then, at a height where there is nothing. It is low beside the edge's own: a point whose curve rises less
 /// than a tenth of the highest within about a window from it is no surface.
 
+#include <cstdint>
 #include <vector>
 
 #include "core/focus/focus_kernels.hpp"
@@ -13,7 +14,8 @@
 
 namespace fvd {
 
-/// context: add_row() for rows of different tile rows from many threads; least_amplitude() after all of them.
+/// context: set_row() for different tile rows from many threads; spread() after all of them; then least_amplitude()
+/// from many threads.
 class PeakTiles {
  public:
   /// reach_px: side of a tile; a point is compared with its own tile and the eight about it.
@@ -23,20 +25,25 @@ class PeakTiles {
   /// Rows of pixels [first, end) of a row of tiles.
   [[nodiscard]] int first(int tile_row) const noexcept { return tile_row * reach_px_; }
   [[nodiscard]] int end(int tile_row) const noexcept;
+  [[nodiscard]] int tile_row(int y) const noexcept { return y / reach_px_; }
 
-  void add_row(int y, const CurveRow& row) noexcept;
+  /// highest: amplitude of codes in each column of pixels, see FocusKernels::raise_amplitudes. Shape [width].
+  void set_row(int tile_row, const std::uint32_t* highest) noexcept;
 
-  /// A tenth of the neighbourhood's highest amplitude at each pixel of row y, in shares. Shape [width].
-  void least_amplitude(int y, float* out) const noexcept;
+  /// Makes of each tile's highest amplitude a tenth of its neighbourhood's.
+  void spread();
+
+  /// A tenth of the neighbourhood's highest amplitude at each pixel of a row of tiles, in shares. Shape [width].
+  void least_amplitude(int tile_row, float* out) const noexcept;
 
  private:
   int width_;
   int height_;
   int reach_px_;
-  bool root_code_;
+  float unit_;  // a code's amplitude times this is a share
   int columns_;
   int rows_;
-  std::vector<float> highest_;  // [rows][columns]
+  std::vector<float> values_;  // [rows][columns]: highest amplitude; after spread() the least that counts
 };
 
 }  // namespace fvd

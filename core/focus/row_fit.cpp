@@ -38,46 +38,47 @@ RowFit::RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFor
     : settings_(settings),
       code_(sharpness_code(settings, format)),
       method_(method),
-      heights_(std::move(z_um)),
+      z_um_(std::move(z_um)),
+      heights_(height_table(z_um_)),
       bin_gain_(settings.bin_slices / std::ldexp(1.0, bin_shift(settings.bin_slices))) {}
 
-void RowFit::fit(const CurveRow& row, float* noise_grey, const float* least_amplitude, int width,
+void RowFit::fit(const CurveRow& row, const float* noise_grey, const float* least_amplitude, int width, float* noise,
                  const FitRow& out) const noexcept {
   // A bin's sample is the sum of `slices` codes: the signal grows with their number, the noise with its root.
   const double slices = settings_.bin_slices;
   const double scale = code_.gain * bin_gain_ * SharpnessCode::kUnit;
   const double to_share = (code_.root ? scale * scale : scale) / std::sqrt(slices);
-  const bool constant = settings_.focus_operator != FocusOperator::kTenengrad;
-  const double at_one = sample_noise(settings_, 1.0, 0.0) * to_share;
-  for (int x = 0; x < width; ++x) {
-    const double noise = static_cast<double>(noise_grey[x]);
-    noise_grey[x] = static_cast<float>(
-        constant ? noise * at_one
-                 : sample_noise(settings_, noise, code_.decode(row.peak[x]) / (bin_gain_ * bin_gain_)) * to_share);
+  if (settings_.focus_operator != FocusOperator::kTenengrad) {
+    const auto at_one = static_cast<float>(sample_noise(settings_, 1.0, 0.0) * to_share);
+    for (int x = 0; x < width; ++x) noise[x] = noise_grey[x] * at_one;
+  } else {
+    for (int x = 0; x < width; ++x) {
+      const double sharpness = code_.decode(row.peak[x]) / (bin_gain_ * bin_gain_);
+      noise[x] = static_cast<float>(sample_noise(settings_, static_cast<double>(noise_grey[x]), sharpness) * to_share);
+    }
   }
   if (method_ == PeakMethod::kFiveSample) {
     const FitParameters parameters{static_cast<float>(settings_.min_prominence),
                                    static_cast<float>(settings_.min_significance),
                                    settings_.bin_slices > 1 ? kBinnedShapeError : kShapeError,
                                    static_cast<float>(SharpnessCode::kUnit), code_.root};
-    focus_kernels().fit_five(row, heights_.view(), noise_grey, least_amplitude, width, parameters, out);
+    focus_kernels().fit_five(row, heights_, noise, least_amplitude, width, parameters, out);
   } else {
-    fit_triples(row, noise_grey, least_amplitude, width, out);
+    fit_triples(row, noise, least_amplitude, width, out);
   }
 }
 
 std::optional<double> RowFit::curve_width_um(const CurveRow& row, int x) const noexcept {
-  const HeightTable table = heights_.view();
-  const auto index = static_cast<std::ptrdiff_t>(row.peak_index[x]);
-  if (table.mask[index] != 0) return std::nullopt;
+  const auto index = static_cast<std::size_t>(row.peak_index[x]);
+  if (heights_[index].mask != 0) return std::nullopt;
   const double floor = static_cast<double>(kFloorShare) * share(row.minimum[x]);
   const double peak = share(row.peak[x]) - floor;
   const double left = share(row.left[x]) - floor;
   const double right = share(row.right[x]) - floor;
   if (!(peak > 0.0 && left > 0.0 && right > 0.0)) return std::nullopt;
   // G = F^-1/2 over that of the peak is 1 + a u + b u^2 through both neighbours; half of F is the root of 2 of G.
-  const auto u_left = static_cast<double>(table.u_left[index]);
-  const auto u_right = static_cast<double>(table.u_right[index]);
+  const auto u_left = static_cast<double>(heights_[index].u_left);
+  const auto u_right = static_cast<double>(heights_[index].u_right);
   const double rise_left = (std::sqrt(peak / left) - 1.0) / u_left;
   const double rise_right = (std::sqrt(peak / right) - 1.0) / u_right;
   const double b = (rise_right - rise_left) / (u_right - u_left);
@@ -85,19 +86,18 @@ std::optional<double> RowFit::curve_width_um(const CurveRow& row, int x) const n
   if (!(b > 0.0)) return std::nullopt;
   const double lowest = 1.0 - a * a / (4.0 * b);
   if (!(lowest > 0.0)) return std::nullopt;
-  return 2.0 * std::sqrt((std::numbers::sqrt2 - 1.0) * lowest / b) * static_cast<double>(table.scale_um[index]);
+  return 2.0 * std::sqrt((std::numbers::sqrt2 - 1.0) * lowest / b) * static_cast<double>(heights_[index].scale_um);
 }
 
 void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
                          const FitRow& out) const noexcept {
-  const HeightTable table = heights_.view();
   const double half_a_count = (code_.root ? 0.25 * SharpnessCode::kUnit : 0.5) * SharpnessCode::kUnit;
   for (int x = 0; x < width; ++x) {
-    const auto index = static_cast<std::ptrdiff_t>(row.peak_index[x]);
+    const auto index = static_cast<std::size_t>(row.peak_index[x]);
     const double peak = share(row.peak[x]);
     const double minimum = share(row.minimum[x]);
     const double prominence = peak > 0.0 ? (peak - minimum) / peak : 0.0;
-    auto mask = static_cast<unsigned>(table.mask[index]);
+    auto mask = static_cast<unsigned>(heights_[index].mask);
     if (peak == 0.0 || prominence < settings_.min_prominence) mask |= mask_reason::kLowProminence;
     if (peak - minimum < settings_.min_significance * static_cast<double>(noise[x]))
       mask |= mask_reason::kInsignificant;
@@ -106,7 +106,7 @@ void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* l
     std::optional<PeakPosition> position;
     if ((mask & (mask_reason::kFirstSlice | mask_reason::kLastSlice)) == 0) {
       position = fit_peak(method_,
-                          {table.z_um[index - 1], table.z_um[index], table.z_um[index + 1], share(row.left[x]), peak,
+                          {z_um_[index - 1], z_um_[index], z_um_[index + 1], share(row.left[x]), peak,
                            share(row.right[x]), static_cast<double>(noise[x])},
                           half_a_count);
       if (!position) mask |= mask_reason::kNotBracketed;

@@ -25,9 +25,10 @@ class RowFit {
   /// z of the samples; bins of how many slices.
   RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method);
 
-  /// noise_grey: standard deviation of each pixel, shape [width]; overwritten. least_amplitude: of peak less minimum
-  /// as shares, below which a point is edge bleeding, shape [width]. out: shape [width] each.
-  void fit(const CurveRow& row, float* noise_grey, const float* least_amplitude, int width,
+  /// noise_grey: standard deviation of each pixel, shape [width]. least_amplitude: of peak less minimum as shares,
+  /// below which a point is edge bleeding, shape [width]. noise: filled with that of a sample as shares, shape [width].
+  /// out: shape [width] each.
+  void fit(const CurveRow& row, const float* noise_grey, const float* least_amplitude, int width, float* noise,
            const FitRow& out) const noexcept;
 
   /// Full width at half maximum of one curve, from the peak and its neighbours; nothing where they enclose no maximum.
@@ -46,7 +47,8 @@ class RowFit {
   FocusSettings settings_;
   SharpnessCode code_;
   PeakMethod method_;
-  HeightTables heights_;
+  std::vector<double> z_um_;
+  std::vector<HeightEntry> heights_;
   double bin_gain_;  // from the mean code of a bin's slices to the bin's code
 };
 

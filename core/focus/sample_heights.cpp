@@ -24,37 +24,33 @@ std::vector<double> SampleHeights::means_um() const {
   return means;
 }
 
-HeightTables::HeightTables(std::vector<double> z_um) : z_um_(std::move(z_um)) {
-  const auto count = z_um_.size();
-  scale_um_.assign(count, 1.0F);
-  for (auto* table : {&u_left2_, &u_left_, &u_right_, &u_right2_}) table->assign(count, 0.0F);
-  mask_.assign(count, 0);
+std::vector<HeightEntry> height_table(const std::vector<double>& z_um) {
+  const auto count = z_um.size();
+  std::vector<HeightEntry> table(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (i == 0) mask_[i] |= mask_reason::kFirstSlice;
-    if (i + 1 == count) mask_[i] |= mask_reason::kLastSlice;
-    if (mask_[i] != 0) continue;
-    const double left = z_um_[i - 1] - z_um_[i];
-    const double right = z_um_[i + 1] - z_um_[i];
+    HeightEntry& entry = table[i];
+    entry.z_um = static_cast<float>(z_um[i]);
+    if (i == 0) entry.mask |= mask_reason::kFirstSlice;
+    if (i + 1 == count) entry.mask |= mask_reason::kLastSlice;
+    if (entry.mask != 0) continue;
+    const double left = z_um[i - 1] - z_um[i];
+    const double right = z_um[i + 1] - z_um[i];
     if (!(left * right < 0.0)) {
-      mask_[i] |= mask_reason::kNotBracketed;  // the heights do not run one way
+      entry.mask |= mask_reason::kNotBracketed;  // the heights do not run one way
       continue;
     }
     const double scale = (std::abs(left) + std::abs(right)) / 2;
-    scale_um_[i] = static_cast<float>(scale);
-    u_left_[i] = static_cast<float>(left / scale);
-    u_right_[i] = static_cast<float>(right / scale);
-    if (i >= 2 && (z_um_[i - 2] - z_um_[i - 1]) * left > 0.0) {
-      u_left2_[i] = static_cast<float>((z_um_[i - 2] - z_um_[i]) / scale);
+    entry.scale_um = static_cast<float>(scale);
+    entry.u_left = static_cast<float>(left / scale);
+    entry.u_right = static_cast<float>(right / scale);
+    if (i >= 2 && (z_um[i - 2] - z_um[i - 1]) * left > 0.0) {
+      entry.u_left2 = static_cast<float>((z_um[i - 2] - z_um[i]) / scale);
     }
-    if (i + 2 < count && (z_um_[i + 2] - z_um_[i + 1]) * right > 0.0) {
-      u_right2_[i] = static_cast<float>((z_um_[i + 2] - z_um_[i]) / scale);
+    if (i + 2 < count && (z_um[i + 2] - z_um[i + 1]) * right > 0.0) {
+      entry.u_right2 = static_cast<float>((z_um[i + 2] - z_um[i]) / scale);
     }
   }
-}
-
-HeightTable HeightTables::view() const noexcept {
-  return {z_um_.data(),    scale_um_.data(), u_left2_.data(), u_left_.data(),
-          u_right_.data(), u_right2_.data(), mask_.data()};
+  return table;
 }
 
 }  // namespace fvd

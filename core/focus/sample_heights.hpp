@@ -30,22 +30,7 @@ class SampleHeights {
   std::vector<double> sums_um_;  // one a sample
 };
 
-/// Owns what a HeightTable shows.
-class HeightTables {
- public:
-  /// At least one sample.
-  explicit HeightTables(std::vector<double> z_um);
-
-  [[nodiscard]] HeightTable view() const noexcept;
-
- private:
-  std::vector<double> z_um_;
-  std::vector<float> scale_um_;
-  std::vector<float> u_left2_;
-  std::vector<float> u_left_;
-  std::vector<float> u_right_;
-  std::vector<float> u_right2_;
-  std::vector<std::int32_t> mask_;
-};
+/// One entry a sample, at least one.
+[[nodiscard]] std::vector<HeightEntry> height_table(const std::vector<double>& z_um);
 
 }  // namespace fvd

@@ -20,6 +20,7 @@ constexpr double kPrior = 0.2;        // of a step: what a stage's error is thou
 constexpr double kMinErrors = 3.0;    // standard errors that the offsets must exceed
 constexpr int kIterations = 3;
 constexpr double kMostLeftOver = 0.6;  // of the curves' departure from a parabola: the stage must be to blame for more
+constexpr double kHopeless = 0.85;     // left over after the first iteration: no further one brings it below that
 constexpr double kMinInformation = 50.0;  // over that of the prior, for a sample to count as seen
 constexpr double kLeastOffset = 0.015;    // of a step: below it the shape of the curves is to blame
 
@@ -80,20 +81,20 @@ double add_tuple(const CurveTuple& tuple, const std::vector<double>& z_um, doubl
     powers.row(j) << 1.0, u, u * u;
   }
   const Eigen::Matrix<double, 5, 3> weighted = root_weight.asDiagonal() * powers;
-  const Eigen::Matrix3d gram = weighted.transpose() * weighted;
-  const Eigen::LDLT<Eigen::Matrix3d> solver(gram);
+  // Three by three and well conditioned: u is within some samples of 0.
+  const Eigen::Matrix3d inverse = (weighted.transpose() * weighted).eval().inverse();
+  const Eigen::Matrix<double, 3, 5> solve = inverse * weighted.transpose();
   const Vector5 target = root_weight.cwiseProduct(g);
-  const Eigen::Vector3d fit = solver.solve(weighted.transpose() * target);
+  const Eigen::Vector3d fit = solve * target;
   if (!(fit(2) < 0.0)) return 0.0;
-  // What an offset of each sample moves, less what the parabola takes up of it.
-  const Eigen::Matrix<double, 5, 5> rest =
-      Eigen::Matrix<double, 5, 5>::Identity() - weighted * solver.solve(weighted.transpose());
-  const Vector5 slope = (fit(1) + 2.0 * fit(2) * powers.col(1).array()).matrix();
-  const Eigen::Matrix<double, 5, 5> design = rest * root_weight.cwiseProduct(slope).asDiagonal();
+  // What an offset of each sample moves, less what the parabola takes up of it: a projection, its own square.
+  const Eigen::Matrix<double, 5, 5> rest = Eigen::Matrix<double, 5, 5>::Identity() - weighted * solve;
+  const Vector5 slope = root_weight.cwiseProduct((fit(1) + 2.0 * fit(2) * powers.col(1).array()).matrix());
   const Vector5 residual = rest * target;
-  const double variance = 0.25 * std::pow(static_cast<double>(tuple.noise), 2) + 1e-6;
-  const Eigen::Matrix<double, 5, 5> information = design.transpose() * design / variance;
-  const Vector5 pull = design.transpose() * residual / variance;
+  const double noise = static_cast<double>(tuple.noise);
+  const double variance = 0.25 * noise * noise + 1e-6;
+  const Eigen::Matrix<double, 5, 5> information = slope.asDiagonal() * rest * slope.asDiagonal() / variance;
+  const Vector5 pull = slope.cwiseProduct(residual) / variance;
   if (!information.allFinite() || !pull.allFinite()) return 0.0;
   for (int j = 0; j < 5; ++j) {
     const int k = tuple.index + j - 2;
@@ -176,6 +177,7 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
     for (const CurveTuple& tuple : tuples) left_over += add_tuple(tuple, corrected, step, normal, right);
     if (iteration == 0) left_over_before = left_over;
     if (iteration == kIterations) break;  // only to see what is left over now
+    if (iteration == 1 && left_over > kHopeless * left_over_before) break;
     const Eigen::VectorXd change = normal.ldlt().solve(right);
     for (Eigen::Index k = 0; k < count; ++k) corrected[static_cast<std::size_t>(k)] += step * change(k);
   }

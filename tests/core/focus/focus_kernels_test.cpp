@@ -225,7 +225,7 @@ TEST(FocusKernels, FitAlike) {
     expect_same("fit_five", [root](const FocusKernels& kernels, int width, std::mt19937& random) {
       std::vector<double> z_um;
       for (int i = 0; i < 12; ++i) z_um.push_back(i * 10.0 + static_cast<double>(random() % 7));
-      const HeightTables tables(z_um);
+      const auto table = height_table(z_um);
       Curves curves(width, random);
       for (std::size_t x = 0; x < curves.saturated.size(); ++x) {
         auto& columns = curves.columns;
@@ -238,7 +238,7 @@ TEST(FocusKernels, FitAlike) {
       const std::vector<float> least(static_cast<std::size_t>(width), 0.02F);
       std::vector<float> floats(static_cast<std::size_t>(3 * width + kGuard), 5.0F);
       std::vector<std::uint8_t> mask(static_cast<std::size_t>(width + kGuard), 0x5A);
-      kernels.fit_five(curves.row(), tables.view(), noise.data(), least.data(), width,
+      kernels.fit_five(curves.row(), table, noise.data(), least.data(), width,
                        {0.4F, 3.0F, 0.05F, 1.0F / 65535.0F, root},
                        {floats.data(), floats.data() + width, floats.data() + 2 * width, mask.data()});
       std::vector<std::uint32_t> all(floats.size());
@@ -251,10 +251,13 @@ TEST(FocusKernels, FitAlike) {
 
 TEST(FocusKernels, FindTheSameAmplitudesAndSlopes) {
   for (const bool root : {false, true}) {
-    expect_same("largest_amplitude", [root](const FocusKernels& kernels, int width, std::mt19937& random) {
+    expect_same("raise_amplitudes", [root](const FocusKernels& kernels, int width, std::mt19937& random) {
       const auto peak = random_row<std::uint16_t>(width, random);
-      const auto minimum = random_row<std::uint16_t>(width, random);
-      return std::vector<float>{kernels.largest_amplitude(peak.data(), minimum.data(), 1.0F / 65535.0F, root, width)};
+      auto minimum = random_row<std::uint16_t>(width, random);
+      for (std::size_t x = 0; x < minimum.size(); ++x) minimum[x] = std::min(minimum[x], peak[x]);
+      std::vector<std::uint32_t> highest(static_cast<std::size_t>(width + kGuard), 30000U);
+      kernels.raise_amplitudes(peak.data(), minimum.data(), root, width, highest.data());
+      return highest;
     });
   }
   expect_same("add_slope_error", [](const FocusKernels& kernels, int width, std::mt19937& random) {
