@@ -1,10 +1,13 @@
 /// What the range of a single key cannot say: values that must fit together, files that must be there.
 
+#include <algorithm>
+#include <iterator>
 #include <sstream>
 
 #include <arpa/inet.h>
 
 #include "daemon/config_file.hpp"
+#include "drivers/modbus/modbus_transport.hpp"
 
 namespace fvd {
 
@@ -56,8 +59,20 @@ void check_stage(const StageConfig& stage, Problems& problems) {
                                                  text((stage.max - stage.min).value) + " apart"});
   }
   if (stage.driver != "modbus") return;
-  if (stage.address.empty())
+  if (stage.transport == "tcp" && stage.address.empty()) {
     problems.push_back({"/stage/address", "is empty; expected the drive's host or IP address"});
+  }
+  if (stage.transport == "rtu") {
+    if (stage.serial_device.empty()) {
+      problems.push_back({"/stage/serial_device", "is empty; expected a serial port such as /dev/serial/by-id/..."});
+    }
+    if (std::find(std::begin(kModbusBauds), std::end(kModbusBauds), stage.serial_baud) == std::end(kModbusBauds)) {
+      std::string bauds;
+      for (const int baud : kModbusBauds) bauds += " " + std::to_string(baud);
+      problems.push_back(
+          {"/stage/serial_baud", std::to_string(stage.serial_baud) + " is not accepted; expected one of" + bauds});
+    }
+  }
   std::error_code error;
   if (!fs::is_regular_file(stage.profile, error)) {
     problems.push_back({"/stage/profile", "there is no file '" + stage.profile.string() +

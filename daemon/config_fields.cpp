@@ -37,11 +37,21 @@ void describe(CameraConfig& camera, Fields& fields) {
 }
 
 void describe(StageConfig& stage, Fields& fields) {
-  fields.choice("driver", stage.driver, {"modbus", "replay"}, "modbus = Modbus TCP, replay = beside a replay camera");
+  fields.choice("driver", stage.driver, {"modbus", "replay"},
+                "modbus = a drive by its profile, replay = beside a replay camera");
   path(fields, "profile", stage.profile, "driver modbus: drive profile, a JSON file");
-  fields.text("address", stage.address, kMaxName, "Modbus TCP host");
-  fields.integer("port", stage.port, {1, 65535}, "Modbus TCP port");
-  fields.integer("unit", stage.unit, {0, 247}, "Modbus unit id");
+  fields.choice("transport", stage.transport, {"tcp", "rtu"}, "how the drive is reached");
+  fields.text("address", stage.address, kMaxName, "tcp: host");
+  fields.integer("port", stage.port, {1, 65535}, "tcp: port");
+  fields.text("serial_device", stage.serial_device, kMaxName, "rtu: the port, best by its name in /dev/serial/by-id");
+  fields.integer("serial_baud", stage.serial_baud, {9600, 921600}, "rtu: 9600, 19200, ... 921600");
+  fields.choice("serial_parity", stage.serial_parity, {"none", "even", "odd"}, "rtu: parity");
+  fields.integer("serial_stop_bits", stage.serial_stop_bits, {1, 2}, "rtu: stop bits");
+  auto quiet_ms = stage.quiet.count();
+  fields.integer("quiet_ms", quiet_ms, {1, 10000},
+                 "rtu: silence on the line that must follow a doubtful answer; at least the drive's slowest reply");
+  stage.quiet = std::chrono::milliseconds(quiet_ms);
+  fields.integer("unit", stage.unit, {1, 247}, "Modbus unit id");
   auto timeout_ms = stage.response_timeout.count();
   fields.integer("response_timeout_ms", timeout_ms, {10, 10000}, "longest wait for the drive's answer");
   stage.response_timeout = std::chrono::milliseconds(timeout_ms);

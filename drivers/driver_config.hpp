@@ -23,9 +23,15 @@ struct CameraConfig {
 struct StageConfig {
   std::string driver = "modbus";      ///< "modbus" or "replay"
   std::filesystem::path profile;      ///< drive profile, JSON
+  std::string transport = "tcp";      ///< "tcp" or "rtu"
   std::string address = "127.0.0.1";  ///< Modbus TCP host
   int port = 502;
-  int unit = 1;  ///< Modbus unit id, 0..247
+  std::string serial_device;  ///< RTU: best a name below /dev/serial/by-id
+  int serial_baud = 115200;
+  std::string serial_parity = "even";  ///< "none", "even" or "odd"
+  int serial_stop_bits = 1;
+  std::chrono::milliseconds quiet{250};  ///< RTU: silence that must follow a doubtful answer; the slowest reply or more
+  int unit = 1;                          ///< Modbus unit id, 1..247
   std::chrono::milliseconds response_timeout{200};
   Micrometers min{-1000.0};  ///< software limits, take-up included
   Micrometers max{1000.0};

@@ -4,8 +4,11 @@
 /// No word of any fieldbus here; high-end stages speak other protocols.
 
 #include <chrono>
+#include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "core/hw/clock.hpp"
 #include "core/units.hpp"
@@ -24,10 +27,47 @@ struct StageInfo {
   Micrometers min;                  ///< lowest target allowed, take-up included
   Micrometers max;                  ///< highest target allowed
   Micrometers take_up;              ///< overshoot below the first target that loads the backlash
+  Micrometers lead{};               ///< of the screw, the period of its error; 0 = unknown
   bool simulated = false;
 };
 
+/// Where an axis stands between being found and being ready.
+enum class AxisState {
+  kDisconnected,
+  kIdentifying,  ///< connected, is it the right drive?
+  kDisabled,
+  kNotHomed,
+  kHoming,
+  kReady,
+  kMoving,
+  kSettling,  ///< the drive has stopped, the settle criterion is not met yet
+  kAlarm,
+  kCommLost,  ///< stopped answering; its position is unknown until it is opened anew
+};
+/// "NotHomed" and so on.
+[[nodiscard]] const char* axis_state_name(AxisState state) noexcept;
+
+struct StageTemperature {
+  std::string name;  ///< "driver", "motor"
+  double celsius = 0.0;
+};
+
+/// How the line to the drive does.
+struct StageLinkStats {
+  std::uint64_t requests = 0;
+  std::uint64_t retries = 0;
+  std::uint64_t unanswered = 0;  ///< no answer, or none that could be used
+  std::uint64_t refused = 0;     ///< by the drive
+  std::uint64_t reconnects = 0;
+  std::uint64_t discarded_bytes = 0;  ///< late or garbled
+  std::uint64_t implausible = 0;      ///< positions no axis could have reached, read again
+  double latency_p50_us = 0.0;
+  double latency_p99_us = 0.0;
+  double latency_max_us = 0.0;
+};
+
 struct StageStatus {
+  AxisState state = AxisState::kReady;
   bool enabled = false;
   bool homed = false;
   bool moving = false;
@@ -36,6 +76,7 @@ struct StageStatus {
   int alarm_code = 0;
   std::string alarm_text;
   Micrometers position;  ///< measured
+  std::vector<StageTemperature> temperatures;
 };
 
 /// Definition of "arrived": |measured - target| <= window, not moving and in position, for `samples` consecutive
@@ -93,6 +134,9 @@ class ZStage {
   virtual void stop() noexcept = 0;
 
   [[nodiscard]] virtual bool connected() const noexcept = 0;
+
+  /// Nothing where there is no line.
+  [[nodiscard]] virtual std::optional<StageLinkStats> link_stats() const { return std::nullopt; }
 };
 
 }  // namespace fvd

@@ -1,14 +1,15 @@
 #include "drivers/modbus/drive_profile.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <set>
+#include <cmath>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "config/field_reader.hpp"
 #include "config/strict_json.hpp"
 #include "core/error.hpp"
+#include "drivers/modbus/drive_profile_parts.hpp"
 
 namespace fvd {
 
@@ -16,31 +17,37 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads the parts of a profile whose keys are the profile's own: registers, conditions, sequences, alarms.
+constexpr IntegerRange kRegisterValue{0, 2147483647};
+
 class ProfileReader {
  public:
-  ProfileReader(const json& document, Problems& problems) : document_(document), problems_(problems) {}
+  ProfileReader(const json& document, Problems& problems)
+      : document_(document), problems_(problems), parts_(problems) {}
 
   DriveProfile read() {
     read_plain_fields();
-    read_registers();
-    profile_.position = known_register("/feedback/register", text_at("/feedback", "register"));
-    profile_.alarm_code = known_register("/alarm_register", text_at("", "alarm_register"));
-    read_conditions();
+    parts_.read_registers(object("registers"), order_);
+    profile_.position = named_register("/feedback", "register");
+    profile_.alarm_code = named_register("", "alarm_register");
+    read_poll();
+    read_status();
     read_sequences();
     read_alarms();
-    if (problems_.empty()) check_poll_block();
-    return profile_;
+    read_identity();
+    read_extras();
+    if (problems_.empty()) check_poll_blocks();
+    return std::move(profile_);
   }
 
  private:
   /// Everything a plain description covers; the free-form parts are taken out first so that they are not unknown.
   void read_plain_fields() {
     json plain = document_;
-    for (const char* part : {"registers", "status", "sequences", "alarms"}) {
+    for (const char* part : {"registers", "status", "sequences", "alarms", "poll"}) {
       if (!document_.contains(part)) problems_.push_back({std::string("/") + part, "is missing and has no default"});
       plain.erase(part);
     }
+    for (const char* part : {"identify", "watchdog", "soft_limits", "temperatures"}) plain.erase(part);
     FieldReader reader(plain, problems_);
     describe(reader);
     reader.finish();
@@ -49,6 +56,14 @@ class ProfileReader {
                         : feedback_ == "linear_scale" ? FeedbackSource::kLinearScale
                                                       : FeedbackSource::kNone;
     order_ = word_order_ == "low_first" ? WordOrder::kLowFirst : WordOrder::kHighFirst;
+    if (acceleration_inverse_ > 0.0) {
+      profile_.acceleration.factor = acceleration_inverse_;
+      profile_.acceleration.inverse = true;
+    } else if (document_.contains("/scale"_json_pointer) &&
+               !document_.contains("/scale/acceleration_units_per_um_s2"_json_pointer)) {
+      problems_.push_back({"/scale/acceleration_units_per_um_s2",
+                           "is missing and has no default; or give acceleration_inverse_um_s2 for a time"});
+    }
   }
 
   void describe(Fields& fields) {
@@ -62,12 +77,18 @@ class ProfileReader {
     fields.group("scale", "units of the drive", [this](Fields& scale) {
       scale.number("steps_per_um", profile_.steps_per_um, positive(1e6), "commanded steps per um");
       scale.choice("direction", direction_, {"positive", "negative"}, "sign of the steps when z grows");
-      scale.number("speed_units_per_um_s", profile_.speed_units_per_um_s, positive(1e9), "register value per um/s");
-      scale.number("acceleration_units_per_um_s2", profile_.acceleration_units_per_um_s2, positive(1e9),
+      scale.number("lead_um", profile_.lead_um, {0.0, 1e6}, "screw lead, the period of its error; 0 = unknown");
+      scale.number("speed_units_per_um_s", profile_.speed.factor, positive(1e9), "register value per um/s");
+      scale.integer("speed_min", profile_.speed.min, kRegisterValue, "smallest register value the drive takes");
+      scale.integer("speed_max", profile_.speed.max, kRegisterValue, "largest");
+      scale.number("acceleration_units_per_um_s2", profile_.acceleration.factor, positive(1e9),
                    "register value per um/s^2");
+      scale.number("acceleration_inverse_um_s2", acceleration_inverse_, {0.0, 1e15},
+                   "register value times um/s^2, for drives that take a time");
+      scale.integer("acceleration_min", profile_.acceleration.min, kRegisterValue, "smallest register value");
+      scale.integer("acceleration_max", profile_.acceleration.max, kRegisterValue, "largest");
       scale.require("steps_per_um");
       scale.require("speed_units_per_um_s");
-      scale.require("acceleration_units_per_um_s2");
     });
     fields.group("feedback", "where the measured position comes from", [this](Fields& feedback) {
       feedback.choice("source", feedback_, {"none", "motor_encoder", "linear_scale"}, "none = not observable");
@@ -77,12 +98,6 @@ class ProfileReader {
       feedback.require("source");
       feedback.require("register");
       feedback.require("counts_per_um");
-    });
-    fields.group("poll", "one block that holds status and position", [this](Fields& poll) {
-      poll.integer("address", profile_.poll_address, {0, 65535}, "PDU address");
-      poll.integer("count", profile_.poll_count, {1, 125}, "registers");
-      poll.require("address");
-      poll.require("count");
     });
     fields.group("timing", "how long the drive may take", [this](Fields& timing) {
       auto start_ms = profile_.start_within.count();
@@ -94,125 +109,85 @@ class ProfileReader {
     });
   }
 
-  [[nodiscard]] std::string text_at(const char* group, const char* key) const {
-    const auto pointer = json::json_pointer(std::string(group) + "/" + key);
-    return document_.contains(pointer) && document_.at(pointer).is_string() ? document_.at(pointer).get<std::string>()
-                                                                            : std::string();
-  }
-
-  void report(const std::string& pointer, const json& value, const std::string& expected) {
-    problems_.push_back({pointer, value.dump() + " is not accepted; expected " + expected});
-  }
-
-  /// A whole number, also written as text "0x1A", which JSON has no other way to say.
-  std::optional<std::int64_t> number(const std::string& pointer, const json& value, std::int64_t min,
-                                     std::int64_t max) {
-    std::optional<std::int64_t> result;
-    if (value.is_number_integer()) {
-      result = value.get<std::int64_t>();
-    } else if (value.is_string() && value.get<std::string>().starts_with("0x")) {
-      const auto text = value.get<std::string>();
-      std::size_t used = 0;
-      try {
-        result = std::stoll(text, &used, 16);
-      } catch (const std::exception&) {
-        used = 0;
-      }
-      if (used != text.size()) result.reset();
-    }
-    if (!result || *result < min || *result > max) {
-      report(pointer, value, "an integer or \"0x..\" within " + std::to_string(min) + ".." + std::to_string(max));
-      return std::nullopt;
-    }
-    return result;
-  }
-
-  void refuse_other_keys(const std::string& pointer, const json& object, const std::set<std::string>& known) {
-    for (const auto& [key, value] : object.items()) {
-      if (!known.contains(key)) problems_.push_back({pointer + "/" + key, "unknown key"});
-    }
-  }
-
   /// The object at a top-level key; an empty one, with a problem, if it is of another type.
-  const json& part(const char* key) {
+  const json& object(const char* key) {
     static const json kEmpty = json::object();
     const auto found = document_.find(key);
     if (found == document_.end()) return kEmpty;
     if (found->is_object()) return *found;
-    report(std::string("/") + key, *found, "an object");
+    parts_.report(std::string("/") + key, *found, "an object");
     return kEmpty;
   }
 
-  void read_registers() {
-    static const std::map<std::string, RegisterType> kTypes{{"u16", RegisterType::kU16},
-                                                            {"i16", RegisterType::kI16},
-                                                            {"u32", RegisterType::kU32},
-                                                            {"i32", RegisterType::kI32}};
-    for (const auto& [name, value] : part("registers").items()) {
-      const std::string pointer = "/registers/" + name;
-      if (!value.is_object() || !value.contains("address") || !value.contains("type")) {
-        report(pointer, value, "an object with address and type");
+  /// Likewise a list.
+  const json& list(const char* key) {
+    static const json kEmpty = json::array();
+    const auto found = document_.find(key);
+    if (found == document_.end()) return kEmpty;
+    if (found->is_array()) return *found;
+    parts_.report(std::string("/") + key, *found, "a list");
+    return kEmpty;
+  }
+
+  DriveRegister named_register(const std::string& group, const char* key) {
+    const auto pointer = json::json_pointer(group + "/" + key);
+    if (!document_.contains(pointer)) return {};  // reported as missing already
+    return parts_.known_register(pointer.to_string(), document_.at(pointer), true);
+  }
+
+  void read_poll() {
+    const json& blocks = list("poll");
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const std::string pointer = "/poll/" + std::to_string(i);
+      const json& value = blocks[i];
+      if (!value.is_object() || !value.contains("address") || !value.contains("count")) {
+        parts_.report(pointer, value, "an object with address, count and, if not holding, table");
         continue;
       }
-      refuse_other_keys(pointer, value, {"address", "type"});
-      DriveRegister reg;
-      reg.order = order_;
-      reg.address = static_cast<int>(number(pointer + "/address", value["address"], 0, 65535).value_or(0));
-      const auto type = value["type"].is_string() ? kTypes.find(value["type"].get<std::string>()) : kTypes.end();
-      if (type == kTypes.end()) {
-        report(pointer + "/type", value["type"], "one of \"u16\", \"i16\", \"u32\", \"i32\"");
-      } else {
-        reg.type = type->second;
+      parts_.refuse_other_keys(pointer, value, {"address", "count", "table"});
+      PollBlock block;
+      block.address = static_cast<int>(parts_.number(pointer + "/address", value["address"], 0, 65535).value_or(0));
+      block.count = static_cast<int>(parts_.number(pointer + "/count", value["count"], 1, 125).value_or(1));
+      if (value.contains("table")) {
+        if (value["table"] == "input") {
+          block.table = ModbusTable::kInput;
+        } else if (value["table"] != "holding") {
+          parts_.report(pointer + "/table", value["table"], "\"holding\" or \"input\"");
+        }
       }
-      registers_[name] = reg;
+      profile_.poll.push_back(block);
     }
+    if (document_.contains("poll") && blocks.empty()) parts_.report("/poll", blocks, "at least one block");
   }
 
-  DriveRegister known_register(const std::string& pointer, const std::string& name) {
-    const auto found = registers_.find(name);
-    if (found != registers_.end()) return found->second;
-    if (!name.empty()) problems_.push_back({pointer, "'" + name + "' is not one of the profile's registers"});
-    return {};
-  }
-
-  void read_conditions() {
-    const json& status = part("status");
-    const std::map<std::string, StatusCondition*> wanted{{"enabled", &profile_.enabled},
-                                                         {"homed", &profile_.homed},
-                                                         {"moving", &profile_.moving},
-                                                         {"in_position", &profile_.in_position},
-                                                         {"alarm", &profile_.alarm}};
+  void read_status() {
+    const json& status = object("status");
+    const std::map<std::string, DriveCondition*> wanted{{"enabled", &profile_.enabled},
+                                                        {"homed", &profile_.homed},
+                                                        {"moving", &profile_.moving},
+                                                        {"in_position", &profile_.in_position},
+                                                        {"alarm", &profile_.alarm}};
     for (const auto& [name, condition] : wanted) {
       const std::string pointer = "/status/" + name;
       if (!status.contains(name)) {
         problems_.push_back({pointer, "is missing and has no default"});
       } else {
-        *condition = condition_from(pointer, status[name]);
+        *condition = parts_.condition(pointer, status[name]);
       }
     }
-    refuse_other_keys("/status", status, {"enabled", "homed", "moving", "in_position", "alarm"});
-  }
-
-  StatusCondition condition_from(const std::string& pointer, const json& value) {
-    StatusCondition condition;
-    if (!value.is_object() || !value.contains("register") || !value.contains("mask") ||
-        !value["register"].is_string()) {
-      report(pointer, value, "an object with register, mask and, if not all bits of the mask, equals");
-      return condition;
+    const std::map<std::string, std::optional<DriveCondition>*> known{{"limit_positive", &profile_.limit_positive},
+                                                                      {"limit_negative", &profile_.limit_negative},
+                                                                      {"emergency_stop", &profile_.emergency_stop}};
+    for (const auto& [name, condition] : known) {
+      if (status.contains(name)) *condition = parts_.condition("/status/" + name, status[name]);
     }
-    refuse_other_keys(pointer, value, {"register", "mask", "equals"});
-    condition.reg = known_register(pointer + "/register", value["register"].get<std::string>());
-    condition.mask = static_cast<std::uint32_t>(number(pointer + "/mask", value["mask"], 1, 0xFFFFFFFF).value_or(1));
-    condition.equals = condition.mask;
-    if (value.contains("equals")) {
-      condition.equals =
-          static_cast<std::uint32_t>(number(pointer + "/equals", value["equals"], 0, 0xFFFFFFFF).value_or(0));
-    }
-    return condition;
+    parts_.refuse_other_keys(
+        "/status", status,
+        {"enabled", "homed", "moving", "in_position", "alarm", "limit_positive", "limit_negative", "emergency_stop"});
   }
 
   void read_sequences() {
-    const json& sequences = part("sequences");
+    const json& sequences = object("sequences");
     const std::map<std::string, DriveSequence*> wanted{{"enable", &profile_.enable},
                                                        {"home", &profile_.home},
                                                        {"move_absolute", &profile_.move_absolute},
@@ -220,120 +195,173 @@ class ProfileReader {
                                                        {"alarm_reset", &profile_.alarm_reset}};
     for (const auto& [name, sequence] : wanted) {
       const std::string pointer = "/sequences/" + name;
-      if (!sequences.contains(name) || !sequences[name].is_array()) {
-        problems_.push_back({pointer, "is missing or not a list of frames"});
+      if (!sequences.contains(name)) {
+        problems_.push_back({pointer, "is missing and has no default; [] = nothing to do"});
         continue;
       }
-      for (std::size_t i = 0; i < sequences[name].size(); ++i) {
-        read_frame(pointer + "/" + std::to_string(i), sequences[name][i], *sequence);
-      }
+      *sequence = parts_.sequence(pointer, sequences[name]);
     }
-    refuse_other_keys("/sequences", sequences, {"enable", "home", "move_absolute", "stop", "alarm_reset"});
+    if (sequences.contains("disable")) {
+      profile_.disable = parts_.sequence("/sequences/disable", sequences["disable"]);
+    }
+    parts_.refuse_other_keys("/sequences", sequences,
+                             {"enable", "disable", "home", "move_absolute", "stop", "alarm_reset"});
     for (const char* name : {"home", "move_absolute", "stop"}) {
       if (problems_.empty() && wanted.at(name)->empty()) {
-        problems_.push_back({std::string("/sequences/") + name, "needs at least one frame"});
+        problems_.push_back({std::string("/sequences/") + name, "needs at least one step"});
       }
     }
-  }
-
-  void read_frame(const std::string& pointer, const json& value, DriveSequence& sequence) {
-    if (!value.is_object() || !value.contains("write") || !value["write"].is_array() || value["write"].empty()) {
-      return report(pointer, value, "an object {\"write\": [[register, value], ...]}");
-    }
-    refuse_other_keys(pointer, value, {"write"});
-    DriveFrame frame;
-    for (std::size_t i = 0; i < value["write"].size(); ++i) {
-      const std::string at = pointer + "/write/" + std::to_string(i);
-      const json& pair = value["write"][i];
-      if (!pair.is_array() || pair.size() != 2 || !pair[0].is_string()) {
-        return report(at, pair, "[register, value]");
-      }
-      RegisterWrite write{known_register(at + "/0", pair[0].get<std::string>()), std::int64_t{0}};
-      if (!frame.writes.empty()) {
-        const DriveRegister& last = frame.writes.back().reg;
-        if (write.reg.address != last.address + register_words(last.type)) {
-          problems_.push_back({at, "registers of one frame must follow each other; start another frame"});
-        }
-      }
-      write.value = value_of(at + "/1", pair[1]);
-      frame.writes.push_back(write);
-    }
-    sequence.push_back(std::move(frame));
-  }
-
-  std::variant<std::int64_t, DriveVariable> value_of(const std::string& pointer, const json& value) {
-    static const std::map<std::string, DriveVariable> kVariables{{"$target", DriveVariable::kTarget},
-                                                                 {"$speed", DriveVariable::kSpeed},
-                                                                 {"$acceleration", DriveVariable::kAcceleration}};
-    if (value.is_string() && value.get<std::string>().starts_with("$")) {
-      const auto found = kVariables.find(value.get<std::string>());
-      if (found != kVariables.end()) return found->second;
-      report(pointer, value, "one of \"$target\", \"$speed\", \"$acceleration\"");
-      return std::int64_t{0};
-    }
-    return number(pointer, value, INT32_MIN, UINT32_MAX).value_or(0);
   }
 
   void read_alarms() {
-    for (const auto& [code, text] : part("alarms").items()) {
+    for (const auto& [code, value] : object("alarms").items()) {
       const std::string pointer = "/alarms/" + code;
-      const auto value = number(pointer, json(code), 0, 0xFFFF);
-      if (!text.is_string()) report(pointer, text, "a text");
-      if (value && text.is_string()) profile_.alarms[static_cast<int>(*value)] = text.get<std::string>();
+      const auto number = parts_.number(pointer, json(code), 0, 0x7FFFFFFF);
+      DriveAlarm alarm;
+      if (value.is_string()) {
+        alarm.text = value.get<std::string>();
+      } else if (value.is_object() && value.contains("text") && value["text"].is_string()) {
+        alarm.text = value["text"].get<std::string>();
+        parts_.refuse_other_keys(pointer, value, {"text", "resettable", "position_lost"});
+        for (const auto& [key, flag] :
+             {std::pair{"resettable", &alarm.resettable}, {"position_lost", &alarm.position_lost}}) {
+          if (!value.contains(key)) continue;
+          if (value[key].is_boolean()) {
+            *flag = value[key].get<bool>();
+          } else {
+            parts_.report(pointer + "/" + key, value[key], "true or false");
+          }
+        }
+      } else {
+        parts_.report(pointer, value, "a text, or an object with text, resettable and position_lost");
+      }
+      if (number) profile_.alarms[static_cast<int>(*number)] = alarm;
     }
   }
 
-  void check_poll_block() {
-    const auto inside = [this](const DriveRegister& reg) {
-      return reg.address >= profile_.poll_address &&
-             reg.address + register_words(reg.type) <= profile_.poll_address + profile_.poll_count;
-    };
-    const std::map<std::string, DriveRegister> wanted{
-        {"/feedback/register", profile_.position}, {"/alarm_register", profile_.alarm_code},
-        {"/status/enabled", profile_.enabled.reg}, {"/status/homed", profile_.homed.reg},
-        {"/status/moving", profile_.moving.reg},   {"/status/in_position", profile_.in_position.reg},
-        {"/status/alarm", profile_.alarm.reg}};
-    for (const auto& [pointer, reg] : wanted) {
-      if (!inside(reg)) {
-        problems_.push_back({pointer, "its register at " + std::to_string(reg.address) + " is outside the poll block " +
-                                          std::to_string(profile_.poll_address) + ".." +
-                                          std::to_string(profile_.poll_address + profile_.poll_count - 1)});
+  void read_identity() {
+    const json& entries = list("identify");
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      json condition = entries[i];
+      const std::string pointer = "/identify/" + std::to_string(i);
+      DriveIdentity identity;
+      if (condition.is_object() && condition.contains("text") && condition["text"].is_string()) {
+        identity.text = condition["text"].get<std::string>();
+        condition.erase("text");
+      } else {
+        problems_.push_back({pointer + "/text", "is missing: what this register says, for people"});
       }
+      identity.condition = parts_.condition(pointer, condition);
+      profile_.identify.push_back(std::move(identity));
+    }
+  }
+
+  void read_extras() {
+    if (document_.contains("watchdog")) {
+      const json& value = object("watchdog");
+      parts_.refuse_other_keys("/watchdog", value, {"register", "armed", "disarmed"});
+      DriveWatchdog watchdog;
+      watchdog.reg = member_register("/watchdog", value, "register");
+      watchdog.armed = member_number("/watchdog", value, "armed");
+      watchdog.disarmed = member_number("/watchdog", value, "disarmed");
+      profile_.watchdog = watchdog;
+    }
+    if (document_.contains("soft_limits")) {
+      const json& value = object("soft_limits");
+      parts_.refuse_other_keys("/soft_limits", value, {"positive", "negative"});
+      profile_.soft_limits = {member_register("/soft_limits", value, "positive"),
+                              member_register("/soft_limits", value, "negative")};
+    }
+    if (!document_.contains("temperatures")) return;
+    for (const auto& [name, value] : object("temperatures").items()) {
+      const std::string pointer = "/temperatures/" + name;
+      parts_.refuse_other_keys(pointer, value, {"register", "celsius_per_unit"});
+      DriveTemperature temperature;
+      temperature.name = name;
+      temperature.reg = member_register(pointer, value, "register");
+      if (value.is_object() && value.contains("celsius_per_unit")) {
+        if (value["celsius_per_unit"].is_number()) {
+          temperature.celsius_per_unit = value["celsius_per_unit"].get<double>();
+        } else {
+          parts_.report(pointer + "/celsius_per_unit", value["celsius_per_unit"], "a number");
+        }
+      }
+      profile_.temperatures.push_back(std::move(temperature));
+    }
+  }
+
+  DriveRegister member_register(const std::string& pointer, const json& value, const char* key) {
+    if (!value.is_object() || !value.contains(key)) {
+      problems_.push_back({pointer + "/" + key, "is missing and has no default"});
+      return {};
+    }
+    return parts_.known_register(pointer + "/" + key, value[key], true);
+  }
+
+  std::int64_t member_number(const std::string& pointer, const json& value, const char* key) {
+    if (!value.is_object() || !value.contains(key)) {
+      problems_.push_back({pointer + "/" + key, "is missing and has no default"});
+      return 0;
+    }
+    return parts_.number(pointer + "/" + key, value[key], 0, UINT32_MAX).value_or(0);
+  }
+
+  /// What is looked at in every sample stands in the blocks that are read for it.
+  void check_poll_blocks() {
+    const auto polled = [this](const std::string& pointer, const DriveRegister& reg) {
+      const bool inside =
+          std::any_of(profile_.poll.begin(), profile_.poll.end(), [&](const PollBlock& b) { return b.holds(reg); });
+      if (inside) return;
+      problems_.push_back({pointer, "its register '" + reg.name + "' at " + std::to_string(reg.address) +
+                                        " is in none of the blocks of /poll"});
+    };
+    polled("/feedback/register", profile_.position);
+    polled("/alarm_register", profile_.alarm_code);
+    for (const auto& [name, condition] : {std::pair{"enabled", &profile_.enabled},
+                                          {"homed", &profile_.homed},
+                                          {"moving", &profile_.moving},
+                                          {"in_position", &profile_.in_position},
+                                          {"alarm", &profile_.alarm}}) {
+      for (const DriveRegister& reg : condition->registers()) polled(std::string("/status/") + name, reg);
+    }
+    for (const auto* condition : {&profile_.limit_positive, &profile_.limit_negative, &profile_.emergency_stop}) {
+      if (!*condition) continue;
+      for (const DriveRegister& reg : (*condition)->registers()) polled("/status", reg);
+    }
+    if (problems_.empty() && !profile_.poll.back().holds(profile_.position)) {
+      problems_.push_back({"/poll", "the last block must hold the position, so that no status is newer than it"});
     }
   }
 
   const json& document_;
   Problems& problems_;
+  ProfileParts parts_;
   DriveProfile profile_;
-  std::map<std::string, DriveRegister> registers_;
   WordOrder order_ = WordOrder::kHighFirst;
   std::string word_order_ = "high_first";
   std::string direction_ = "positive";
   std::string feedback_ = "none";
   std::string feedback_register_;
   std::string alarm_register_;
+  double acceleration_inverse_ = 0.0;
 };
 
 }  // namespace
 
-std::int64_t RegisterBlock::value(const DriveRegister& reg) const {
-  const auto at = static_cast<std::size_t>(reg.address - address_);
-  if (register_words(reg.type) == 1) {
-    return reg.type == RegisterType::kI16 ? static_cast<std::int16_t>(words_[at]) : std::int64_t{words_[at]};
-  }
-  const std::uint32_t first = words_[at];
-  const std::uint32_t second = words_[at + 1];
-  const std::uint32_t bits = reg.order == WordOrder::kHighFirst ? (first << 16U) | second : (second << 16U) | first;
-  return reg.type == RegisterType::kI32 ? static_cast<std::int32_t>(bits) : std::int64_t{bits};
+std::int64_t DriveUnit::value(double physical) const {
+  const double exact = inverse ? factor / physical : factor * physical;
+  return std::clamp(static_cast<std::int64_t>(std::clamp(std::round(exact), -9e15, 9e15)), min, max);
 }
 
-std::vector<std::uint16_t> encode(const DriveRegister& reg, std::int64_t value) {
-  const auto bits = static_cast<std::uint32_t>(value);
-  const auto low = static_cast<std::uint16_t>(bits & 0xFFFFU);
-  const auto high = static_cast<std::uint16_t>(bits >> 16U);
-  if (register_words(reg.type) == 1) return {low};
-  if (reg.order == WordOrder::kHighFirst) return {high, low};
-  return {low, high};
+std::string alarm_text(const DriveProfile& profile, int code) {
+  std::ostringstream text;
+  text << "alarm 0x" << std::hex << std::uppercase << code;
+  const auto known = profile.alarms.find(code);
+  if (known == profile.alarms.end()) return text.str() + ": see the drive's manual";
+  text << ": " << known->second.text;
+  if (!known->second.resettable) text << " (not resettable: switch the drive off and on)";
+  if (known->second.position_lost) text << " (position lost: home again)";
+  return text.str();
 }
 
 DriveProfile parse_drive_profile(std::string_view json_text, const std::string& source) {

@@ -1,113 +1,108 @@
 #pragma once
 
-/// What fvd has to know of a drive, as data: registers, status bits, sequences, alarms. Read from config/drives/*.json.
+/// What fvd has to know of a drive, as data: registers, status, sequences, alarms. Read from config/drives/*.json,
+/// whose fields config/drives/README.md lists.
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <variant>
 #include <vector>
 
 #include "core/hw/z_stage.hpp"
+#include "drivers/modbus/drive_register.hpp"
+#include "drivers/modbus/drive_sequence.hpp"
 
 namespace fvd {
 
-enum class RegisterType { kU16, kI16, kU32, kI32 };
-[[nodiscard]] constexpr int register_words(RegisterType type) {
-  return type == RegisterType::kU16 || type == RegisterType::kI16 ? 1 : 2;
-}
+/// From a physical value to a register's.
+struct DriveUnit {
+  double factor = 1.0;
+  bool inverse = false;  ///< value = factor / physical: an acceleration given as a time
+  std::int64_t min = 1;  ///< what the drive takes; values beyond are clamped
+  std::int64_t max = 2147483647;
 
-enum class WordOrder { kHighFirst, kLowFirst };
-
-/// A holding register, or a pair of them.
-struct DriveRegister {
-  int address = 0;  ///< PDU address, 0..65535
-  RegisterType type = RegisterType::kU16;
-  WordOrder order = WordOrder::kHighFirst;
+  [[nodiscard]] std::int64_t value(double physical) const;
 };
 
-/// A contiguous block read in one transaction: one coherent sample of the drive.
-class RegisterBlock {
- public:
-  RegisterBlock() = default;
-  RegisterBlock(int address, std::vector<std::uint16_t> words) : address_(address), words_(std::move(words)) {}
-  /// The register's value; it lies inside the block (checked when the profile is read).
-  [[nodiscard]] std::int64_t value(const DriveRegister& reg) const;
-
- private:
-  int address_ = 0;
-  std::vector<std::uint16_t> words_;
+struct DriveAlarm {
+  std::string text;
+  bool resettable = true;
+  bool position_lost = false;  ///< home again after the reset
 };
 
-/// The words of a value as they stand on the wire.
-[[nodiscard]] std::vector<std::uint16_t> encode(const DriveRegister& reg, std::int64_t value);
+/// A register whose value says which drive this is.
+struct DriveIdentity {
+  DriveCondition condition;
+  std::string text;  ///< what it is, for people
+};
 
-/// (register & mask) == equals.
-struct StatusCondition {
+/// Stops the drive by itself when it hears nothing for a time.
+struct DriveWatchdog {
   DriveRegister reg;
-  std::uint32_t mask = 0;
-  std::uint32_t equals = 0;
-
-  [[nodiscard]] bool holds(const RegisterBlock& block) const {
-    return (static_cast<std::uint32_t>(block.value(reg)) & mask) == equals;
-  }
+  std::int64_t armed = 0;     ///< register value
+  std::int64_t disarmed = 0;  ///< register value
 };
 
-/// What a sequence may put in place of a number.
-enum class DriveVariable { kTarget, kSpeed, kAcceleration };
-
-struct RegisterWrite {
+struct DriveTemperature {
+  std::string name;
   DriveRegister reg;
-  std::variant<std::int64_t, DriveVariable> value;
+  double celsius_per_unit = 0.1;
 };
 
-/// Registers that follow each other, written in one frame.
-struct DriveFrame {
-  std::vector<RegisterWrite> writes;
-
-  [[nodiscard]] int address() const { return writes.front().reg.address; }
+struct DriveSoftLimits {
+  DriveRegister positive;  ///< in commanded steps
+  DriveRegister negative;
 };
-using DriveSequence = std::vector<DriveFrame>;
 
 struct DriveProfile {
   std::string name;
   std::string vendor;
   std::string manual;
 
-  double steps_per_um = 1.0;          ///< commanded steps per um, > 0
-  double counts_per_um = 1.0;         ///< feedback counts per um, > 0
-  int direction = 1;                  ///< +1 or -1: sign of steps when z grows
-  double speed_units_per_um_s = 1.0;  ///< register value per um/s
-  double acceleration_units_per_um_s2 = 1.0;
+  double steps_per_um = 1.0;   ///< commanded steps per um, > 0
+  double counts_per_um = 1.0;  ///< feedback counts per um, > 0
+  int direction = 1;           ///< +1 or -1: sign of steps when z grows
+  double lead_um = 0.0;        ///< of the screw, period of its error; 0 unknown
+  DriveUnit speed;             ///< physical: um/s
+  DriveUnit acceleration;      ///< physical: um/s^2
   FeedbackSource feedback = FeedbackSource::kNone;
   double feedback_resolution_um = 0.0;
 
-  int poll_address = 0;  ///< one block that holds all status registers and the position
-  int poll_count = 1;    ///< 1..125
+  std::vector<PollBlock> poll;  ///< read in this order; the one with the position last, so that status is not newer
   DriveRegister position;
   DriveRegister alarm_code;
 
-  StatusCondition enabled;
-  StatusCondition homed;
-  StatusCondition moving;
-  StatusCondition in_position;
-  StatusCondition alarm;
+  DriveCondition enabled;
+  DriveCondition homed;
+  DriveCondition moving;
+  DriveCondition in_position;
+  DriveCondition alarm;
+  std::optional<DriveCondition> limit_positive;
+  std::optional<DriveCondition> limit_negative;
+  std::optional<DriveCondition> emergency_stop;
 
   DriveSequence enable;
+  DriveSequence disable;  ///< may be empty
   DriveSequence home;
   DriveSequence move_absolute;
   DriveSequence stop;
   DriveSequence alarm_reset;
 
-  std::map<int, std::string> alarms;            ///< code -> text
+  std::vector<DriveIdentity> identify;
+  std::optional<DriveWatchdog> watchdog;
+  std::optional<DriveSoftLimits> soft_limits;
+  std::vector<DriveTemperature> temperatures;
+  std::map<int, DriveAlarm> alarms;             ///< by code
   std::chrono::milliseconds start_within{150};  ///< a move that has not begun by then was refused
   std::chrono::milliseconds home_timeout{60000};
 };
+
+/// "alarm 0x30: overload".
+[[nodiscard]] std::string alarm_text(const DriveProfile& profile, int code);
 
 /// Throws Error kBadConfig with every problem, each with its JSON pointer, value and accepted range.
 [[nodiscard]] DriveProfile parse_drive_profile(std::string_view json_text, const std::string& source);

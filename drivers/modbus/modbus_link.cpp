@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <condition_variable>
 #include <deque>
 #include <future>
@@ -11,11 +10,7 @@
 #include <stop_token>
 #include <thread>
 
-#include <modbus/modbus.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <pthread.h>
-#include <sys/socket.h>
 
 #include "core/error.hpp"
 
@@ -28,69 +23,30 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr int kReadAttempts = 3;
 constexpr std::size_t kLatencySamples = 1024;
 
-struct ContextDeleter {
-  void operator()(modbus_t* context) const {
-    modbus_close(context);
-    modbus_free(context);
-  }
-};
-using Context = std::unique_ptr<modbus_t, ContextDeleter>;
-
 struct Request {
-  int address = 0;
-  int read_count = 0;                  // > 0: a read
-  std::vector<std::uint16_t> written;  // else a write
+  ModbusRequest what;
   int attempts_left = 1;
   std::promise<ModbusReply> done;
 };
 
-bool is_exception(int error) { return error > MODBUS_ENOBASE && error <= EMBXGTAR; }
-
 }  // namespace
 
 struct ModbusLink::Impl {
-  explicit Impl(const ModbusLinkConfig& c) : config(c) {
-    const std::string port = std::to_string(config.port);
-    context.reset(modbus_new_tcp_pi(config.host.c_str(), port.c_str()));
-    if (!context)
-      throw Error(ErrorCode::kStageDisconnected,
-                  "no Modbus connection to " + describe() + ": " + modbus_strerror(errno));
-    modbus_set_error_recovery(context.get(), MODBUS_ERROR_RECOVERY_NONE);
-    const auto timeout = std::chrono::duration_cast<std::chrono::microseconds>(config.response_timeout).count();
-    const auto seconds = static_cast<std::uint32_t>(timeout / 1000000);
-    const auto microseconds = static_cast<std::uint32_t>(timeout % 1000000);
-    modbus_set_response_timeout(context.get(), seconds, microseconds);
-    // 0 = the whole reply within the response timeout: a trickle of bytes cannot stretch it.
-    modbus_set_byte_timeout(context.get(), 0, 0);
-    if (modbus_set_slave(context.get(), config.unit) != 0 || !connect()) {
-      throw Error(ErrorCode::kStageDisconnected, "no Modbus connection to " + describe() + ": " +
-                                                     modbus_strerror(errno) +
+  explicit Impl(const ModbusLinkConfig& config) : transport(config) {
+    std::string reason;
+    if (!transport.connect(reason)) {
+      throw Error(ErrorCode::kStageDisconnected, "no Modbus connection to " + transport.description() + ": " + reason +
                                                      "; is the drive switched on and its address right?");
     }
     thread = std::jthread([this](std::stop_token stop) { run(stop); });
     pthread_setname_np(thread.native_handle(), "fvd-modbus");
   }
 
-  [[nodiscard]] std::string describe() const {
-    return config.host + ":" + std::to_string(config.port) + " unit " + std::to_string(config.unit);
-  }
-
-  bool connect() {
-    connected = modbus_connect(context.get()) == 0;
-    if (connected) {
-      const int on = 1;
-      ::setsockopt(modbus_get_socket(context.get()), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-    }
-    return connected;
-  }
-
-  void disconnect() {
-    modbus_close(context.get());
-    connected = false;
-  }
-
   void run(std::stop_token stop) {
-    while (auto request = next(stop)) {
+    for (;;) {
+      resolve_doubt(stop);
+      auto request = next(stop);
+      if (!request) break;
       ModbusReply reply = attempt(*request);
       if (reply.outcome == ModbusOutcome::kUnknown && --request->attempts_left > 0 && !stop.stop_requested()) {
         const std::lock_guard lock(mutex);
@@ -120,42 +76,47 @@ struct ModbusLink::Impl {
     return request;
   }
 
-  ModbusReply attempt(Request& request) {
+  ModbusReply attempt(const Request& request) {
     ModbusReply reply;
-    if (!connected) {
+    if (!transport.connected()) {
       {
         const std::lock_guard lock(mutex);
         ++statistics.reconnects;
       }
-      if (!connect()) {
-        reply.error = std::string("cannot connect: ") + modbus_strerror(errno);
+      std::string reason;
+      if (!transport.connect(reason)) {
+        reply.error = "cannot connect: " + reason;
         return book(std::move(reply), SteadyClock::duration::zero());
       }
     }
     const auto begin = SteadyClock::now();
-    const int expected = request.read_count > 0 ? request.read_count : static_cast<int>(request.written.size());
-    int count = 0;
-    if (request.read_count > 0) {
-      reply.values.resize(static_cast<std::size_t>(request.read_count));
-      count = modbus_read_registers(context.get(), request.address, request.read_count, reply.values.data());
-    } else {
-      count = modbus_write_registers(context.get(), request.address, expected, request.written.data());
-    }
-    const int error = errno;
+    const auto answer = transport.transact(request.what, reply.values, reply.error);
     const auto end = SteadyClock::now();
     reply.sampled = begin + (end - begin) / 2;
-    if (count == expected) {
-      reply.outcome = ModbusOutcome::kOk;
-    } else {
-      reply.values.clear();
-      reply.error = modbus_strerror(error);
-      if (count == -1 && (is_exception(error) || error == EMBBADEXC)) {
+    switch (answer) {
+      case ModbusTransport::Answer::kOk:
+        reply.outcome = ModbusOutcome::kOk;
+        break;
+      case ModbusTransport::Answer::kException:
         reply.outcome = ModbusOutcome::kRejected;
-      } else {
-        disconnect();  // a late reply must never meet the next request
-      }
+        break;
+      case ModbusTransport::Answer::kNone:
+        doubtful = true;
+        break;
     }
     return book(std::move(reply), end - begin);
+  }
+
+  /// Before the next request, so that who waits for this one's outcome need not wait for the line's silence.
+  void resolve_doubt(std::stop_token stop) {
+    if (!doubtful) return;
+    doubtful = false;
+    const std::size_t discarded = transport.resynchronise([&] {
+      const std::lock_guard lock(mutex);
+      return stop.stop_requested() || !urgent.empty();
+    });
+    const std::lock_guard lock(mutex);
+    statistics.discarded_bytes += discarded;
   }
 
   ModbusReply book(ModbusReply reply, SteadyClock::duration latency) {
@@ -180,9 +141,8 @@ struct ModbusLink::Impl {
     return reply.get();
   }
 
-  const ModbusLinkConfig config;
-  Context context;         // I/O thread only, once it runs
-  bool connected = false;  // likewise
+  ModbusTransport transport;  // I/O thread only, once it runs
+  bool doubtful = false;      // likewise: bytes of an answer may still come
   mutable std::mutex mutex;
   std::condition_variable_any arrived;
   std::deque<Request> urgent;  // this and all below: guarded by mutex
@@ -197,18 +157,17 @@ struct ModbusLink::Impl {
 ModbusLink::ModbusLink(const ModbusLinkConfig& config) : impl_(std::make_unique<Impl>(config)) {}
 ModbusLink::~ModbusLink() = default;
 
-ModbusReply ModbusLink::read(int address, int count, ModbusPriority priority) {
+ModbusReply ModbusLink::read(ModbusTable table, int address, int count, ModbusPriority priority) {
   Request request;
-  request.address = address;
-  request.read_count = count;
+  request.what = {table, address, count, {}, false};
   request.attempts_left = kReadAttempts;
   return impl_->submit(std::move(request), priority);
 }
 
-ModbusReply ModbusLink::write(int address, std::span<const std::uint16_t> values, ModbusPriority priority) {
+ModbusReply ModbusLink::write(ModbusTable table, int address, std::span<const std::uint16_t> values,
+                              ModbusPriority priority, bool single) {
   Request request;
-  request.address = address;
-  request.written.assign(values.begin(), values.end());
+  request.what = {table, address, 0, {values.begin(), values.end()}, single};
   return impl_->submit(std::move(request), priority);
 }
 
@@ -227,6 +186,6 @@ ModbusLinkStats ModbusLink::stats() const {
   return stats;
 }
 
-std::string ModbusLink::description() const { return impl_->describe(); }
+std::string ModbusLink::description() const { return impl_->transport.description(); }
 
 }  // namespace fvd

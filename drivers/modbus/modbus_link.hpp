@@ -10,14 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace fvd {
+#include "drivers/modbus/modbus_transport.hpp"
 
-struct ModbusLinkConfig {
-  std::string host = "127.0.0.1";
-  int port = 502;
-  int unit = 1;
-  std::chrono::milliseconds response_timeout{200};
-};
+namespace fvd {
 
 enum class ModbusOutcome {
   kOk,
@@ -41,32 +36,34 @@ struct ModbusLinkStats {
   std::uint64_t unknown = 0;
   std::uint64_t rejected = 0;
   std::uint64_t reconnects = 0;
-  double latency_p50_us = 0.0;  ///< of the last 1024 transactions that were answered
+  std::uint64_t discarded_bytes = 0;  ///< late or garbled, read off a serial line
+  double latency_p50_us = 0.0;        ///< of the last 1024 transactions that were answered
   double latency_p99_us = 0.0;
   double latency_max_us = 0.0;
 };
 
-/// Modbus TCP through libmodbus with its own error recovery off: after any doubt the socket is replaced, the only sure
-/// way to get rid of a late reply. Reads are tried up to three times, writes once. Urgent requests go ahead of all
-/// others, between two attempts of a read too; so an urgent request waits for one response timeout at most. context:
-/// thread-safe; calls block for their own transaction.
+/// After any doubt the transport is made sure to hold no late reply. Reads are tried up to three times, writes once.
+/// Urgent requests go ahead of all others, between two attempts of a read and into the silence after a doubt too; so an
+/// urgent request is sent after one response timeout at most. context: thread-safe; calls block for their own
+/// transaction.
 class ModbusLink {
  public:
-  /// Connects. Throws Error kStageDisconnected naming the address and the reason.
+  /// Connects. Throws Error kStageDisconnected naming the address and the reason, kBadConfig as check() does.
   explicit ModbusLink(const ModbusLinkConfig& config);
   ~ModbusLink();
   ModbusLink(const ModbusLink&) = delete;
   ModbusLink& operator=(const ModbusLink&) = delete;
 
-  /// Reads holding registers; count 1..125, address a PDU address.
-  [[nodiscard]] ModbusReply read(int address, int count, ModbusPriority priority = ModbusPriority::kNormal);
+  /// Reads registers, count 1..125, or bits, count 1..2000, as 0 and 1. address: a PDU address.
+  [[nodiscard]] ModbusReply read(ModbusTable table, int address, int count,
+                                 ModbusPriority priority = ModbusPriority::kNormal);
 
-  /// Writes 1..123 holding registers in one frame (FC 16).
-  [[nodiscard]] ModbusReply write(int address, std::span<const std::uint16_t> values,
-                                  ModbusPriority priority = ModbusPriority::kNormal);
+  /// Writes 1..123 holding registers or coils in one frame, FC 16 or 15; with `single` one of them by FC 6 or 5.
+  [[nodiscard]] ModbusReply write(ModbusTable table, int address, std::span<const std::uint16_t> values,
+                                  ModbusPriority priority = ModbusPriority::kNormal, bool single = false);
 
   [[nodiscard]] ModbusLinkStats stats() const;
-  /// "host:port unit n".
+  /// "host:port unit n" or "device unit n".
   [[nodiscard]] std::string description() const;
 
  private:

@@ -2,55 +2,48 @@
 
 #include <atomic>
 #include <cmath>
-#include <condition_variable>
 #include <cstdlib>
 #include <limits>
-#include <mutex>
 #include <sstream>
-#include <thread>
-#include <variant>
 
-#include <pthread.h>
 #include <spdlog/spdlog.h>
 
 #include "core/error.hpp"
 #include "core/scan/settle_detector.hpp"
+#include "drivers/modbus/axis_poller.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 #include "drivers/modbus/modbus_link.hpp"
-#include "drivers/modbus/position_log.hpp"
 
 namespace fvd {
 
 namespace {
 
-using std::chrono::milliseconds;
-
-constexpr milliseconds kFastPoll{2};
-constexpr milliseconds kIdlePoll{50};
-/// Sampling stays fast for so long after the last thing that needed it.
-constexpr milliseconds kFastFor{1000};
-constexpr std::size_t kLoggedSamples = 8192;
+/// A stop that got no answer is sent again: it does no harm twice.
+constexpr int kStopAttempts = 3;
 
 class ModbusZStage final : public ZStage {
  public:
   explicit ModbusZStage(const StageConfig& config)
-      : config_(config),
-        profile_(load_drive_profile(config.profile)),
-        link_({config.address, config.port, config.unit, config.response_timeout}),
-        log_(kLoggedSamples) {
-    poll_once();
-    if (!connected_) throw Error(ErrorCode::kStageDisconnected, loss_);
-    run_sequence(profile_.enable, {}, "enable");
-    poller_ = std::jthread([this](std::stop_token stop) { poll(stop); });
-    pthread_setname_np(poller_.native_handle(), "fvd-stage");
+      : config_(config), profile_(load_drive_profile(config.profile)), link_(modbus_link_config(config)) {
+    identify();
+    check_soft_limits();
+    poller_ = std::make_unique<AxisPoller>(link_, profile_, config_.speed_um_per_s);
+    require_done(run(profile_.enable, "enable", {}));
+    arm_watchdog();
+    state_ = AxisState::kReady;
   }
 
   ~ModbusZStage() override {
+    if (profile_.watchdog && poller_->connected()) {
+      (void)write(profile_.watchdog->reg, profile_.watchdog->disarmed);
+    }
+    poller_.reset();
     const ModbusLinkStats stats = link_.stats();
     spdlog::info(
-        "stage link closed: {} transactions, {} retries, {} unknown, {} reconnects, latency p50 {:.0f} us p99 {:.0f} "
-        "us",
-        stats.transactions, stats.retries, stats.unknown, stats.reconnects, stats.latency_p50_us, stats.latency_p99_us);
+        "stage link closed: {} transactions, {} retries, {} unknown, {} reconnects, {} bytes discarded, latency p50 "
+        "{:.0f} us p99 {:.0f} us",
+        stats.transactions, stats.retries, stats.unknown, stats.reconnects, stats.discarded_bytes, stats.latency_p50_us,
+        stats.latency_p99_us);
   }
 
   [[nodiscard]] StageInfo info() const override {
@@ -63,12 +56,13 @@ class ModbusZStage final : public ZStage {
     info.min = config_.min;
     info.max = config_.max;
     info.take_up = config_.take_up;
+    info.lead = Micrometers{profile_.lead_um};
     info.simulated = config_.simulated;
     return info;
   }
 
   [[nodiscard]] StageStatus status() override {
-    const AxisSample sample = sample_after(HostClock::now(), {});
+    const AxisSample sample = poller_->sample_after(HostClock::now(), {});
     StageStatus status;
     status.enabled = sample.enabled;
     status.homed = sample.homed;
@@ -76,20 +70,30 @@ class ModbusZStage final : public ZStage {
     status.in_position = sample.in_position;
     status.alarm = sample.alarm;
     status.alarm_code = sample.alarm_code;
-    if (sample.alarm) status.alarm_text = alarm_text(sample.alarm_code);
+    if (sample.alarm) status.alarm_text = alarm_text(profile_, sample.alarm_code);
     status.position = sample.position;
+    status.temperatures = poller_->temperatures();
+    status.state = state_of(sample);
     return status;
+  }
+
+  [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
+    const ModbusLinkStats stats = link_.stats();
+    return StageLinkStats{stats.transactions,   stats.retries,         stats.unknown,          stats.rejected,
+                          stats.reconnects,     stats.discarded_bytes, poller_->implausible(), stats.latency_p50_us,
+                          stats.latency_p99_us, stats.latency_max_us};
   }
 
   void home(std::stop_token stop) override {
     require_no_alarm(sample_after(HostClock::now(), stop));
+    const Doing homing(state_, AxisState::kHoming);
     const HostTime started = HostClock::now();
-    run_sequence(profile_.home, {}, "home");
+    require_done(run(profile_.home, "home", stop));
     bool moved = false;
     for (HostTime last = HostClock::now();;) {
       const AxisSample sample = halting_on_stop([&] { return sample_after(last, stop); });
-      last = sample.time;
-      require_no_alarm(sample);
+      last = sample.begun;
+      if (!sample.limit_positive && !sample.limit_negative) require_no_alarm(sample);  // a reference may be a limit
       moved = moved || sample.moving || !sample.homed;
       // An axis that was homed and rests at its origin never shows motion: then the start time decides.
       const bool begun = moved || sample.time - started > profile_.start_within;
@@ -115,6 +119,7 @@ class ModbusZStage final : public ZStage {
     if (!before.homed) {
       throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + link_.description() + " before it is homed");
     }
+    const Doing moving(state_, AxisState::kMoving);
     move.started = HostClock::now();
     start_move(move, before, criterion, stop);
     halting_on_stop([&] { settle(move, before, criterion, stop); });
@@ -122,85 +127,92 @@ class ModbusZStage final : public ZStage {
   }
 
   [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
-    keep_fast();
     (void)sample_after(to, {});
-    const std::lock_guard lock(mutex_);
-    return log_.mean(from, to);
+    return poller_->mean(from, to);
   }
 
   void stop() noexcept override {
     try {
-      for (const DriveFrame& frame : profile_.stop) {
-        const auto words = encoded(frame, {});
-        const ModbusReply reply = link_.write(frame.address(), words, ModbusPriority::kUrgent);
-        if (reply.outcome != ModbusOutcome::kOk) spdlog::error("stage stop was not confirmed: {}", reply.error);
+      SequenceResult result;
+      for (int attempt = 0; attempt < kStopAttempts; ++attempt) {
+        result = run_sequence(link_, profile_.stop, {}, ModbusPriority::kUrgent, {});
+        if (result.outcome == ModbusOutcome::kOk) return;
       }
+      spdlog::error("stage stop was not confirmed: {}", result.error);
     } catch (const std::exception& error) {
       spdlog::error("stage stop failed: {}", error.what());
     }
   }
 
-  [[nodiscard]] bool connected() const noexcept override { return connected_; }
+  [[nodiscard]] bool connected() const noexcept override { return poller_->connected(); }
 
  private:
-  // --- sampling ---
+  // --- before anything may move ---
 
-  void poll(std::stop_token stop) {
-    while (!stop.stop_requested() && connected_) {
-      poll_once();
-      std::unique_lock lock(mutex_);
-      const HostTime now = HostClock::now();
-      const HostTime next = now + (now < fast_until_ ? kFastPoll : kIdlePoll);
-      const HostTime fast_until = fast_until_;
-      wake_.wait_until(lock, stop, next, [&] { return fast_until_ != fast_until && next - now > kFastPoll; });
+  /// A wrong device, or the right one with another register map, must not be moved.
+  void identify() {
+    const auto lookup = [this](const DriveRegister& reg) { return read_register(link_, reg); };
+    for (const DriveIdentity& identity : profile_.identify) {
+      const auto holds = identity.condition.holds(lookup);
+      if (holds && *holds) continue;
+      throw Error(ErrorCode::kStageDisconnected,
+                  "the device at " + link_.description() + " is no " + profile_.name + ": " + identity.text +
+                      (holds ? " reads otherwise" : " cannot be read") + "; is it the right profile and unit?");
     }
   }
 
-  void poll_once() {
-    ModbusReply reply = link_.read(profile_.poll_address, profile_.poll_count);
-    {
-      const std::lock_guard lock(mutex_);
-      if (reply.outcome == ModbusOutcome::kOk) {
-        const RegisterBlock block(profile_.poll_address, std::move(reply.values));
-        AxisSample sample;
-        sample.time = reply.sampled;
-        sample.position = Micrometers{profile_.direction * static_cast<double>(block.value(profile_.position)) /
-                                      profile_.counts_per_um};
-        sample.enabled = profile_.enabled.holds(block);
-        sample.homed = profile_.homed.holds(block);
-        sample.moving = profile_.moving.holds(block);
-        sample.in_position = profile_.in_position.holds(block);
-        sample.alarm = profile_.alarm.holds(block);
-        sample.alarm_code = static_cast<int>(block.value(profile_.alarm_code));
-        log_.add(sample);
-      } else {
-        loss_ = "the drive at " + link_.description() + " does not answer: " + reply.error;
-        connected_ = false;
-      }
-    }
-    sampled_.notify_all();
+  /// The configuration's limits lie within the drive's own.
+  void check_soft_limits() {
+    if (!profile_.soft_limits) return;
+    const auto positive = read_register(link_, profile_.soft_limits->positive);
+    const auto negative = read_register(link_, profile_.soft_limits->negative);
+    if (!positive || !negative || *negative >= *positive) return;  // not set
+    const double one = static_cast<double>(*positive) * profile_.direction / profile_.steps_per_um;
+    const double other = static_cast<double>(*negative) * profile_.direction / profile_.steps_per_um;
+    if (config_.min.value >= std::min(one, other) && config_.max.value <= std::max(one, other)) return;
+    std::ostringstream message;
+    message << "the configured limits of " << config_.min.value << ".." << config_.max.value
+            << " um reach beyond the drive's own, " << std::min(one, other) << ".." << std::max(one, other)
+            << " um: narrow /stage/min_um and max_um, or widen the drive's";
+    throw Error(ErrorCode::kStageLimit, message.str());
   }
 
-  void keep_fast() {
-    {
-      const std::lock_guard lock(mutex_);
-      fast_until_ = HostClock::now() + kFastFor;
-    }
-    wake_.notify_all();
+  void arm_watchdog() {
+    if (!profile_.watchdog) return;
+    const ModbusReply reply = write(profile_.watchdog->reg, profile_.watchdog->armed);
+    if (reply.outcome != ModbusOutcome::kOk) spdlog::warn("the drive's watchdog could not be armed: {}", reply.error);
   }
 
-  /// The first sample taken after `after`. Throws when the drive is lost or stop is requested.
-  AxisSample sample_after(HostTime after, std::stop_token stop) {
-    keep_fast();
-    std::unique_lock lock(mutex_);
-    const auto there = [&] {
-      const auto latest = log_.latest();
-      return !connected_ || (latest && latest->time > after);
-    };
-    if (!sampled_.wait(lock, stop, there)) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
-    if (!connected_) throw Error(ErrorCode::kStageDisconnected, loss_);
-    return *log_.latest();
+  ModbusReply write(const DriveRegister& reg, std::int64_t value) {
+    return link_.write(reg.table, reg.address, encode(reg, value), ModbusPriority::kNormal, reg.write_single);
   }
+
+  // --- looking ---
+
+  AxisSample sample_after(HostTime after, std::stop_token stop) { return poller_->sample_after(after, stop); }
+
+  [[nodiscard]] AxisState state_of(const AxisSample& sample) const {
+    if (!poller_->connected()) return AxisState::kCommLost;
+    if (sample.alarm || sample.emergency_stop) return AxisState::kAlarm;
+    const AxisState doing = state_;
+    if (doing == AxisState::kHoming) return doing;
+    if (sample.moving) return AxisState::kMoving;
+    if (doing == AxisState::kMoving) return AxisState::kSettling;
+    if (!sample.enabled) return AxisState::kDisabled;
+    return sample.homed ? AxisState::kReady : AxisState::kNotHomed;
+  }
+
+  /// What the axis is commanded to do, for as long as it is.
+  class Doing {
+   public:
+    Doing(std::atomic<AxisState>& state, AxisState now) : state_(state) { state_ = now; }
+    ~Doing() { state_ = AxisState::kReady; }
+    Doing(const Doing&) = delete;
+    Doing& operator=(const Doing&) = delete;
+
+   private:
+    std::atomic<AxisState>& state_;
+  };
 
   /// Runs `wait`; an axis that moves is halted if a stop request or an error ends the wait.
   template <typename Wait>
@@ -215,47 +227,21 @@ class ModbusZStage final : public ZStage {
 
   // --- moving ---
 
-  struct Values {
-    std::int64_t target = 0;
-    std::int64_t speed = 0;
-    std::int64_t acceleration = 0;
+  struct Outcome {
+    SequenceResult result;
+    const char* name;
   };
-
-  [[nodiscard]] static std::vector<std::uint16_t> encoded(const DriveFrame& frame, const Values& values) {
-    std::vector<std::uint16_t> words;
-    for (const RegisterWrite& write : frame.writes) {
-      std::int64_t value = 0;
-      if (const auto* number = std::get_if<std::int64_t>(&write.value)) {
-        value = *number;
-      } else {
-        switch (std::get<DriveVariable>(write.value)) {
-          case DriveVariable::kTarget:
-            value = values.target;
-            break;
-          case DriveVariable::kSpeed:
-            value = values.speed;
-            break;
-          case DriveVariable::kAcceleration:
-            value = values.acceleration;
-            break;
-        }
-      }
-      const auto encoded_value = encode(write.reg, value);
-      words.insert(words.end(), encoded_value.begin(), encoded_value.end());
-    }
-    return words;
+  Outcome run(const DriveSequence& sequence, const char* name, std::stop_token stop) {
+    return {run_sequence(link_, sequence, {}, ModbusPriority::kNormal, std::move(stop)), name};
   }
 
-  /// Writes a sequence whose repetition would do no harm; anything but "ok" is an error.
-  void run_sequence(const DriveSequence& sequence, const Values& values, const char* name) {
-    for (const DriveFrame& frame : sequence) {
-      const ModbusReply reply = link_.write(frame.address(), encoded(frame, values));
-      if (reply.outcome == ModbusOutcome::kOk) continue;
-      const auto code =
-          reply.outcome == ModbusOutcome::kRejected ? ErrorCode::kStagePosition : ErrorCode::kStageDisconnected;
-      throw Error(code,
-                  std::string("the drive at ") + link_.description() + " did not take '" + name + "': " + reply.error);
-    }
+  /// For sequences whose repetition would do no harm: anything but "ok" is an error.
+  void require_done(const Outcome& outcome) const {
+    if (outcome.result.outcome == ModbusOutcome::kOk) return;
+    const auto code =
+        outcome.result.outcome == ModbusOutcome::kRejected ? ErrorCode::kStagePosition : ErrorCode::kStageDisconnected;
+    throw Error(
+        code, "the drive at " + link_.description() + " did not take '" + outcome.name + "': " + outcome.result.error);
   }
 
   [[nodiscard]] StageCounts quantise(Micrometers target) const {
@@ -275,43 +261,42 @@ class ModbusZStage final : public ZStage {
     throw Error(ErrorCode::kStageLimit, message.str());
   }
 
-  [[nodiscard]] std::string alarm_text(int code) const {
-    std::ostringstream text;
-    text << "alarm 0x" << std::hex << std::uppercase << code;
-    const auto known = profile_.alarms.find(code);
-    text << ": " << (known == profile_.alarms.end() ? "see the drive's manual" : known->second);
-    return text.str();
-  }
-
   void require_no_alarm(const AxisSample& sample) const {
-    if (!sample.alarm) return;
-    throw Error(ErrorCode::kStageAlarm, "the drive at " + link_.description() + " reports " +
-                                            alarm_text(sample.alarm_code) + "; clear the cause, then reset the alarm");
+    if (sample.emergency_stop) {
+      throw Error(ErrorCode::kStageAlarm, "the emergency stop of the drive at " + link_.description() +
+                                              " is on; release it, reset the alarm, and home again");
+    }
+    if (sample.alarm) {
+      throw Error(ErrorCode::kStageAlarm, "the drive at " + link_.description() + " reports " +
+                                              alarm_text(profile_, sample.alarm_code) +
+                                              "; clear the cause, then reset the alarm");
+    }
+    if (sample.limit_positive || sample.limit_negative) {
+      throw Error(ErrorCode::kStageLimit, "the axis at " + link_.description() + " stands on its " +
+                                              (sample.limit_positive ? "positive" : "negative") +
+                                              " limit switch; move it away by hand, or home");
+    }
   }
 
   /// Sends the move. Without a usable answer it looks whether the axis obeys, and only if it does not, sends the same
   /// absolute target once more: an absolute move that did arrive is not repeated by that.
   void start_move(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
                   std::stop_token stop) {
-    const Values values{move.target_counts.value,
-                        std::max<std::int64_t>(1, std::llround(config_.speed_um_per_s * profile_.speed_units_per_um_s)),
-                        std::max<std::int64_t>(
-                            1, std::llround(config_.acceleration_um_per_s2 * profile_.acceleration_units_per_um_s2))};
+    const DriveValues values{move.target_counts.value, profile_.speed.value(config_.speed_um_per_s),
+                             profile_.acceleration.value(config_.acceleration_um_per_s2)};
     for (int attempt = 1;; ++attempt) {
-      bool unknown = false;
-      for (const DriveFrame& frame : profile_.move_absolute) {
-        const ModbusReply reply = link_.write(frame.address(), encoded(frame, values));
-        if (reply.outcome == ModbusOutcome::kRejected) {
-          throw Error(ErrorCode::kStagePosition,
-                      "the drive at " + link_.description() + " refused the move: " + reply.error);
-        }
-        if (reply.outcome == ModbusOutcome::kUnknown) {
-          spdlog::warn("no answer to a move to {} um: {}", move.target.value, reply.error);
-          unknown = true;
-          break;
-        }
+      const SequenceResult result = run_sequence(link_, profile_.move_absolute, values, ModbusPriority::kNormal, stop);
+      if (result.outcome == ModbusOutcome::kOk) return;
+      if (stop.stop_requested()) {
+        this->stop();
+        throw Error(ErrorCode::kAborted, "the axis was asked to stop");
       }
-      if (!unknown || has_begun(move, before, criterion, stop)) return;
+      if (result.outcome == ModbusOutcome::kRejected) {
+        throw Error(ErrorCode::kStagePosition,
+                    "the drive at " + link_.description() + " refused the move: " + result.error);
+      }
+      spdlog::warn("no answer to a move to {} um: {}", move.target.value, result.error);
+      if (has_begun(move, before, criterion, stop)) return;
       if (attempt == 2) {
         throw Error(ErrorCode::kStageDisconnected, "the drive at " + link_.description() + " answers no move command");
       }
@@ -329,7 +314,7 @@ class ModbusZStage final : public ZStage {
     const HostTime started = HostClock::now();
     for (HostTime last = started;;) {
       const AxisSample sample = halting_on_stop([&] { return sample_after(last, stop); });
-      last = sample.time;
+      last = sample.begun;
       if (obeys(sample, move, before, criterion)) return true;
       if (sample.time - started > profile_.start_within) return false;
     }
@@ -342,9 +327,13 @@ class ModbusZStage final : public ZStage {
     const HostTime commanded = HostClock::now();  // the last attempt, which move.started may lie well before
     for (HostTime last = commanded;;) {
       const AxisSample sample = sample_after(last, stop);
-      last = sample.time;
+      last = sample.begun;
       ++move.polls;
       require_no_alarm(sample);
+      if (!sample.homed) {
+        throw Error(ErrorCode::kStageNotHomed, "the drive at " + link_.description() +
+                                                   " lost its reference in the move, as after a power cut; home again");
+      }
       begun = begun || obeys(sample, move, before, criterion);
       if (!begun && sample.time - commanded > profile_.start_within) {
         throw Error(ErrorCode::kStagePosition, "the drive at " + link_.description() + " took the move to " +
@@ -370,17 +359,25 @@ class ModbusZStage final : public ZStage {
   const StageConfig config_;
   const DriveProfile profile_;
   ModbusLink link_;
-  mutable std::mutex mutex_;
-  std::condition_variable_any sampled_;
-  std::condition_variable_any wake_;
-  PositionLog log_;  // guarded by mutex_, as is all up to loss_
-  HostTime fast_until_{};
-  std::string loss_;
-  std::atomic<bool> connected_{true};
-  std::jthread poller_;  // last
+  std::atomic<AxisState> state_{AxisState::kIdentifying};
+  std::unique_ptr<AxisPoller> poller_;
 };
 
 }  // namespace
+
+ModbusLinkConfig modbus_link_config(const StageConfig& config) {
+  ModbusLinkConfig link;
+  if (config.transport == "rtu") {
+    const char parity = config.serial_parity == "none" ? 'N' : config.serial_parity == "odd" ? 'O' : 'E';
+    link.endpoint = ModbusSerialEndpoint{config.serial_device, config.serial_baud, parity, config.serial_stop_bits};
+  } else {
+    link.endpoint = ModbusTcpEndpoint{config.address, config.port};
+  }
+  link.unit = config.unit;
+  link.response_timeout = config.response_timeout;
+  link.quiet = config.quiet;
+  return link;
+}
 
 std::unique_ptr<ZStage> open_modbus_stage(const StageConfig& config) { return std::make_unique<ModbusZStage>(config); }
 

@@ -6,12 +6,17 @@
 
 #include "core/hw/z_stage.hpp"
 #include "drivers/driver_config.hpp"
+#include "drivers/modbus/modbus_transport.hpp"
 
 namespace fvd {
 
-/// Connects, reads the drive's state once, and keeps sampling it: fast while something moves or is measured, slowly
-/// else. A drive that stops answering makes every call throw kStageDisconnected within about a second; the object is
-/// dead then. Throws Error kBadConfig (profile), kStageDisconnected.
+/// The line a configuration describes.
+[[nodiscard]] ModbusLinkConfig modbus_link_config(const StageConfig& config);
+
+/// Connects, makes sure it is the profile's drive, arms the drive's own watchdog where there is one, and keeps sampling
+/// it: fast while something moves or is measured, slowly else. A drive that stops answering makes every call throw
+/// kStageDisconnected within about a second; the object is dead then. Throws Error kBadConfig (profile, line),
+/// kStageDisconnected, kStageLimit (the drive's own limits are narrower than the configured ones).
 [[nodiscard]] std::unique_ptr<ZStage> open_modbus_stage(const StageConfig& config);
 
 }  // namespace fvd

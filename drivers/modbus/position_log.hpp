@@ -12,7 +12,8 @@ namespace fvd {
 
 /// What one poll of the drive said.
 struct AxisSample {
-  HostTime time{};
+  HostTime begun{};  ///< before the first request of the poll was sent
+  HostTime time{};   ///< when the drive sampled the position
   Micrometers position;
   bool enabled = false;
   bool homed = false;
@@ -20,6 +21,9 @@ struct AxisSample {
   bool in_position = false;
   bool alarm = false;
   int alarm_code = 0;
+  bool limit_positive = false;
+  bool limit_negative = false;
+  bool emergency_stop = false;
 };
 
 /// A ring of fixed size, times increasing. context: one thread at a time.

@@ -31,19 +31,19 @@ TEST(DriveProfile, ReadsTheShippedOne) {
   EXPECT_EQ(profile.position.address, 0x00CC);
   EXPECT_EQ(profile.feedback, FeedbackSource::kMotorEncoder);
   ASSERT_EQ(profile.move_absolute.size(), 1U) << "the move is one frame";
-  EXPECT_EQ(profile.move_absolute[0].address(), 0x0058);
-  EXPECT_EQ(profile.alarms.at(0x67), "software overtravel");
+  EXPECT_EQ(std::get<WriteStep>(profile.move_absolute[0]).writes.front().reg.address, 0x0058);
+  EXPECT_EQ(alarm_text(profile, 0x67), "alarm 0x67: software overtravel");
 }
 
 TEST(DriveProfile, EncodesAndDecodesBothWordOrders) {
   for (const WordOrder order : {WordOrder::kHighFirst, WordOrder::kLowFirst}) {
-    const DriveRegister reg{10, RegisterType::kI32, order};
+    const DriveRegister reg{.address = 10, .type = RegisterType::kI32, .order = order};
     for (const std::int64_t value : {0LL, 1LL, -1LL, -500000LL, 2147483647LL, -2147483648LL}) {
-      EXPECT_EQ(RegisterBlock(10, encode(reg, value)).value(reg), value);
+      EXPECT_EQ(decode(reg, encode(reg, value).data()), value);
     }
   }
-  EXPECT_EQ(encode({0, RegisterType::kI32, WordOrder::kHighFirst}, -2), (std::vector<std::uint16_t>{0xFFFF, 0xFFFE}));
-  EXPECT_EQ(encode({0, RegisterType::kU32, WordOrder::kLowFirst}, 0x10002), (std::vector<std::uint16_t>{2, 1}));
+  EXPECT_EQ(encode({.type = RegisterType::kI32}, -2), (std::vector<std::uint16_t>{0xFFFF, 0xFFFE}));
+  EXPECT_EQ(encode({.type = RegisterType::kU32, .order = WordOrder::kLowFirst}, 0x10002), (std::vector<std::uint16_t>{2, 1}));
 }
 
 TEST(DriveProfile, RefusesEachKindOfMistakeWithItsPlace) {
@@ -59,10 +59,10 @@ TEST(DriveProfile, RefusesEachKindOfMistakeWithItsPlace) {
   EXPECT_PRED2(names, problems_of("replace", "/status/moving/register", "outputs"), "'outputs' is not one of");
   EXPECT_PRED2(names, problems_of("replace", "/status/moving/mask", 0), "/status/moving/mask");
   EXPECT_PRED2(names, problems_of("replace", "/sequences/stop/0/write/0/1", "$targets"), "/sequences/stop/0/write/0/1");
-  EXPECT_PRED2(names, problems_of("replace", "/sequences/stop", nlohmann::json::array()), "needs at least one frame");
+  EXPECT_PRED2(names, problems_of("replace", "/sequences/stop", nlohmann::json::array()), "needs at least one step");
   EXPECT_PRED2(names, problems_of("add", "/sequences/stop/0/write/-", nlohmann::json{"trigger", 1}),
                "must follow each other");
-  EXPECT_PRED2(names, problems_of("replace", "/poll/count", 10), "outside the poll block");
+  EXPECT_PRED2(names, problems_of("replace", "/poll/1/count", 1), "is in none of the blocks");
   EXPECT_PRED2(names, problems_of("replace", "/registers", 5), "/registers");
 }
 

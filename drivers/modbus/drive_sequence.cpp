@@ -1,0 +1,158 @@
+#include "drivers/modbus/drive_sequence.hpp"
+
+#include <condition_variable>
+#include <mutex>
+#include <sstream>
+#include <utility>
+
+namespace fvd {
+
+namespace {
+
+using std::chrono::milliseconds;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr milliseconds kLookEvery{2};  // a wait's pause between two looks
+
+/// False when the wait was ended by a stop request.
+bool pause(milliseconds time, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  never.wait_for(lock, stop, time, [] { return false; });
+  return !stop.stop_requested();
+}
+
+class Runner {
+ public:
+  Runner(ModbusLink& link, const DriveValues& values, ModbusPriority priority, std::stop_token stop)
+      : link_(link), values_(values), priority_(priority), stop_(std::move(stop)) {}
+
+  SequenceResult run(const DriveSequence& sequence) {
+    for (const DriveStep& step : sequence) {
+      SequenceResult result = std::visit([this](const auto& s) { return run_step(s); }, step);
+      if (result.outcome != ModbusOutcome::kOk) return result;
+    }
+    return {};
+  }
+
+ private:
+  [[nodiscard]] std::int64_t number(const DriveValue& value) const {
+    if (const auto* plain = std::get_if<std::int64_t>(&value)) return *plain;
+    switch (std::get<DriveVariable>(value)) {
+      case DriveVariable::kTarget:
+        return values_.target;
+      case DriveVariable::kSpeed:
+        return values_.speed;
+      case DriveVariable::kAcceleration:
+        return values_.acceleration;
+    }
+    return 0;
+  }
+
+  static SequenceResult ended(const ModbusReply& reply, const std::string& what) {
+    if (reply.outcome == ModbusOutcome::kOk) return {};
+    return {reply.outcome, what + ": " + reply.error};
+  }
+  static SequenceResult interrupted(const std::string& what) {
+    return {ModbusOutcome::kUnknown, what + ": the axis was asked to stop"};
+  }
+
+  SequenceResult run_step(const WriteStep& step) {
+    std::vector<std::uint16_t> words;
+    for (const RegisterWrite& write : step.writes) {
+      const auto encoded = encode(write.reg, number(write.value));
+      words.insert(words.end(), encoded.begin(), encoded.end());
+    }
+    const DriveRegister& first = step.writes.front().reg;
+    return ended(link_.write(first.table, first.address, words, priority_, first.write_single),
+                 "write of " + first.name);
+  }
+
+  SequenceResult change(const DriveRegister& reg, std::uint32_t set, std::uint32_t clear) {
+    const std::string what = "change of " + reg.name;
+    const ModbusReply read = link_.read(reg.table, reg.address, reg.words(), priority_);
+    if (read.outcome != ModbusOutcome::kOk) return ended(read, what);
+    const auto now = static_cast<std::uint32_t>(decode(reg, read.values.data()));
+    const auto words = encode(reg, std::int64_t{(now & ~clear) | set});
+    return ended(link_.write(reg.table, reg.address, words, priority_, reg.write_single), what);
+  }
+
+  SequenceResult run_step(const ModifyStep& step) { return change(step.reg, step.set, step.clear); }
+
+  SequenceResult run_step(const PulseStep& step) {
+    SequenceResult result = change(step.reg, step.mask, 0);
+    if (result.outcome != ModbusOutcome::kOk) return result;
+    const bool on = pause(step.on, stop_);
+    result = change(step.reg, 0, step.mask);  // a stop request leaves no bit set
+    if (result.outcome != ModbusOutcome::kOk) return result;
+    return on && pause(step.off, stop_) ? SequenceResult{} : interrupted("pulse of " + step.reg.name);
+  }
+
+  SequenceResult run_step(const DelayStep& step) {
+    return pause(step.time, stop_) ? SequenceResult{} : interrupted("delay");
+  }
+
+  SequenceResult run_step(const WaitStep& step) {
+    const auto deadline = SteadyClock::now() + step.timeout;
+    for (;;) {
+      const auto begun = SteadyClock::now();  // a look that began in time counts however long it took
+      const auto holds = look(step.condition);
+      if (!holds) return {ModbusOutcome::kUnknown, "wait: the drive does not answer"};
+      if (*holds) return {};
+      if (begun > deadline) {
+        return {ModbusOutcome::kRejected,
+                "wait for " + names(step.condition) + " ran out after " + std::to_string(step.timeout.count()) + " ms"};
+      }
+      if (!pause(kLookEvery, stop_)) return interrupted("wait");
+    }
+  }
+
+  SequenceResult run_step(const ExpectStep& step) {
+    for (const RegisterWrite& expected : step.values) {
+      const auto value = read_register(link_, expected.reg, priority_);
+      if (!value) return {ModbusOutcome::kUnknown, "read of " + expected.reg.name + ": no answer"};
+      if (*value != number(expected.value)) {
+        return {ModbusOutcome::kRejected, expected.reg.name + " reads " + std::to_string(*value) + ", expected " +
+                                              std::to_string(number(expected.value))};
+      }
+    }
+    return {};
+  }
+
+  SequenceResult run_step(const std::shared_ptr<const BranchStep>& step) {
+    const auto holds = look(step->condition);
+    if (!holds) return {ModbusOutcome::kUnknown, "branch: the drive does not answer"};
+    return run(*holds ? step->then : step->otherwise);
+  }
+
+  std::optional<bool> look(const DriveCondition& condition) {
+    return condition.holds([this](const DriveRegister& reg) { return read_register(link_, reg, priority_); });
+  }
+
+  static std::string names(const DriveCondition& condition) {
+    std::string all;
+    for (const DriveRegister& reg : condition.registers()) all += (all.empty() ? "" : ", ") + reg.name;
+    return all;
+  }
+
+  ModbusLink& link_;
+  const DriveValues& values_;
+  ModbusPriority priority_;
+  std::stop_token stop_;
+};
+
+}  // namespace
+
+SequenceResult run_sequence(ModbusLink& link, const DriveSequence& sequence, const DriveValues& values,
+                            ModbusPriority priority, std::stop_token stop) {
+  return Runner(link, values, priority, std::move(stop)).run(sequence);
+}
+
+std::optional<std::int64_t> read_register(ModbusLink& link, const DriveRegister& reg, ModbusPriority priority) {
+  const ModbusReply reply = link.read(reg.table, reg.address, reg.words(), priority);
+  if (reply.outcome != ModbusOutcome::kOk) return std::nullopt;
+  return decode(reg, reply.values.data());
+}
+
+}  // namespace fvd
