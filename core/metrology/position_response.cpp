@@ -17,19 +17,20 @@ void visit(Approach& approach, double error_um) {
 
 }  // namespace
 
+double same_position_um(double step_quantum_um) { return std::max(step_quantum_um / 2, 1e-6); }
+
 std::vector<PositionResponse> responses(const std::vector<StagePoint>& points, const std::vector<double>& error_um,
                                         double step_quantum_um) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&points](std::size_t a, std::size_t b) { return points[a].quantised_um < points[b].quantised_um; });
-  const double gap = std::max(step_quantum_um / 2, 1e-6);
+  const double gap = same_position_um(step_quantum_um);
   std::vector<PositionResponse> list;
-  double previous = 0.0;
   for (const std::size_t i : order) {
     const StagePoint& point = points[i];
-    if (list.empty() || point.quantised_um - previous > gap) list.push_back({point.quantised_um, {}, {}});
-    previous = point.quantised_um;
+    if (list.empty() || point.quantised_um - list.back().quantised_um > gap)
+      list.push_back({point.quantised_um, {}, {}});
     visit(point.direction > 0 ? list.back().below : list.back().above, error_um[i]);
   }
   return list;

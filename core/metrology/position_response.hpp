@@ -22,8 +22,10 @@ struct PositionResponse {
   Approach above;  ///< approached from above, direction -1
 };
 
-/// error_um: one a point, as large as points, not empty. Points closer than half a quantum (1e-6 um where it is
-/// unknown) to their neighbour are one position. Ascending. context: pure.
+/// Quantised positions not further apart are one position: half a quantum, 1e-6 um where it is unknown (0).
+[[nodiscard]] double same_position_um(double step_quantum_um);
+
+/// error_um: one a point, as large as points. Ascending. context: pure.
 [[nodiscard]] std::vector<PositionResponse> responses(const std::vector<StagePoint>& points,
                                                       const std::vector<double>& error_um, double step_quantum_um);
 

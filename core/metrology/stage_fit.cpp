@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "core/metrology/design_matrix.hpp"
+#include "core/metrology/position_response.hpp"
 
 namespace fvd {
 
@@ -16,6 +17,7 @@ using Index = Eigen::Index;
 constexpr double kPi = std::numbers::pi;
 constexpr double kCollinear = 0.99;
 constexpr double kLeastTemperatureSpanK = 0.5;  // sensors of drives resolve 0.1 to 1 K
+constexpr double kNearlyALead = 0.999;          // quantisation takes something off a range of whole leads
 constexpr double kSecondsPerMinute = 60.0;
 
 /// Centred and divided by the span, so that the columns of the fit are of one size.
@@ -77,7 +79,7 @@ void add_lead(DesignMatrix& design, Places& places, const Scaled& z, const std::
     caveats.emplace_back("the screw lead is unknown: a periodic error is not told from noise and can bias alpha_z");
     return;
   }
-  if (z.span < *lead_um) {
+  if (z.span < kNearlyALead * *lead_um) {
     caveats.emplace_back("the range is shorter than one screw lead: the lead error is not resolved and biases alpha_z");
     return;
   }
@@ -113,13 +115,14 @@ bool add_temperature(DesignMatrix& design, Places& places, const Scaled& tempera
     caveats.emplace_back("the temperature moved by less than 0.5 K: no drift per kelvin");
     return false;
   }
-  if (places.time && r_squared(time.values, temperature.values) > kCollinear) {
+  const bool with_time = r_squared(time.values, temperature.values) > kCollinear;
+  if (with_time && places.time) {
     caveats.emplace_back(
         "temperature is collinear with time: the drift per kelvin is the drift rate over the temperature rate, not a "
         "fit of its own");
     return true;
   }
-  places.temperature = design.add(temperature.values);
+  if (!with_time) places.temperature = design.add(temperature.values);
   if (!places.temperature) {
     caveats.emplace_back("the temperature is not distinguishable from the other terms: no drift per kelvin");
   }
@@ -144,7 +147,7 @@ StageFit fit_stage(const std::vector<StagePoint>& points, const StageReportOptio
 
   DesignMatrix design(error.size());
   Places places;
-  places.slope = design.add(z.values);
+  if (z.span > same_position_um(options.step_quantum_um)) places.slope = design.add(z.values);
   if (places.slope) {
     add_lead(design, places, z, options.lead_um, caveats);
   } else {

@@ -29,7 +29,7 @@ struct LeadTerm {
 /// a straight line alone is biased by the lead error (see alpha_z_bias_bound), reversal and drift would hide in it too.
 /// A term is left out, with a caveat, where the points cannot tell it from the terms before it (r^2 > 0.99).
 struct StageFit {
-  double offset_um = 0.0;           ///< at z = 0, mean time and temperature, mean of both directions
+  double offset_um = 0.0;           ///< at z = 0, mean time and temperature, mean of both directions if both were
   std::optional<Estimate> alpha_z;  ///< amplification coefficient, slope of the response, 1 = ideal
   std::optional<LeadTerm> lead;
   std::optional<Estimate> reversal_um;       ///< from below minus from above, as a mean over the range

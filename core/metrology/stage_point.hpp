@@ -29,8 +29,12 @@ struct StageReportOptions {
   std::optional<double> lead_um;        ///< travel per turn of the screw, from the drive profile
 };
 
+/// A kilometre: no stage is there.
+inline constexpr double kLargestPositionUm = 1e9;
+
 /// Throws Error kBadInput naming the first point (0-based) or option that is not finite or out of its range: direction
-/// other than +1 and -1, negative run, polls or time, a lead or a resolution that is no length. context: pure.
+/// other than +1 and -1, a position beyond kLargestPositionUm, negative run, polls or time, a lead or a resolution that
+/// is no length. context: pure.
 void check_stage_points(const std::vector<StagePoint>& points, const StageReportOptions& options);
 
 }  // namespace fvd

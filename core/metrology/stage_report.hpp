@@ -23,7 +23,7 @@ struct ErrorFigures {
   double p95_um = 0.0;          ///< 95th percentile of the magnitude
 };
 
-/// Straight line through measured against quantised positions alone, all points alike.
+/// Straight line through measured against quantised positions alone, all points alike, drift and all.
 struct LinearFit {
   Estimate alpha_z;                          ///< slope; the lead error can bias it, see StageFit::alpha_z
   double offset_um = 0.0;                    ///< measured position where the line passes z = 0

@@ -123,6 +123,17 @@ TEST(StageFit, OnePassOneWayCannotTellDriftFromSlope) {
   EXPECT_THAT(caveats, Contains(HasSubstr("drift is not distinguishable")));
 }
 
+TEST(StageFit, OnePassWithRisingTemperatureBlamesNoTerm) {
+  test::SyntheticStage stage;
+  stage.runs = 1;
+  stage.down = false;
+  stage.drift_um_per_k = 2.0;
+  stage.temperature_c = [](double time_s) { return 20.0 + 2.0 * time_s / 60.0; };
+  const auto [fit, caveats] = fitted(test::synthetic_points(stage));
+  EXPECT_FALSE(fit.drift_um_per_min || fit.drift_um_per_k);
+  EXPECT_THAT(caveats, Contains(HasSubstr("temperature is not distinguishable")));
+}
+
 TEST(StageFit, ALeadThatThePositionsCannotShowIsLeftOut) {
   test::SyntheticStage stage;
   stage.range_um = 6000.0;

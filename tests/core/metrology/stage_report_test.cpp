@@ -163,6 +163,24 @@ TEST(StageReport, AllAtOnePositionHasNoSlope) {
   EXPECT_NEAR(report.repeatability->pooled_sd_um, 0.02, 0.004);
 }
 
+TEST(StageReport, RoundingOfOnePositionIsNoRange) {
+  test::SyntheticStage stage;
+  stage.positions = 1;
+  auto points = test::synthetic_points(stage);
+  points[2].quantised_um += 1e-10;
+  const StageReport report = make_stage_report(points, test::scale_options());
+  EXPECT_FALSE(report.linear || report.fit->alpha_z);
+  EXPECT_EQ(report.reversal->positions, 1);
+}
+
+TEST(StageReport, ARangeOfWholeLeadsIsNotShortForItsQuantisation) {
+  auto points = test::synthetic_points({});
+  for (auto& p : points) {
+    if (p.quantised_um > 3119.0) p.quantised_um -= 0.01;
+  }
+  EXPECT_THAT(make_stage_report(points, test::scale_options()).caveats, Not(Contains(HasSubstr("shorter"))));
+}
+
 TEST(StageReport, UnknownLeadIsSaid) {
   StageReportOptions options = test::scale_options();
   options.lead_um.reset();
@@ -186,6 +204,7 @@ TEST(StageReport, RefusesInputThatIsNotFiniteAndNamesThePoint) {
   EXPECT_THAT(refused([](StagePoint& p) { p.measured_um = kNan; }), HasSubstr("point 7: measured_um"));
   EXPECT_THAT(refused([](StagePoint& p) { p.quantised_um = kInf; }), HasSubstr("point 7: quantised_um"));
   EXPECT_THAT(refused([](StagePoint& p) { p.commanded_um = -kInf; }), HasSubstr("point 7: commanded_um"));
+  EXPECT_THAT(refused([](StagePoint& p) { p.measured_um = 1e12; }), HasSubstr("point 7: measured_um"));
   EXPECT_THAT(refused([](StagePoint& p) { p.time_s = kNan; }), HasSubstr("point 7: time_s"));
   EXPECT_THAT(refused([](StagePoint& p) { p.temperature_c = kNan; }), HasSubstr("point 7: temperature_c"));
   EXPECT_THAT(refused([](StagePoint& p) { p.settle_ms = -1.0; }), HasSubstr("point 7: settle_ms"));
