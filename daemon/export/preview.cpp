@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/units.hpp"
 #include "daemon/export/axis_ticks.hpp"
+#include "daemon/export/page_text.hpp"
 #include "daemon/export/png_bytes.hpp"
 
 namespace fvd {
@@ -25,13 +26,10 @@ constexpr int kMinBarHeight = 120;
 constexpr int kBarWidth = 26;
 constexpr int kBarSpace = 190;  // gap, bar, tick marks and labels
 
-const cv::Scalar kBackground(255, 255, 255);
-const cv::Scalar kInk(40, 40, 40);
-const cv::Scalar kPaleInk(110, 110, 110);
+using page_colour::kBackground;
+using page_colour::kInk;
+using page_colour::kPaleInk;
 const cv::Scalar kHole(170, 170, 170);
-const cv::Scalar kWarning(20, 20, 180);
-
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
 /// Robust limits, widened where the map is flat or empty so that they always differ.
 struct Limits {
@@ -104,35 +102,6 @@ cv::Mat coloured(const DrawnMap& drawn, const Limits& limits) {
   return colours;
 }
 
-int text_width(const std::string& text, double size, int thickness = 1) {
-  int baseline = 0;
-  return cv::getTextSize(text, kFont, size, thickness, &baseline).width;
-}
-
-void put(cv::Mat& page, const std::string& text, cv::Point at, double size, const cv::Scalar& colour,
-         int thickness = 1) {
-  cv::putText(page, text, at, kFont, size, colour, thickness, cv::LINE_AA);
-}
-
-/// Cuts text that would run out of the page.
-std::string fitted(std::string text, double size, int room) {
-  if (text_width(text, size) <= room) return text;
-  while (!text.empty() && text_width(text + "...", size) > room) text.pop_back();
-  return text + "...";
-}
-
-void draw_header(cv::Mat& page, const PreviewText& text) {
-  int right = page.cols - kMargin;
-  if (text.simulated) {
-    const std::string badge = "SIMULATED";
-    right -= text_width(badge, 0.6, 2);
-    put(page, badge, {right, 38}, 0.6, kWarning, 2);
-    right -= kMargin;
-  }
-  put(page, fitted(text.title, 0.75, right - kMargin), {kMargin, 38}, 0.75, kInk);
-  put(page, fitted(text.subtitle, 0.45, page.cols - 2 * kMargin), {kMargin, 64}, 0.45, kPaleInk);
-}
-
 void draw_colour_bar(cv::Mat& page, const cv::Rect& map, const Limits& limits, bool empty) {
   const cv::Rect bar(map.br().x + kMargin, map.y, kBarWidth, map.height);
   cv::Mat ramp(bar.height, 1, CV_8U);
@@ -144,9 +113,9 @@ void draw_colour_bar(cv::Mat& page, const cv::Rect& map, const Limits& limits, b
              cv::INTER_NEAREST);
   colours.copyTo(page(bar));
   cv::rectangle(page, bar, kInk);
-  put(page, "um", {bar.x, bar.y - 8}, 0.5, kInk);
+  put_text(page, "um", {bar.x, bar.y - 8}, 0.5, kInk);
   if (empty) {
-    put(page, "no valid points", {bar.br().x + 8, bar.y + 16}, 0.45, kPaleInk);
+    put_text(page, "no valid points", {bar.br().x + 8, bar.y + 16}, 0.45, kPaleInk);
     return;
   }
   const AxisTicks ticks = axis_ticks(limits.low_um, limits.high_um, std::clamp(bar.height / 50, 3, 11));
@@ -154,7 +123,7 @@ void draw_colour_bar(cv::Mat& page, const cv::Rect& map, const Limits& limits, b
     const double fraction = (value - limits.low_um) / (limits.high_um - limits.low_um);
     const int y = bar.y + static_cast<int>(std::lround((1.0 - fraction) * (bar.height - 1)));
     cv::line(page, {bar.br().x, y}, {bar.br().x + 5, y}, kInk);
-    put(page, fixed_text(value, ticks.decimals), {bar.br().x + 10, y + 5}, 0.45, kInk);
+    put_text(page, fixed_text(value, ticks.decimals), {bar.br().x + 10, y + 5}, 0.45, kInk);
   }
 }
 
@@ -164,7 +133,7 @@ void draw_footer(cv::Mat& page, const cv::Rect& map, const PreviewText& text, do
   const cv::Rect sample(map.x, y - 12, 14, 14);
   cv::rectangle(page, sample, kHole, cv::FILLED);
   cv::rectangle(page, sample, kInk);
-  put(page, "no valid height", {map.x + 22, y}, 0.45, kInk);
+  put_text(page, "no valid height", {map.x + 22, y}, 0.45, kInk);
   if (text.pitch_x_um <= 0) return;
   const double length_um = round_step(map.width * um_per_drawn_px / 4);
   const int length_px = std::max(1, static_cast<int>(std::lround(length_um / um_per_drawn_px)));
@@ -173,7 +142,7 @@ void draw_footer(cv::Mat& page, const cv::Rect& map, const PreviewText& text, do
   const int label_width = text_width(label, 0.45);
   const int left = std::max(map.x + 180, map.br().x - label_width - 8 - length_px);  // beside the word, never on it
   cv::rectangle(page, cv::Rect(left, y - 7, length_px, 4), kInk, cv::FILLED);
-  put(page, label, {left + length_px + 8, y}, 0.45, kInk);
+  put_text(page, label, {left + length_px + 8, y}, 0.45, kInk);
 }
 
 }  // namespace
@@ -189,7 +158,7 @@ std::string encode_preview_png(const HeightMap& map, const HeightSummary& summar
     const cv::Rect place(kMargin, kHeaderHeight, picture.cols, picture.rows);
     picture.copyTo(page(place));
     cv::rectangle(page, cv::Rect(place.x - 1, place.y - 1, place.width + 2, place.height + 2), kPaleInk);
-    draw_header(page, text);
+    draw_page_header(page, text.title, text.subtitle, text.simulated, kMargin);
     const cv::Rect frame(kMargin, kHeaderHeight, picture.cols, map_height);
     draw_colour_bar(page, frame, limits, !summary.height);
     draw_footer(page, frame, text, text.pitch_x_um * map.height_m.width() / picture.cols);

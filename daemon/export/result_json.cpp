@@ -1,12 +1,11 @@
 #include "daemon/export/result_json.hpp"
 
-#include <cmath>
-#include <ctime>
 #include <map>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/export/height_summary.hpp"
+#include "daemon/export/json_values.hpp"
 
 namespace fvd {
 
@@ -14,28 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
-Json rounded(double value, int decimals) {
-  const double factor = std::pow(10.0, decimals);
-  const double result = std::round(value * factor) / factor;
-  return std::isfinite(result) ? Json(result) : Json(nullptr);
-}
-
 Json um(double value) { return rounded(value, 4); }
 Json ms(double value) { return rounded(value, 3); }
-
-std::string iso8601_utc(std::chrono::system_clock::time_point time) {
-  const auto millis = std::chrono::floor<std::chrono::milliseconds>(time);
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(millis);
-  const std::time_t t = std::chrono::system_clock::to_time_t(seconds);
-  std::tm utc{};
-  gmtime_r(&t, &utc);
-  char text[64];
-  const auto length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
-  const std::string fraction = std::to_string(1000 + (millis - seconds).count()).substr(1);
-  return std::string(text, length) + "." + fraction + "Z";
-}
 
 Json height_values(const HeightSummary& summary) {
   Json json;
