@@ -68,11 +68,17 @@ std::optional<AxisSample> AxisPoller::read_sample(std::string& error) {
   sample.position = Micrometers{profile_.direction * static_cast<double>(image.value(profile_.position).value_or(0)) /
                                 profile_.counts_per_um};
   sample.enabled = holds(profile_.enabled);
-  sample.homed = holds(profile_.homed);
+  sample.homed = profile_.homed ? holds(*profile_.homed) : homed_.load();
   sample.moving = holds(profile_.moving);
   sample.in_position = holds(profile_.in_position);
   sample.alarm = holds(profile_.alarm);
-  sample.alarm_code = static_cast<int>(image.value(profile_.alarm_code).value_or(0));
+  if (sample.alarm) {
+    auto code = image.value(profile_.alarm_code);
+    if (!code) code = read_register(link_, profile_.alarm_code);
+    sample.alarm_code = static_cast<int>(code.value_or(0));
+    const auto known = profile_.alarms.find(sample.alarm_code);
+    if (known != profile_.alarms.end() && known->second.position_lost) homed_ = false;
+  }
   sample.limit_positive = holds_if(profile_.limit_positive);
   sample.limit_negative = holds_if(profile_.limit_negative);
   sample.emergency_stop = holds_if(profile_.emergency_stop);
@@ -97,7 +103,7 @@ void AxisPoller::poll_once() {
   if (doubtful()) {
     // A jump is real after a power cycle or a preset; then the second reading says the same.
     ++implausible_;
-    spdlog::warn("stage: a position of {} um cannot have been reached; reading again", sample->position.value);
+    spdlog::debug("stage: a position of {} um cannot have been reached; reading again", sample->position.value);
     sample = read_sample(error);
   }
   if (!sample) {

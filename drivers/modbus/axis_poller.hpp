@@ -34,6 +34,8 @@ class AxisPoller {
   [[nodiscard]] AxisSample sample_after(HostTime after, std::stop_token stop);
   [[nodiscard]] PositionMean mean(HostTime from, HostTime to);
   [[nodiscard]] std::vector<StageTemperature> temperatures() const;
+  /// For drives that have no bit that says so.
+  void remember_homed(bool homed) noexcept { homed_ = homed; }
   [[nodiscard]] bool connected() const noexcept { return connected_; }
   [[nodiscard]] std::uint64_t implausible() const noexcept { return implausible_; }
 
@@ -57,6 +59,7 @@ class AxisPoller {
   std::vector<StageTemperature> temperatures_;
   HostTime temperatures_read_{};  // poller only
   std::atomic<bool> connected_{true};
+  std::atomic<bool> homed_{false};
   std::atomic<std::uint64_t> implausible_{0};
   std::jthread thread_;  // last
 };

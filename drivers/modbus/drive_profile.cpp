@@ -163,7 +163,6 @@ class ProfileReader {
   void read_status() {
     const json& status = object("status");
     const std::map<std::string, DriveCondition*> wanted{{"enabled", &profile_.enabled},
-                                                        {"homed", &profile_.homed},
                                                         {"moving", &profile_.moving},
                                                         {"in_position", &profile_.in_position},
                                                         {"alarm", &profile_.alarm}};
@@ -174,6 +173,11 @@ class ProfileReader {
       } else {
         *condition = parts_.condition(pointer, status[name]);
       }
+    }
+    if (!status.contains("homed")) {
+      problems_.push_back({"/status/homed", "is missing and has no default; \"remembered\" = since the last homing"});
+    } else if (status["homed"] != "remembered") {
+      profile_.homed = parts_.condition("/status/homed", status["homed"]);
     }
     const std::map<std::string, std::optional<DriveCondition>*> known{{"limit_positive", &profile_.limit_positive},
                                                                       {"limit_negative", &profile_.limit_negative},
@@ -316,15 +320,14 @@ class ProfileReader {
                                         " is in none of the blocks of /poll"});
     };
     polled("/feedback/register", profile_.position);
-    polled("/alarm_register", profile_.alarm_code);
     for (const auto& [name, condition] : {std::pair{"enabled", &profile_.enabled},
-                                          {"homed", &profile_.homed},
                                           {"moving", &profile_.moving},
                                           {"in_position", &profile_.in_position},
                                           {"alarm", &profile_.alarm}}) {
       for (const DriveRegister& reg : condition->registers()) polled(std::string("/status/") + name, reg);
     }
-    for (const auto* condition : {&profile_.limit_positive, &profile_.limit_negative, &profile_.emergency_stop}) {
+    for (const auto* condition :
+         {&profile_.homed, &profile_.limit_positive, &profile_.limit_negative, &profile_.emergency_stop}) {
       if (!*condition) continue;
       for (const DriveRegister& reg : (*condition)->registers()) polled("/status", reg);
     }

@@ -74,10 +74,10 @@ struct DriveProfile {
 
   std::vector<PollBlock> poll;  ///< read in this order; the one with the position last, so that status is not newer
   DriveRegister position;
-  DriveRegister alarm_code;
+  DriveRegister alarm_code;  ///< read on its own, in alarm, where no block holds it
 
   DriveCondition enabled;
-  DriveCondition homed;
+  std::optional<DriveCondition> homed;  ///< nothing: the drive has no such bit; homed since the last homing then
   DriveCondition moving;
   DriveCondition in_position;
   DriveCondition alarm;

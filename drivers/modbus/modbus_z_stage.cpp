@@ -88,16 +88,24 @@ class ModbusZStage final : public ZStage {
     require_no_alarm(sample_after(HostClock::now(), stop));
     const Doing homing(state_, AxisState::kHoming);
     const HostTime started = HostClock::now();
-    require_done(run(profile_.home, "home", stop));
+    poller_->remember_homed(false);
+    const Outcome sent = run(profile_.home, "home", stop);
+    halting_on_stop([&] {
+      if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
+    });
+    require_done(sent);
     bool moved = false;
     for (HostTime last = HostClock::now();;) {
       const AxisSample sample = halting_on_stop([&] { return sample_after(last, stop); });
       last = sample.begun;
       if (!sample.limit_positive && !sample.limit_negative) require_no_alarm(sample);  // a reference may be a limit
-      moved = moved || sample.moving || !sample.homed;
+      moved = moved || sample.moving || (profile_.homed && !sample.homed);
       // An axis that was homed and rests at its origin never shows motion: then the start time decides.
       const bool begun = moved || sample.time - started > profile_.start_within;
-      if (begun && sample.homed && !sample.moving) return;
+      if (begun && !sample.moving && (sample.homed || !profile_.homed)) {
+        poller_->remember_homed(true);
+        return;
+      }
       if (sample.time - started > profile_.home_timeout) {
         this->stop();
         throw Error(ErrorCode::kTimeout,
@@ -119,6 +127,8 @@ class ModbusZStage final : public ZStage {
     if (!before.homed) {
       throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + link_.description() + " before it is homed");
     }
+    // A drive that was halted by its quick stop, or came back from an alarm, is disabled; this is a new command.
+    if (!before.enabled) require_done(run(profile_.enable, "enable", stop));
     const Doing moving(state_, AxisState::kMoving);
     move.started = HostClock::now();
     start_move(move, before, criterion, stop);
@@ -227,12 +237,17 @@ class ModbusZStage final : public ZStage {
 
   // --- moving ---
 
+  [[nodiscard]] DriveValues values(StageCounts target) const {
+    return {target.value, profile_.speed.value(config_.speed_um_per_s),
+            profile_.acceleration.value(config_.acceleration_um_per_s2)};
+  }
+
   struct Outcome {
     SequenceResult result;
     const char* name;
   };
   Outcome run(const DriveSequence& sequence, const char* name, std::stop_token stop) {
-    return {run_sequence(link_, sequence, {}, ModbusPriority::kNormal, std::move(stop)), name};
+    return {run_sequence(link_, sequence, values({}), ModbusPriority::kNormal, std::move(stop)), name};
   }
 
   /// For sequences whose repetition would do no harm: anything but "ok" is an error.
@@ -282,10 +297,9 @@ class ModbusZStage final : public ZStage {
   /// absolute target once more: an absolute move that did arrive is not repeated by that.
   void start_move(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
                   std::stop_token stop) {
-    const DriveValues values{move.target_counts.value, profile_.speed.value(config_.speed_um_per_s),
-                             profile_.acceleration.value(config_.acceleration_um_per_s2)};
     for (int attempt = 1;; ++attempt) {
-      const SequenceResult result = run_sequence(link_, profile_.move_absolute, values, ModbusPriority::kNormal, stop);
+      const SequenceResult result =
+          run_sequence(link_, profile_.move_absolute, values(move.target_counts), ModbusPriority::kNormal, stop);
       if (result.outcome == ModbusOutcome::kOk) return;
       if (stop.stop_requested()) {
         this->stop();

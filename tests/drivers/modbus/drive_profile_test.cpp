@@ -1,5 +1,6 @@
 #include "drivers/modbus/drive_profile.hpp"
 
+#include <filesystem>
 #include <string>
 
 #include "config/strict_json.hpp"
@@ -33,6 +34,35 @@ TEST(DriveProfile, ReadsTheShippedOne) {
   ASSERT_EQ(profile.move_absolute.size(), 1U) << "the move is one frame";
   EXPECT_EQ(std::get<WriteStep>(profile.move_absolute[0]).writes.front().reg.address, 0x0058);
   EXPECT_EQ(alarm_text(profile, 0x67), "alarm 0x67: software overtravel");
+}
+
+TEST(DriveProfile, ReadsEveryShippedOne) {
+  int profiles = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(FVD_SOURCE_DIR "/config/drives")) {
+    if (entry.path().extension() != ".json") continue;
+    SCOPED_TRACE(entry.path().string());
+    DriveProfile profile;
+    EXPECT_NO_THROW(profile = load_drive_profile(entry.path()));
+    EXPECT_FALSE(profile.move_absolute.empty());
+    ++profiles;
+  }
+  EXPECT_GE(profiles, 6);
+}
+
+TEST(DriveProfile, EncodesAndDecodesBaseThousand) {
+  const DriveRegister reg{.type = RegisterType::kI32, .codec = RegisterCodec::kBase1000};
+  for (const std::int64_t value : {0LL, 7LL, -7LL, 12345LL, -98765LL, 32767999LL}) {
+    EXPECT_EQ(decode(reg, encode(reg, value).data()), value);
+  }
+  EXPECT_EQ(encode(reg, 12345), (std::vector<std::uint16_t>{12, 345}));
+}
+
+TEST(DriveProfile, ClampsAndInvertsUnits) {
+  const DriveUnit time{.factor = 16666667.0, .inverse = true, .min = 1, .max = 32767};
+  EXPECT_EQ(time.value(20000.0), 833);
+  EXPECT_EQ(time.value(1.0), 32767);
+  EXPECT_EQ(time.value(1e12), 1);
+  EXPECT_EQ((DriveUnit{.factor = 0.06, .max = 5000}.value(1e9)), 5000);
 }
 
 TEST(DriveProfile, EncodesAndDecodesBothWordOrders) {
