@@ -137,6 +137,7 @@ MoveRecord FakeZStage::move_to(Micrometers target, const SettleCriterion& /*crit
   move.started = clock_.now();
   clock_.advance_to(clock_.now() + milliseconds(50));
   move.settled = clock_.now();
+  move.halted = move.settled;
   move.polls = 3;
   return move;
 }

@@ -95,6 +95,7 @@ struct MoveRecord {
   StageCounts target_counts;
   Micrometers position;  ///< measured, last sample of the settle criterion
   HostTime started{};
+  HostTime halted{};  ///< first sample after the commanded motion had ended
   HostTime settled{};
   int polls = 0;
 };

@@ -12,6 +12,7 @@
 #include "daemon/ctl/job_commands.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/rpc_client.hpp"
+#include "daemon/ctl/stage_command.hpp"
 #include "daemon/ctl/suggest_command.hpp"
 #include "daemon/version.hpp"
 
@@ -32,6 +33,7 @@ struct Arguments {
   std::string params = "{}";
   ProcessArguments process;
   std::string image;
+  StageArguments stage;
 };
 
 RpcClient connect(const Arguments& arguments) {
@@ -116,6 +118,54 @@ std::string check_seq(const std::string& text) {
 
 using Command = std::function<int()>;
 
+void add_line_options(CLI::App& sub, StageArguments& a) {
+  sub.add_option("profile", a.stage.profile, "drive profile, a JSON file")->required()->check(CLI::ExistingFile);
+  CLI::Option* tcp = sub.add_option("--tcp", a.tcp, "HOST or HOST:PORT of the drive");
+  sub.add_option("--serial", a.stage.serial_device, "serial port, best by its name in /dev/serial/by-id")
+      ->excludes(tcp);
+  sub.add_option("--baud", a.stage.serial_baud, "of the serial port")->capture_default_str();
+  sub.add_option("--parity", a.stage.serial_parity, "of the serial port")
+      ->check(CLI::IsMember({"none", "even", "odd"}))
+      ->capture_default_str();
+  sub.add_option("--stop-bits", a.stage.serial_stop_bits, "of the serial port")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  sub.add_option("--unit", a.stage.unit, "Modbus unit id")->check(CLI::Range(1, 247))->capture_default_str();
+}
+
+/// A length in um as an option.
+void add_length(CLI::App& sub, const char* name, Micrometers& value, const char* help) {
+  sub.add_option(name, value.value, help)->capture_default_str();
+}
+
+void add_stage_commands(CLI::App& app, StageArguments& a, const Terminal& terminal, Command& chosen) {
+  CLI::App* stage = app.add_subcommand("stage", "look at a drive, or measure it, without the daemon");
+  stage->require_subcommand(1);
+  CLI::App* check = stage->add_subcommand("check", "compare a drive with its profile; reads only, nothing moves");
+  add_line_options(*check, a);
+  check->add_flag("--json", a.json, "print JSON");
+  check->callback([&] { chosen = [&] { return run_stage_check(a, terminal); }; });
+
+  CLI::App* accuracy = stage->add_subcommand("accuracy", "measure the stage's steps; MOVES the axis");
+  add_line_options(*accuracy, a);
+  accuracy->add_option("--from-um", a.plan.from.value, "lowest position")->required();
+  accuracy->add_option("--to-um", a.plan.to.value, "highest position")->required();
+  accuracy->add_option("--steps", a.plan.steps, "between them")->check(CLI::Range(1, 100000))->capture_default_str();
+  accuracy->add_option("--repeats", a.plan.repeats, "passes up and down")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  accuracy->add_option("--out", a.out, "folder for the report, must not exist")->required();
+  accuracy->add_flag("--home", a.home, "home the axis first if it has no reference");
+  accuracy->add_flag("--simulated", a.stage.simulated, "say so in the report");
+  accuracy->add_option("--lead-um", a.lead_um, "screw lead, the period of its error; default: the profile's");
+  add_length(*accuracy, "--min-um", a.stage.min, "lowest position the axis may go to");
+  add_length(*accuracy, "--max-um", a.stage.max, "highest");
+  add_length(*accuracy, "--take-up-um", a.stage.take_up, "overshoot before each pass, at least 3 x backlash");
+  add_length(*accuracy, "--window-um", a.plan.settle.window, "settled means: so near the target");
+  accuracy->add_option("--speed-um-per-s", a.stage.speed_um_per_s, "of moves")->capture_default_str();
+  accuracy->callback([&] { chosen = [&] { return run_stage_accuracy(a, terminal); }; });
+}
+
 void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command& chosen) {
   const auto command = [&app, &chosen](const char* name, const char* help, Command run) {
     CLI::App* sub = app.add_subcommand(name, help);
@@ -150,6 +200,8 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   sub = command("process", "make a height map of recorded slices, without a daemon",
                 [&] { return run_process(a.process, terminal); });
   add_process_options(*sub, a.process);
+
+  add_stage_commands(app, a.stage, terminal, chosen);
 
   command("suggest", "suggest a recipe's focus settings from one sharp image of a surface",
           [&] { return run_suggest(a.image, terminal); })

@@ -349,6 +349,11 @@ class ModbusZStage final : public ZStage {
                                                    " lost its reference in the move, as after a power cut; home again");
       }
       begun = begun || obeys(sample, move, before, criterion);
+      if (sample.moving || !begun) {
+        move.halted = {};
+      } else if (move.halted == HostTime{}) {
+        move.halted = sample.time;
+      }
       if (!begun && sample.time - commanded > profile_.start_within) {
         throw Error(ErrorCode::kStagePosition, "the drive at " + link_.description() + " took the move to " +
                                                    std::to_string(move.target.value) +

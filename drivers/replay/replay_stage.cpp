@@ -71,6 +71,7 @@ class ReplayStage final : public ZStage {
     move.target_counts = {slice};
     move.position = there;
     move.settled = HostClock::now();
+    move.halted = move.settled;
     move.polls = 1;
     return move;
   }

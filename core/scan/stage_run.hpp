@@ -1,0 +1,32 @@
+#pragma once
+
+/// A dedicated measurement of the stage: up and down over a range, as often as asked.
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "core/hw/clock.hpp"
+#include "core/hw/z_stage.hpp"
+#include "core/metrology/stage_point.hpp"
+
+namespace fvd {
+
+struct StageRunPlan {
+  Micrometers from{0.0};
+  Micrometers to{0.0};  ///< above from
+  int steps = 100;      ///< >= 1; steps + 1 positions
+  int repeats = 3;      ///< >= 1; each up and down
+  SettleCriterion settle;
+  std::chrono::milliseconds average{20};  ///< the measured position is the mean over so long after settling
+};
+
+/// Each pass starts with a move beyond its first position by the stage's take-up distance, so that every position of an
+/// upward pass is approached from below and of a downward one from above. on_point: after each, with the number of
+/// points so far. Throws Error kBadInput (the plan), kStageLimit before anything moves if take-up does not fit, and as
+/// ZStage::move_to. The stage must be homed. context: blocks.
+[[nodiscard]] std::vector<StagePoint> run_stage(ZStage& stage, Clock& clock, const StageRunPlan& plan,
+                                                const std::function<void(int done, int all)>& on_point,
+                                                std::stop_token stop);
+
+}  // namespace fvd

@@ -1,0 +1,30 @@
+#pragma once
+
+/// The commands `fvdctl stage check` and `fvdctl stage accuracy`: a drive at the end of a line, without the daemon.
+
+#include <filesystem>
+#include <string>
+
+#include "core/scan/stage_run.hpp"
+#include "daemon/ctl/fvdctl.hpp"
+#include "drivers/driver_config.hpp"
+
+namespace fvd::ctl {
+
+struct StageArguments {
+  StageConfig stage;
+  std::string tcp;  ///< HOST or HOST:PORT; empty = the serial port of `stage`
+  bool json = false;
+  bool home = false;
+  StageRunPlan plan;
+  double lead_um = 0.0;  ///< of the screw; 0 = as the profile says
+  std::filesystem::path out;
+};
+
+/// Reads only. Exit code 0 if the drive fits its profile, kExitData if it disagrees.
+[[nodiscard]] int run_stage_check(StageArguments arguments, const Terminal& terminal);
+
+/// Moves the stage; writes stage_accuracy.json, .csv and .png into a new folder `out`.
+[[nodiscard]] int run_stage_accuracy(StageArguments arguments, const Terminal& terminal);
+
+}  // namespace fvd::ctl
