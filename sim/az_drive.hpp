@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "sim/axis_model.hpp"
-#include "sim/modbus_tcp_server.hpp"
+#include "sim/register_bank.hpp"
 
 namespace fvd::sim {
 

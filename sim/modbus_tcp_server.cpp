@@ -1,5 +1,6 @@
 #include "sim/modbus_tcp_server.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -17,52 +18,28 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include "core/error.hpp"
+#include "sim/file_descriptor.hpp"
+#include "sim/scripted_responder.hpp"
 
 namespace fvd::sim {
 
 namespace {
 
 constexpr std::size_t kHeaderBytes = 7;  // transaction, protocol, length, unit
-constexpr int kMaxRead = 125;
-constexpr int kMaxWrite = 123;
-
-using Bytes = std::vector<std::uint8_t>;
 
 std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]);
 }
 
-void append_word(Bytes& bytes, unsigned value) {
-  bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
-  bytes.push_back(static_cast<std::uint8_t>(value & 0xFFU));
-}
-
-Bytes exception_reply(std::uint8_t function, ModbusException exception) {
-  return {static_cast<std::uint8_t>(function | 0x80U), static_cast<std::uint8_t>(exception)};
-}
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  ~FileDescriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 struct Client {
   explicit Client(int fd) : socket(fd) {}
   FileDescriptor socket;
-  Bytes input;
+  ModbusBytes input;
 };
+
+enum class Connections { kKeep, kDropThis, kDropAll };
 
 int listening_socket(const ModbusTcpOptions& options) {
   const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -91,10 +68,11 @@ int bound_port(int fd) {
 }  // namespace
 
 struct ModbusTcpServer::Impl {
-  Impl(RegisterBank& b, const ModbusTcpOptions& o)
-      : bank(b),
-        unit(o.unit),
-        listener(listening_socket(o)),
+  Impl(RegisterBank& bank, const ModbusTcpOptions& options)
+      : unit(options.unit),
+        faults(options.faults != nullptr ? *options.faults : own_faults),
+        responder(bank, &faults, options.drive),
+        listener(listening_socket(options)),
         wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         port(bound_port(listener.get())),
         thread([this](std::stop_token stop) { serve(stop); }) {}
@@ -109,11 +87,17 @@ struct ModbusTcpServer::Impl {
     while (!stop.stop_requested()) {
       std::vector<pollfd> waiting{{wake.get(), POLLIN, 0}, {listener.get(), POLLIN, 0}};
       for (const Client& client : clients) waiting.push_back({client.socket.get(), POLLIN, 0});
-      if (::poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) return;
+      if (::poll(waiting.data(), waiting.size(), RegisterBank::kIdlePeriodMs) < 0 && errno != EINTR) return;
+      responder.idle();
       std::size_t index = 2;
       for (auto client = clients.begin(); client != clients.end(); ++index) {
-        const bool keep = waiting[index].revents == 0 || receive(*client, stop);
-        client = keep ? std::next(client) : clients.erase(client);
+        const auto fate = waiting[index].revents == 0 ? Connections::kKeep : receive(*client, stop);
+        if (fate == Connections::kDropAll) {
+          clients.clear();
+          pause(outage, stop);
+          break;
+        }
+        client = fate == Connections::kKeep ? std::next(client) : clients.erase(client);
       }
       if (waiting[1].revents != 0) accept_client();
     }
@@ -127,125 +111,67 @@ struct ModbusTcpServer::Impl {
     clients.emplace_back(fd);
   }
 
-  /// False when the client is gone or talks nonsense.
-  bool receive(Client& client, std::stop_token stop) {
+  /// Drops a client that is gone or talks nonsense.
+  Connections receive(Client& client, const std::stop_token& stop) {
     std::array<std::uint8_t, 1024> chunk{};
     const auto count = ::recv(client.socket.get(), chunk.data(), chunk.size(), MSG_DONTWAIT);
-    if (count <= 0) return count < 0 && (errno == EAGAIN || errno == EINTR);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return Connections::kKeep;
+    if (count <= 0) return Connections::kDropThis;
     client.input.insert(client.input.end(), chunk.begin(), chunk.begin() + count);
     while (client.input.size() >= kHeaderBytes) {
       const std::size_t length = word_at(client.input, 4);
-      if (word_at(client.input, 2) != 0 || length < 2 || length > 254) return false;
-      if (client.input.size() < 6 + length) return true;
-      const Bytes frame(client.input.begin(), client.input.begin() + static_cast<std::ptrdiff_t>(6 + length));
-      client.input.erase(client.input.begin(), client.input.begin() + static_cast<std::ptrdiff_t>(6 + length));
-      if (!answer(client, frame, stop)) return false;
+      if (word_at(client.input, 2) != 0 || length < 2 || length > 254) return Connections::kDropThis;
+      if (client.input.size() < 6 + length) break;
+      const auto end = client.input.begin() + static_cast<std::ptrdiff_t>(6 + length);
+      const ModbusBytes frame(client.input.begin(), end);
+      client.input.erase(client.input.begin(), end);
+      const auto fate = answer(client, frame, stop);
+      if (fate != Connections::kKeep) return fate;
     }
-    return true;
+    return Connections::kKeep;
   }
 
-  bool take(std::atomic<int>& counter) {
-    int left = counter.load();
-    while (left > 0) {
-      if (counter.compare_exchange_weak(left, left - 1)) return true;
-    }
-    return false;
-  }
-
-  bool answer(Client& client, const Bytes& frame, std::stop_token stop) {
+  Connections answer(const Client& client, const ModbusBytes& frame, const std::stop_token& stop) {
     ++requests;
-    const bool writes = frame[kHeaderBytes] != 3;
-    if (mute || frame[6] != unit || (writes && take(lost_writes))) return true;
-    const Bytes reply = execute(std::span(frame).subspan(kHeaderBytes));
-    if (writes && take(lost_write_replies)) return true;
-    if (take(delayed_replies)) {
-      std::mutex mutex;
-      std::condition_variable_any never;
-      std::unique_lock lock(mutex);
-      never.wait_for(lock, stop, std::chrono::milliseconds(delay_ms), [] { return false; });
+    if (mute || frame[6] != unit) return Connections::kKeep;
+    const LineAnswer answer = responder.answer(std::span(frame).subspan(kHeaderBytes));
+    if (answer.cut) {
+      outage = answer.outage;
+      return Connections::kDropAll;
     }
-    Bytes message(frame.begin(), frame.begin() + 4);
-    append_word(message, static_cast<unsigned>(reply.size() + 1));
+    if (answer.pdu.empty()) return Connections::kKeep;
+    pause(answer.late, stop);
+    ModbusBytes message(frame.begin(), frame.begin() + 4);
+    if (answer.wrong_check) message[0] = static_cast<std::uint8_t>(message[0] ^ 0x55U);
+    const std::size_t length = answer.pdu.size() + 1;
+    message.push_back(static_cast<std::uint8_t>(length >> 8U));
+    message.push_back(static_cast<std::uint8_t>(length & 0xFFU));
     message.push_back(frame[6]);
-    message.insert(message.end(), reply.begin(), reply.end());
-    return ::send(client.socket.get(), message.data(), message.size(), MSG_NOSIGNAL) ==
-           static_cast<ssize_t>(message.size());
+    message.insert(message.end(), answer.pdu.begin(), answer.pdu.end());
+    if (answer.truncated) message.resize(message.size() / 2);
+    const auto sent = ::send(client.socket.get(), message.data(), message.size(), MSG_NOSIGNAL);
+    return sent == static_cast<ssize_t>(message.size()) ? Connections::kKeep : Connections::kDropThis;
   }
 
-  Bytes execute(std::span<const std::uint8_t> pdu) {
-    const std::uint8_t function = pdu[0];
-    switch (function) {
-      case 3:
-        return pdu.size() == 5 ? read(function, word_at(pdu, 1), word_at(pdu, 3)) : bad_value(function);
-      case 6:
-        return pdu.size() == 5 ? write_one(pdu) : bad_value(function);
-      case 16:
-        return write_many(pdu);
-      case 23:
-        return read_write(pdu);
-      default:
-        return exception_reply(function, ModbusException::kIllegalFunction);
-    }
+  static void pause(std::chrono::milliseconds duration, const std::stop_token& stop) {
+    if (duration.count() == 0) return;
+    std::mutex mutex;
+    std::condition_variable_any never;
+    std::unique_lock lock(mutex);
+    never.wait_for(lock, stop, duration, [] { return false; });
   }
 
-  static Bytes bad_value(std::uint8_t function) { return exception_reply(function, ModbusException::kIllegalValue); }
-
-  Bytes read(std::uint8_t function, int address, int count) {
-    if (count < 1 || count > kMaxRead) return bad_value(function);
-    std::vector<std::uint16_t> values(static_cast<std::size_t>(count));
-    const auto exception = bank.read(address, values);
-    if (exception != ModbusException::kNone) return exception_reply(function, exception);
-    Bytes reply{function, static_cast<std::uint8_t>(2 * count)};
-    for (const auto value : values) append_word(reply, value);
-    return reply;
-  }
-
-  Bytes write_one(std::span<const std::uint8_t> pdu) {
-    const std::uint16_t value = word_at(pdu, 3);
-    const auto exception = bank.write(word_at(pdu, 1), std::span(&value, 1));
-    if (exception != ModbusException::kNone) return exception_reply(6, exception);
-    return {pdu.begin(), pdu.end()};
-  }
-
-  /// The registers of a write whose byte count stands at `at`; empty if the counts disagree.
-  static std::vector<std::uint16_t> words(std::span<const std::uint8_t> pdu, std::size_t at, int count) {
-    std::vector<std::uint16_t> values;
-    const auto bytes = static_cast<std::size_t>(2 * count);
-    if (count < 1 || count > kMaxWrite || pdu.size() != at + 1 + bytes || pdu[at] != bytes) return values;
-    for (std::size_t i = at + 1; i < pdu.size(); i += 2) values.push_back(word_at(pdu, i));
-    return values;
-  }
-
-  Bytes write_many(std::span<const std::uint8_t> pdu) {
-    if (pdu.size() < 6) return bad_value(16);
-    const auto values = words(pdu, 5, word_at(pdu, 3));
-    if (values.empty()) return bad_value(16);
-    const auto exception = bank.write(word_at(pdu, 1), values);
-    if (exception != ModbusException::kNone) return exception_reply(16, exception);
-    return {pdu.begin(), pdu.begin() + 5};
-  }
-
-  Bytes read_write(std::span<const std::uint8_t> pdu) {
-    if (pdu.size() < 10) return bad_value(23);
-    const auto values = words(pdu, 9, word_at(pdu, 7));
-    if (values.empty()) return bad_value(23);
-    const auto exception = bank.write(word_at(pdu, 5), values);
-    if (exception != ModbusException::kNone) return exception_reply(23, exception);
-    return read(23, word_at(pdu, 1), word_at(pdu, 3));
-  }
-
-  RegisterBank& bank;
   int unit;
+  FaultScript own_faults;
+  FaultScript& faults;
+  ScriptedResponder responder;  // server thread only, as clients and outage
   FileDescriptor listener;
   FileDescriptor wake;
   int port;
-  std::list<Client> clients;  // server thread only
+  std::list<Client> clients;
+  std::chrono::milliseconds outage{0};
   std::atomic<std::uint64_t> requests{0};
   std::atomic<bool> mute{false};
-  std::atomic<int> delayed_replies{0};
-  std::atomic<std::int64_t> delay_ms{0};
-  std::atomic<int> lost_write_replies{0};
-  std::atomic<int> lost_writes{0};
   std::jthread thread;  // last
 };
 
@@ -257,10 +183,13 @@ int ModbusTcpServer::port() const noexcept { return impl_->port; }
 std::uint64_t ModbusTcpServer::requests() const noexcept { return impl_->requests; }
 void ModbusTcpServer::set_mute(bool mute) { impl_->mute = mute; }
 void ModbusTcpServer::delay_replies(int count, std::chrono::milliseconds delay) {
-  impl_->delay_ms = delay.count();
-  impl_->delayed_replies = count;
+  impl_->faults.add({.count = count, .fault = FaultKind::kLateReply, .delay = delay});
 }
-void ModbusTcpServer::lose_write_replies(int count) { impl_->lost_write_replies = count; }
-void ModbusTcpServer::lose_writes(int count) { impl_->lost_writes = count; }
+void ModbusTcpServer::lose_write_replies(int count) {
+  impl_->faults.add({.on = FaultOn::kWrite, .count = count, .fault = FaultKind::kLostReply});
+}
+void ModbusTcpServer::lose_writes(int count) {
+  impl_->faults.add({.on = FaultOn::kWrite, .count = count, .fault = FaultKind::kLostRequest});
+}
 
 }  // namespace fvd::sim

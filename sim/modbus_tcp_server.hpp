@@ -1,34 +1,30 @@
 #pragma once
 
-/// A Modbus TCP server over a bank of holding registers (Modbus Messaging on TCP/IP Implementation Guide V1.0b), with
-/// faults that real lines have.
+/// A Modbus TCP server over a bank of registers (Modbus Messaging on TCP/IP Implementation Guide V1.0b), with faults
+/// that real lines have.
 
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
+
+#include "sim/drive_faults.hpp"
+#include "sim/fault_script.hpp"
+#include "sim/register_bank.hpp"
 
 namespace fvd::sim {
 
-/// Modbus exception codes (Modbus Application Protocol V1.1b3, section 7); kNone = no exception.
-enum class ModbusException : std::uint8_t { kNone = 0, kIllegalFunction = 1, kIllegalAddress = 2, kIllegalValue = 3 };
-
-/// Addresses are PDU addresses (0-based). context: the server's thread.
-class RegisterBank {
- public:
-  virtual ~RegisterBank() = default;
-  [[nodiscard]] virtual ModbusException read(int address, std::span<std::uint16_t> values) = 0;
-  [[nodiscard]] virtual ModbusException write(int address, std::span<const std::uint16_t> values) = 0;
-};
-
 struct ModbusTcpOptions {
   std::string address = "127.0.0.1";
-  int port = 0;  ///< 0 = any free port
-  int unit = 1;  ///< requests for other units get no answer, as on a real bus
+  int port = 0;                   ///< 0 = any free port
+  int unit = 1;                   ///< requests for other units get no answer, as on a real bus
+  FaultScript* faults = nullptr;  ///< null = a script of the server's own; outlives the server
+  DriveFaults* drive = nullptr;   ///< what drive faults of the script befall; null = they befall nothing
 };
 
-/// Function codes 3, 6, 16 and 23, several clients, one thread.
+/// The function codes of respond(), several clients, one thread. A script's faults on this line: a wrong check is the
+/// transaction number of another request, a truncated frame the first half of the reply with the connection left open,
+/// a cut closes every connection and takes requests of new ones only when it is over.
 class ModbusTcpServer {
  public:
   /// Listens. Throws Error kBadConfig if the address cannot be bound. The bank outlives the server.
@@ -40,6 +36,7 @@ class ModbusTcpServer {
 
   // Faults. context: any thread.
   void set_mute(bool mute);  ///< takes requests, executes nothing, answers nothing
+  // Steps appended to the server's script:
   void delay_replies(int count, std::chrono::milliseconds delay);  ///< the next `count` replies come late
   void lose_write_replies(int count);  ///< the next `count` writes are executed but not answered
   void lose_writes(int count);         ///< the next `count` writes are not executed and not answered

@@ -1,0 +1,74 @@
+#pragma once
+
+/// Faults of line and drive in the order in which they are to happen.
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fvd::sim {
+
+enum class FaultOn { kRead, kWrite, kAny };
+
+enum class FaultKind {
+  kLateReply,        ///< executed; the reply leaves `delay` late
+  kLostReply,        ///< executed, not answered
+  kLostRequest,      ///< not executed, not answered
+  kWrongCrc,         ///< executed; serial: wrong checksum; TCP: the reply carries another transaction's number
+  kTruncatedFrame,   ///< executed; half of the reply and then nothing, the line stays
+  kException,        ///< not executed; exception `code`
+  kSilentRefusal,    ///< acknowledged, but the drive ignores the next start of a motion
+  kLinkCut,          ///< not executed; TCP: all connections closed; both: everything ignored for `delay`
+  kStaleInPosition,  ///< the drive reports standstill in position for `delay` from this request on
+  kAlarmInMotion,    ///< alarm `code`, at the first matching request that comes while the axis moves
+  kLimitHit,         ///< a limit switch, before the request is executed
+  kEmergencyStop,    ///< torque off, before the request is executed
+  kPowerCycle,       ///< the drive restarts: not executed; as kLinkCut while it boots
+};
+
+/// Their names in scripts: "late_reply" and so on.
+[[nodiscard]] const std::vector<std::string>& fault_names();
+[[nodiscard]] std::string_view name_of(FaultKind kind);
+
+struct FaultStep {
+  FaultOn on = FaultOn::kAny;    ///< a request that reads and writes (function code 23) counts as a write
+  int after = 0;                 ///< so many matching requests pass first, >= 0
+  std::optional<int> address{};  ///< PDU address that a request must contain to match; none = any
+  int count = 1;                 ///< happens so often, > 0
+  FaultKind fault = FaultKind::kLostReply;
+  std::chrono::milliseconds delay{0};  ///< kLateReply, kLinkCut, kStaleInPosition, kPowerCycle
+  int code = 0;                        ///< kException 1..255, kAlarmInMotion 1..65535
+};
+
+/// Steps are taken one after the other: a step waits until the one before it has happened as often as it should.
+/// context: thread-safe.
+class FaultScript {
+ public:
+  FaultScript() = default;
+  /// Throws Error kBadConfig for a step that cannot happen, naming it.
+  explicit FaultScript(const std::vector<FaultStep>& steps);
+
+  /// Appends a step. Throws as the constructor.
+  void add(const FaultStep& step);
+
+  /// The fault that befalls this request PDU, if any. To be asked once a request.
+  [[nodiscard]] std::optional<FaultStep> next(std::span<const std::uint8_t> request, bool axis_moves);
+
+  /// Steps that have not happened as often as they should.
+  [[nodiscard]] std::size_t unconsumed() const;
+  /// One line a step, empty if all have happened.
+  [[nodiscard]] std::string describe_unconsumed() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::deque<FaultStep> steps_;  // guarded by mutex_; after and count of the first run down
+  int taken_ = 0;
+};
+
+}  // namespace fvd::sim
