@@ -103,35 +103,56 @@ ModbusTransport::ModbusTransport(const ModbusLinkConfig& config) : config_(confi
   modbus_set_slave(context_.get(), config_.unit);
 }
 
-ModbusTransport::~ModbusTransport() = default;
+ModbusTransport::~ModbusTransport() { unlock_serial_port(); }
 
 void ModbusTransport::close() noexcept {
   modbus_close(context_.get());
+  unlock_serial_port();
   connected_ = false;
 }
 
 bool ModbusTransport::connect(std::string& error) {
+  const bool serial = std::holds_alternative<ModbusSerialEndpoint>(config_.endpoint);
+  if (serial && !lock_serial_port(error)) return false;
   if (modbus_connect(context_.get()) != 0) {
     error = modbus_strerror(errno);
+    unlock_serial_port();
     return false;
   }
   connected_ = true;
   device_gone_ = false;
-  if (std::holds_alternative<ModbusSerialEndpoint>(config_.endpoint)) return prepare_serial_port(error);
-  const int on = 1;
-  ::setsockopt(modbus_get_socket(context_.get()), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  if (serial) {
+    prepare_serial_port();
+  } else {
+    const int on = 1;
+    ::setsockopt(modbus_get_socket(context_.get()), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  }
   return true;
 }
 
-bool ModbusTransport::prepare_serial_port(std::string& error) {
+/// Before the port is touched: who opens it to set it up disturbs the one that uses it.
+bool ModbusTransport::lock_serial_port(std::string& error) {
+  const auto& line = std::get<ModbusSerialEndpoint>(config_.endpoint);
+  lock_ = ::open(line.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (lock_ < 0 && errno != EBUSY) {
+    error = std::strerror(errno);
+    return false;
+  }
+  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0) return true;
+  unlock_serial_port();
+  error = "it is in use by another program";
+  return false;
+}
+
+void ModbusTransport::unlock_serial_port() noexcept {
+  if (lock_ >= 0) ::close(lock_);
+  lock_ = -1;
+}
+
+void ModbusTransport::prepare_serial_port() {
   const auto& line = std::get<ModbusSerialEndpoint>(config_.endpoint);
   const int fd = modbus_get_socket(context_.get());
   // The lock keeps well-behaved programs out, exclusive use all but root's.
-  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
-    error = line.device + " is in use by another program";
-    close();
-    return false;
-  }
   const bool exclusive = ::ioctl(fd, TIOCEXCL) == 0;
   serial_struct settings{};
   bool low_latency = false;
@@ -143,7 +164,6 @@ bool ModbusTransport::prepare_serial_port(std::string& error) {
                exclusive ? ", exclusive" : ", not exclusive",
                low_latency ? ", low latency" : ", low latency not available", ftdi_latency(line.device));
   ::tcflush(fd, TCIOFLUSH);
-  return true;
 }
 
 int ModbusTransport::call(const ModbusRequest& request, std::vector<std::uint16_t>& values) {

@@ -85,13 +85,16 @@ class ModbusTransport {
     void operator()(_modbus* context) const noexcept;
   };
   void close() noexcept;
-  bool prepare_serial_port(std::string& error);
+  bool lock_serial_port(std::string& error);
+  void unlock_serial_port() noexcept;
+  void prepare_serial_port();
   int call(const ModbusRequest& request, std::vector<std::uint16_t>& values);
 
   ModbusLinkConfig config_;
   std::unique_ptr<_modbus, ContextDeleter> context_;
   bool connected_ = false;
   bool device_gone_ = false;
+  int lock_ = -1;  // a descriptor of the serial port that holds its lock
   std::chrono::steady_clock::time_point last_byte_{};
 };
 

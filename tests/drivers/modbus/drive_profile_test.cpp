@@ -73,7 +73,8 @@ TEST(DriveProfile, EncodesAndDecodesBothWordOrders) {
     }
   }
   EXPECT_EQ(encode({.type = RegisterType::kI32}, -2), (std::vector<std::uint16_t>{0xFFFF, 0xFFFE}));
-  EXPECT_EQ(encode({.type = RegisterType::kU32, .order = WordOrder::kLowFirst}, 0x10002), (std::vector<std::uint16_t>{2, 1}));
+  EXPECT_EQ(encode({.type = RegisterType::kU32, .order = WordOrder::kLowFirst}, 0x10002),
+            (std::vector<std::uint16_t>{2, 1}));
 }
 
 TEST(DriveProfile, RefusesEachKindOfMistakeWithItsPlace) {

@@ -224,7 +224,8 @@ TEST_F(AModbusStage, TellsExceptionsFromLostReplies) {
   EXPECT_EQ(link.read(ModbusTable::kHolding, 0x007E, 80).outcome, ModbusOutcome::kOk);
   EXPECT_EQ(link.stats().reconnects, 0U) << "an exception is no reason to reconnect";
   ModbusLink wrong_unit({ModbusTcpEndpoint{"127.0.0.1", port_}, 7, milliseconds(50)});
-  EXPECT_EQ(wrong_unit.read(ModbusTable::kHolding, 0x007E, 2).outcome, ModbusOutcome::kUnknown) << "another unit's request gets no answer";
+  EXPECT_EQ(wrong_unit.read(ModbusTable::kHolding, 0x007E, 2).outcome, ModbusOutcome::kUnknown)
+      << "another unit's request gets no answer";
 }
 
 TEST_F(AModbusStage, ServesTwoClientsAtOnce) {
