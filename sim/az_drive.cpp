@@ -1,7 +1,5 @@
 #include "sim/az_drive.hpp"
 
-#include <algorithm>
-
 namespace fvd::sim {
 
 namespace {
@@ -27,14 +25,17 @@ constexpr int kActualPosition32 = 0x0120;
 constexpr int kCommandPosition32 = 0x0122;
 constexpr int kFixedImage = 0x0178;
 constexpr int kAlarmReset = 0x0180;
+constexpr int kPreset = 0x018A;
 constexpr int kLimitAction = 0x0386;
 constexpr int kLimitPlus = 0x0388;
 constexpr int kLimitMinus = 0x038A;
+constexpr int kPresetValue = 0x038C;
 }  // namespace reg
 
 namespace bit {
 constexpr unsigned kHome = 1U << 4U;
 constexpr unsigned kStop = 1U << 5U;
+constexpr unsigned kFree = 1U << 6U;
 constexpr unsigned kAlarmReset = 1U << 7U;
 constexpr unsigned kHomeEnd = 1U << 4U;
 constexpr unsigned kReady = 1U << 5U;
@@ -44,7 +45,11 @@ constexpr unsigned kMove = 1U << 13U;
 constexpr unsigned kInPosition = 1U << 14U;
 }  // namespace bit
 
+constexpr int kRegisters = 0x0400;
+
+constexpr int kAlarmLimitSwitch = 0x66;
 constexpr int kAlarmOvertravel = 0x67;
+constexpr int kAlarmTorqueOff = 0x68;
 
 /// Operation types: where a target counts from.
 constexpr int kAbsolute = 1;
@@ -53,124 +58,103 @@ constexpr int kFromActual = 3;
 
 }  // namespace
 
-AzDrive::AzDrive(AxisModel& axis) : axis_(axis) { set_long(reg::kLimitAction, -1); }
-
-std::int32_t AzDrive::long_at(int address) const {
-  const auto at = static_cast<std::size_t>(address);
-  return static_cast<std::int32_t>((static_cast<std::uint32_t>(registers_[at]) << 16U) | registers_[at + 1]);
+AzDrive::AzDrive(AxisModel& axis, DriveClock clock) : SimDrive(axis, std::move(clock)) {
+  using enum RegisterImage::Access;
+  image().add_area(0, kRegisters, kReadWrite);
+  image().add_area(reg::kOutput, reg::kFixedImage + 8 - reg::kOutput, kReadOnly);
+  power_on();
 }
 
-void AzDrive::set_long(int address, std::int32_t value) {
-  const auto bits = static_cast<std::uint32_t>(value);
-  const auto at = static_cast<std::size_t>(address);
-  registers_[at] = static_cast<std::uint16_t>(bits >> 16U);
-  registers_[at + 1] = static_cast<std::uint16_t>(bits & 0xFFFFU);
+void AzDrive::power_on() {
+  image().set_value(reg::kLimitAction, -1);
+  level_ = 0;
 }
-
-bool AzDrive::ready(HostTime now) const { return alarm_ == 0 && !axis_.moving(now); }
 
 void AzDrive::refresh(HostTime now) {
-  const bool moving = axis_.moving(now);
-  const bool homed = axis_.homed(now);
-  const bool in_position = axis_.in_position(now);
-  const bool alarm = alarm_ != 0;
-  const unsigned output = (homed ? bit::kHomeEnd : 0U) | (ready(now) ? bit::kReady : 0U) | (alarm ? bit::kAlarmA : 0U) |
-                          (moving ? bit::kBusy | bit::kMove : 0U) | (in_position ? bit::kInPosition : 0U);
-  registers_[reg::kOutput + 1] = static_cast<std::uint16_t>(output);
-  set_long(reg::kAlarm, alarm_);
-  set_long(reg::kCommandPosition, axis_.command_steps(now));
-  set_long(reg::kCommandPosition32, axis_.command_steps(now));
-  const std::int32_t actual = axis_.encoder_steps(now);
-  set_long(reg::kActualPosition, actual);
-  set_long(reg::kActualPosition32, actual);
-  set_long(reg::kDriverTemperature, 412);
-  set_long(reg::kMotorTemperature, 385);
+  const bool moving = reports_motion(now);
+  const bool homed = axis().homed(now);
+  const bool in_position = reports_in_position(now);
+  const bool is_in_alarm = alarm() != 0;
+  const bool ready = !is_in_alarm && !moving && (level_ & (bit::kStop | bit::kFree)) == 0;
+  const unsigned output = (homed ? bit::kHomeEnd : 0U) | (ready ? bit::kReady : 0U) |
+                          (is_in_alarm ? bit::kAlarmA : 0U) | (moving ? bit::kBusy | bit::kMove : 0U) |
+                          (in_position ? bit::kInPosition : 0U);
+  image().set_word(reg::kOutput + 1, output);
+  image().set_value(reg::kAlarm, alarm());
+  image().set_value(reg::kCommandPosition, command_position(now));
+  image().set_value(reg::kCommandPosition32, command_position(now));
+  const std::int32_t actual = actual_position(now);
+  image().set_value(reg::kActualPosition, actual);
+  image().set_value(reg::kActualPosition32, actual);
+  image().set_value(reg::kDriverTemperature, 412);
+  image().set_value(reg::kMotorTemperature, 385);
   // Signal n of the fixed image is bit n % 16 of word n / 16.
-  registers_[reg::kFixedImage] = homed ? 1U : 0U;
-  registers_[reg::kFixedImage + 1] =
-      static_cast<std::uint16_t>((alarm ? 1U << 1U : 1U << 2U) | (1U << 3U) | (ready(now) ? 1U << 4U : 0U) |
-                                 (moving ? 1U << 6U | 1U << 8U : 0U) | (in_position ? 1U << 10U : 0U));
+  image().set_word(reg::kFixedImage, homed ? 1U : 0U);
+  image().set_word(reg::kFixedImage + 1, (is_in_alarm ? 1U << 1U : 1U << 2U) | (1U << 3U) | (ready ? 1U << 4U : 0U) |
+                                             (moving ? 1U << 6U | 1U << 8U : 0U) | (in_position ? 1U << 10U : 0U));
 }
 
-ModbusException AzDrive::read(int address, std::span<std::uint16_t> values) {
-  if (address + static_cast<int>(values.size()) > kRegisters) return ModbusException::kIllegalAddress;
-  refresh(HostClock::now());
-  std::copy_n(registers_.begin() + address, values.size(), values.begin());
-  return ModbusException::kNone;
-}
-
-ModbusException AzDrive::write(int address, std::span<const std::uint16_t> values) {
-  const int end = address + static_cast<int>(values.size());
-  if (end > kRegisters) return ModbusException::kIllegalAddress;
-  const auto is_read_only = [](int at) { return at >= reg::kOutput && at < reg::kFixedImage + 8; };
-  if (is_read_only(address) || is_read_only(end - 1)) return ModbusException::kIllegalAddress;
-  const unsigned level_before = registers_[reg::kInputLevel + 1];
-  std::copy(values.begin(), values.end(), registers_.begin() + address);
-  const HostTime now = HostClock::now();
-  written(address, values.size(), now);
-  const unsigned auto_off = registers_[reg::kInputAutoOff + 1];
-  registers_[reg::kInputAutoOff + 1] = 0;
-  act_on_inputs(auto_off | (registers_[reg::kInputLevel + 1] & ~level_before), now);
-  return ModbusException::kNone;
-}
-
-void AzDrive::written(int address, std::size_t count, HostTime now) {
-  const int end = address + static_cast<int>(count);
-  const auto touches = [&](int at) { return address <= at + 1 && end > at; };
-  if (touches(reg::kAlarmReset) && long_at(reg::kAlarmReset) == 1) {
-    alarm_ = 0;
-    set_long(reg::kAlarmReset, 0);
+void AzDrive::was_written(const Written& written, HostTime now) {
+  if (written.value(reg::kAlarmReset) && image().value(reg::kAlarmReset) == 1) {
+    set_alarm(0);
+    image().set_value(reg::kAlarmReset, 0);
   }
-  if (address > reg::kDirectLast || end <= reg::kDirectFirst) return;
-  const std::int32_t trigger = long_at(reg::kDirectTrigger);
+  if (written.value(reg::kPreset) && image().value(reg::kPreset) == 1) {
+    if (!axis().moving(now)) preset_position(now, image().value(reg::kPresetValue));
+    image().set_value(reg::kPreset, 0);
+  }
+  act_on_direct_data(written, now);
+  const unsigned auto_off = image().word(reg::kInputAutoOff + 1);
+  image().set_word(reg::kInputAutoOff + 1, 0);
+  const unsigned level = image().word(reg::kInputLevel + 1);
+  const unsigned rising = auto_off | (level & ~level_);
+  level_ = level;
+  act_on_inputs(rising, now);
+}
+
+void AzDrive::act_on_direct_data(const Written& written, HostTime now) {
+  if (written.first > reg::kDirectLast || written.first + written.count <= reg::kDirectFirst) return;
+  const std::int32_t trigger = image().value(reg::kDirectTrigger);
   // Trigger 1 starts when it is written; -n keeps standing and starts whenever item n (counted back from the trigger)
   // is.
-  const bool started_by_trigger = trigger == 1 && touches(reg::kDirectTrigger);
-  const bool started_by_item =
-      trigger <= -1 && trigger >= -7 && touches(reg::kDirectTrigger + 2 * trigger) && !touches(reg::kDirectTrigger);
-  if (started_by_trigger) set_long(reg::kDirectTrigger, 0);
-  if (started_by_trigger || started_by_item) start_direct_operation(now);
+  const bool by_trigger = trigger == 1 && written.value(reg::kDirectTrigger);
+  const bool by_item = trigger <= -1 && trigger >= -7 && written.value(reg::kDirectTrigger + 2 * trigger) &&
+                       !written.value(reg::kDirectTrigger);
+  if (by_trigger) image().set_value(reg::kDirectTrigger, 0);
+  if (by_trigger || by_item) start_direct_operation(now);
 }
 
 void AzDrive::act_on_inputs(unsigned rising, HostTime now) {
-  if ((rising & bit::kStop) != 0) axis_.stop(now);
-  if ((rising & bit::kAlarmReset) != 0) alarm_ = 0;
-  if ((rising & bit::kHome) != 0 && (rising & bit::kStop) == 0 && ready(now)) axis_.home(now);
+  if ((rising & (bit::kStop | bit::kFree)) != 0) axis().stop(now);
+  if ((rising & bit::kAlarmReset) != 0) set_alarm(0);
+  const bool ready = alarm() == 0 && !axis().moving(now) && (level_ & (bit::kStop | bit::kFree)) == 0;
+  if ((rising & bit::kHome) != 0 && (rising & bit::kStop) == 0 && ready) start_home(now);
 }
 
-bool AzDrive::leaves_limits(std::int32_t target, HostTime now) const {
-  return long_at(reg::kLimitAction) == 1 && axis_.homed(now) &&
-         (target > long_at(reg::kLimitPlus) || target < long_at(reg::kLimitMinus));
+bool AzDrive::leaves_limits(std::int64_t target, HostTime now) {
+  return image().value(reg::kLimitAction) == 1 && axis().homed(now) &&
+         (target > image().value(reg::kLimitPlus) || target < image().value(reg::kLimitMinus));
 }
 
 void AzDrive::start_direct_operation(HostTime now) {
-  const std::int32_t type = long_at(reg::kDirectType);
-  const bool stopped = (registers_[reg::kInputLevel + 1] & bit::kStop) != 0;
+  const std::int32_t type = image().value(reg::kDirectType);
+  const bool stopped = (image().word(reg::kInputLevel + 1) & (bit::kStop | bit::kFree)) != 0;
   // An absolute AZ move may be re-targeted while it runs; anything else needs READY.
-  if (alarm_ != 0 || stopped || (axis_.moving(now) && type != kAbsolute)) return;
-  int refused = refused_moves_.load();
-  if (refused > 0 && refused_moves_.compare_exchange_strong(refused, refused - 1)) return;
-  std::int32_t target = long_at(reg::kDirectPosition);
-  if (type == kFromCommand) target += axis_.command_steps(now);
-  if (type == kFromActual) target += axis_.encoder_steps(now);
+  if (alarm() != 0 || stopped || (axis().moving(now) && type != kAbsolute)) return;
   if (type != kAbsolute && type != kFromCommand && type != kFromActual) return;
+  std::int64_t target = image().value(reg::kDirectPosition);
+  if (type == kFromCommand) target += command_position(now);
+  if (type == kFromActual) target += actual_position(now);
   if (leaves_limits(target, now)) {
-    alarm_ = kAlarmOvertravel;
+    set_alarm(kAlarmOvertravel);
     return;
   }
-  const double speed = long_at(reg::kDirectSpeed);
-  const double changing = long_at(reg::kDirectChanging);
-  const double stopping = long_at(reg::kDirectStopping);
-  if (speed <= 0 || changing <= 0 || stopping <= 0) return;
-  ++moves_;
-  axis_.move_to(now, target, speed, changing, stopping);
+  start_move(now, target, image().value(reg::kDirectSpeed), image().value(reg::kDirectChanging),
+             image().value(reg::kDirectStopping));
 }
 
-void AzDrive::raise_alarm(int code) {
-  alarm_ = code;
-  axis_.stop(HostClock::now());
-}
+void AzDrive::on_limit(HostTime /*now*/) { set_alarm(kAlarmLimitSwitch); }
 
-void AzDrive::refuse_moves(int count) { refused_moves_ = count; }
+void AzDrive::on_torque_off(HostTime /*now*/) { set_alarm(kAlarmTorqueOff); }
 
 }  // namespace fvd::sim

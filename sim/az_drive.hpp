@@ -3,12 +3,7 @@
 /// The registers of an Oriental Motor AZ drive (HM-60262-6E; addresses are PDU addresses, 32-bit values high word
 /// first) on top of a simulated axis.
 
-#include <array>
-#include <atomic>
-#include <cstdint>
-
-#include "sim/axis_model.hpp"
-#include "sim/register_bank.hpp"
+#include "sim/sim_drive.hpp"
 
 namespace fvd::sim {
 
@@ -20,40 +15,32 @@ namespace fvd::sim {
 /// | 0x00C6, 0x0122 | command position; 0x00CC, 0x0120 actual (encoder) position, steps                          |
 /// | 0x00F8, 0x00FA | driver and motor temperature, 0.1 degC                                                     |
 /// | 0x0178..0x017F | output image independent of the assignment of signals                                      |
-/// | 0x018A         | position preset; 0x0386, 0x0388, 0x038A software overtravel: action, + and - limit         |
+/// | 0x018A         | <- 1: position preset, the axis stands at 0x038C                                           |
+/// | 0x0386..0x038B | software overtravel: action (-1 off, 1 stop), + and - limit                                |
 ///
 /// Other addresses below 0x0400 read as 0 and keep what is written, above are refused. A move is ignored without a word
-/// when the drive is not READY, as the real one does.
-class AzDrive final : public RegisterBank {
+/// when the drive is not READY, as the real one does; a running absolute move may be given another target. Moves before
+/// homing are allowed. Alarms: 0x66 on a limit switch, 0x67 for a target beyond the software limits, 0x68 when torque
+/// is taken away (HWTO). A power cycle loses the reference, as without a home position in the absolute encoder.
+class AzDrive final : public SimDrive {
  public:
   /// axis outlives the drive.
-  explicit AzDrive(AxisModel& axis);
-
-  [[nodiscard]] ModbusException read(int address, std::span<std::uint16_t> values) override;
-  [[nodiscard]] ModbusException write(int address, std::span<const std::uint16_t> values) override;
-
-  // context: any thread.
-  void raise_alarm(int code);                                  ///< stops the axis, as the real drive does
-  void refuse_moves(int count);                                ///< the next `count` moves are ignored without a word
-  [[nodiscard]] int moves() const noexcept { return moves_; }  ///< moves executed since power on
+  explicit AzDrive(AxisModel& axis, DriveClock clock = HostClock::now);
 
  private:
-  static constexpr int kRegisters = 0x0400;
+  void power_on() override;
+  void refresh(HostTime now) override;
+  void was_written(const Written& written, HostTime now) override;
+  void on_alarm(HostTime /*now*/) override {}
+  void on_limit(HostTime now) override;
+  void on_torque_off(HostTime now) override;
 
-  [[nodiscard]] std::int32_t long_at(int address) const;
-  void set_long(int address, std::int32_t value);
-  void refresh(HostTime now);
-  void written(int address, std::size_t count, HostTime now);
+  void act_on_direct_data(const Written& written, HostTime now);
   void act_on_inputs(unsigned rising, HostTime now);
   void start_direct_operation(HostTime now);
-  [[nodiscard]] bool ready(HostTime now) const;
-  [[nodiscard]] bool leaves_limits(std::int32_t target, HostTime now) const;
+  [[nodiscard]] bool leaves_limits(std::int64_t target, HostTime now);
 
-  AxisModel& axis_;
-  std::array<std::uint16_t, kRegisters> registers_{};
-  std::atomic<int> alarm_{0};
-  std::atomic<int> refused_moves_{0};
-  std::atomic<int> moves_{0};
+  unsigned level_ = 0;  // the inputs that were last seen
 };
 
 }  // namespace fvd::sim
