@@ -72,6 +72,7 @@ std::optional<AxisSample> AxisPoller::read_sample(std::string& error) {
   sample.moving = holds(profile_.moving);
   sample.in_position = holds(profile_.in_position);
   sample.alarm = holds(profile_.alarm);
+  if (profile_.target) sample.target = image.value(*profile_.target);
   if (sample.alarm) {
     auto code = image.value(profile_.alarm_code);
     if (!code) code = read_register(link_, profile_.alarm_code);

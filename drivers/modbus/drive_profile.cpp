@@ -29,6 +29,7 @@ class ProfileReader {
     parts_.read_registers(object("registers"), order_);
     profile_.position = named_register("/feedback", "register");
     profile_.alarm_code = named_register("", "alarm_register");
+    if (!target_register_.empty()) profile_.target = named_register("", "target_register");
     read_poll();
     read_status();
     read_sequences();
@@ -74,6 +75,8 @@ class ProfileReader {
     fields.choice("word_order", word_order_, {"high_first", "low_first"}, "order of the words of 32-bit registers");
     fields.text("alarm_register", alarm_register_, 64, "register of the alarm code");
     fields.require("alarm_register");
+    fields.text("target_register", target_register_, 64,
+                "reads back the last target; needed where homed is remembered");
     fields.group("scale", "units of the drive", [this](Fields& scale) {
       scale.number("steps_per_um", profile_.steps_per_um, positive(1e6), "commanded steps per um");
       scale.choice("direction", direction_, {"positive", "negative"}, "sign of the steps when z grows");
@@ -178,6 +181,8 @@ class ProfileReader {
       problems_.push_back({"/status/homed", "is missing and has no default; \"remembered\" = since the last homing"});
     } else if (status["homed"] != "remembered") {
       profile_.homed = parts_.condition("/status/homed", status["homed"]);
+    } else if (!profile_.target) {
+      problems_.push_back({"/target_register", "is missing: without a bit for homed it tells a restart of the drive"});
     }
     const std::map<std::string, std::optional<DriveCondition>*> known{{"limit_positive", &profile_.limit_positive},
                                                                       {"limit_negative", &profile_.limit_negative},
@@ -346,6 +351,7 @@ class ProfileReader {
   std::string feedback_ = "none";
   std::string feedback_register_;
   std::string alarm_register_;
+  std::string target_register_;
   double acceleration_inverse_ = 0.0;
 };
 

@@ -76,6 +76,9 @@ struct DriveProfile {
   DriveRegister position;
   DriveRegister alarm_code;  ///< read on its own, in alarm, where no block holds it
 
+  /// Reads the target of the last move; forgotten in a restart. For drives that do not say whether they are homed.
+  std::optional<DriveRegister> target;
+
   DriveCondition enabled;
   std::optional<DriveCondition> homed;  ///< nothing: the drive has no such bit; homed since the last homing then
   DriveCondition moving;

@@ -28,7 +28,7 @@ class ModbusZStage final : public ZStage {
     identify();
     check_soft_limits();
     poller_ = std::make_unique<AxisPoller>(link_, profile_, config_.speed_um_per_s);
-    require_done(run(profile_.enable, "enable", {}));
+    enable({});
     arm_watchdog();
     state_ = AxisState::kReady;
   }
@@ -86,7 +86,9 @@ class ModbusZStage final : public ZStage {
 
   void home(std::stop_token stop) override {
     require_no_alarm(sample_after(HostClock::now(), stop));
+    if (!sample_after(HostClock::now(), stop).enabled) enable(stop);
     const Doing homing(state_, AxisState::kHoming);
+    target_.reset();
     const HostTime started = HostClock::now();
     poller_->remember_homed(false);
     const Outcome sent = run(profile_.home, "home", stop);
@@ -127,8 +129,9 @@ class ModbusZStage final : public ZStage {
     if (!before.homed) {
       throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + link_.description() + " before it is homed");
     }
-    // A drive that was halted by its quick stop, or came back from an alarm, is disabled; this is a new command.
-    if (!before.enabled) require_done(run(profile_.enable, "enable", stop));
+    require_enabled(before);
+    if (!before.enabled) enable(stop);  // halted by our own stop, or back from an alarm: this is a new command
+    require_reference(before);
     const Doing moving(state_, AxisState::kMoving);
     move.started = HostClock::now();
     start_move(move, before, criterion, stop);
@@ -142,6 +145,7 @@ class ModbusZStage final : public ZStage {
   }
 
   void stop() noexcept override {
+    expect_enabled_ = false;  // some drives' quick stop ends in "disabled"
     try {
       SequenceResult result;
       for (int attempt = 0; attempt < kStopAttempts; ++attempt) {
@@ -185,6 +189,33 @@ class ModbusZStage final : public ZStage {
             << " um reach beyond the drive's own, " << std::min(one, other) << ".." << std::max(one, other)
             << " um: narrow /stage/min_um and max_um, or widen the drive's";
     throw Error(ErrorCode::kStageLimit, message.str());
+  }
+
+  void enable(std::stop_token stop) {
+    require_done(run(profile_.enable, "enable", std::move(stop)));
+    expect_enabled_ = true;
+  }
+
+  /// A drive that somebody else has disabled - an emergency stop, a power cut - may have been moved by hand since.
+  void require_enabled(const AxisSample& sample) {
+    if (sample.enabled || !expect_enabled_) return;
+    expect_enabled_ = false;
+    poller_->remember_homed(false);
+    throw Error(ErrorCode::kStageAlarm,
+                "the drive at " + link_.description() +
+                    " was disabled, and not by fvd: an emergency stop or a power cut? See to it, then home again");
+  }
+
+  /// Drives that do not say whether they are homed forget their last target in a restart.
+  void require_reference(const AxisSample& sample) {
+    if (profile_.homed || !target_) return;
+    auto read = sample.target;
+    if (!read) read = read_register(link_, *profile_.target);
+    if (!read || *read == *target_) return;
+    poller_->remember_homed(false);
+    target_.reset();
+    throw Error(ErrorCode::kStageNotHomed, "the drive at " + link_.description() +
+                                               " has forgotten its last target, as after a power cut; home again");
   }
 
   void arm_watchdog() {
@@ -300,6 +331,7 @@ class ModbusZStage final : public ZStage {
     for (int attempt = 1;; ++attempt) {
       const SequenceResult result =
           run_sequence(link_, profile_.move_absolute, values(move.target_counts), ModbusPriority::kNormal, stop);
+      target_ = move.target_counts.value;
       if (result.outcome == ModbusOutcome::kOk) return;
       if (stop.stop_requested()) {
         this->stop();
@@ -344,6 +376,8 @@ class ModbusZStage final : public ZStage {
       last = sample.begun;
       ++move.polls;
       require_no_alarm(sample);
+      require_enabled(sample);
+      if (begun && sample.target) require_reference(sample);
       if (!sample.homed) {
         throw Error(ErrorCode::kStageNotHomed, "the drive at " + link_.description() +
                                                    " lost its reference in the move, as after a power cut; home again");
@@ -379,6 +413,8 @@ class ModbusZStage final : public ZStage {
   const DriveProfile profile_;
   ModbusLink link_;
   std::atomic<AxisState> state_{AxisState::kIdentifying};
+  std::atomic<bool> expect_enabled_{false};
+  std::optional<std::int64_t> target_;  // steps, last one sent since homing
   std::unique_ptr<AxisPoller> poller_;
 };
 

@@ -3,6 +3,7 @@
 /// The latest samples of an axis with their times.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct AxisSample {
   bool limit_positive = false;
   bool limit_negative = false;
   bool emergency_stop = false;
+  std::optional<std::int64_t> target{};  ///< steps, as the drive reads it back, where that is polled
 };
 
 /// A ring of fixed size, times increasing. context: one thread at a time.

@@ -1,0 +1,108 @@
+#pragma once
+
+/// One fault in the middle of a scan's moves, and whether anything false was believed because of it.
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "tests/support/simulated_drive.hpp"
+
+namespace fvd::test {
+
+struct FaultOutcome {
+  int wrong_values = 0;        ///< positions reported as measured that the axis was not at
+  int moves_too_many = 0;      ///< motions the drive executed beyond those commanded
+  int errors = 0;              ///< moves that ended in an error that said so
+  std::string story;           ///< what went otherwise than it should
+  std::size_t unconsumed = 0;  ///< faults that never happened
+};
+
+/// The faults of the matrix, where they strike, and whether the move may go on as if nothing had been.
+struct FaultCase {
+  const char* name;
+  sim::FaultStep step;
+  bool ends_the_move;  ///< the fault is one that no driver may hide
+};
+
+inline std::vector<FaultCase> fault_cases() {
+  using sim::FaultKind;
+  using sim::FaultOn;
+  using std::chrono::milliseconds;
+  const auto step = [](FaultOn on, FaultKind fault, milliseconds delay = milliseconds(0), int code = 0, int count = 1) {
+    sim::FaultStep one;
+    one.on = on;
+    one.fault = fault;
+    one.delay = delay;
+    one.code = code;
+    one.count = count;
+    return one;
+  };
+  return {
+      {"LateReplyToRead", step(FaultOn::kRead, FaultKind::kLateReply, milliseconds(220)), false},
+      {"LateReplyToWrite", step(FaultOn::kWrite, FaultKind::kLateReply, milliseconds(220)), false},
+      {"LostReplyToRead", step(FaultOn::kRead, FaultKind::kLostReply), false},
+      {"LostReplyToWrite", step(FaultOn::kWrite, FaultKind::kLostReply), false},
+      {"LostRead", step(FaultOn::kRead, FaultKind::kLostRequest), false},
+      {"LostWrite", step(FaultOn::kWrite, FaultKind::kLostRequest), false},
+      {"WrongCrcOfRead", step(FaultOn::kRead, FaultKind::kWrongCrc), false},
+      {"WrongCrcOfWrite", step(FaultOn::kWrite, FaultKind::kWrongCrc), false},
+      {"TruncatedRead", step(FaultOn::kRead, FaultKind::kTruncatedFrame), false},
+      {"TruncatedWrite", step(FaultOn::kWrite, FaultKind::kTruncatedFrame), false},
+      {"ExceptionToWrite", step(FaultOn::kWrite, FaultKind::kException, milliseconds(0), 4), true},
+      {"SilentRefusal", step(FaultOn::kWrite, FaultKind::kSilentRefusal), true},
+      {"StaleInPosition", step(FaultOn::kWrite, FaultKind::kStaleInPosition, milliseconds(30)), false},
+      {"AlarmInMotion", step(FaultOn::kRead, FaultKind::kAlarmInMotion, milliseconds(0), 0x10), true},
+      {"EmergencyStop", step(FaultOn::kRead, FaultKind::kEmergencyStop), true},
+      {"LinkCut", step(FaultOn::kAny, FaultKind::kLinkCut, milliseconds(80)), false},
+      {"LinkCutForLong", step(FaultOn::kAny, FaultKind::kLinkCut, milliseconds(5000)), true},
+      {"PowerCycle", step(FaultOn::kRead, FaultKind::kPowerCycle, milliseconds(60)), true},
+  };
+}
+
+/// Six moves of 10 um; the fault strikes from the third on. A value is wrong if the stage calls it measured and the
+/// axis was further from it than the settle window and a half allows.
+inline FaultOutcome run_fault_case(const DriveCase& drive, Transport transport, const FaultCase& fault) {
+  constexpr double kTolerance_um = 0.75;
+  using std::chrono::milliseconds;
+  SimulatedDrive plant(drive, transport);
+  FaultOutcome outcome;
+  std::ostringstream story;
+  auto stage = plant.open_homed();
+  const int before = plant.drive().moves();
+  const SettleCriterion criterion{
+      .window = Micrometers{0.5}, .samples = 3, .dwell = milliseconds(10), .timeout = milliseconds(2500)};
+  int commanded = 0;
+  for (int i = 1; i <= 6; ++i) {
+    if (i == 3) plant.faults().add(fault.step);
+    const double target_um = 10.0 * i;
+    ++commanded;
+    try {
+      const MoveRecord move = stage->move_to(Micrometers{target_um}, criterion, {});
+      const HostTime now = HostClock::now();
+      const PositionMean mean = stage->mean_position(now, now + milliseconds(5));
+      const double true_um = plant.axis().true_position_um(HostClock::now());
+      for (const double value : {move.position.value, mean.mean.value}) {
+        if (std::abs(value - true_um) <= kTolerance_um) continue;
+        ++outcome.wrong_values;
+        story << "move " << i << ": measured " << value << " um, true " << true_um << " um; ";
+      }
+      if (std::abs(true_um - target_um) > kTolerance_um) {
+        ++outcome.wrong_values;
+        story << "move " << i << ": settled at " << true_um << " um for " << target_um << " um; ";
+      }
+    } catch (const Error& error) {
+      ++outcome.errors;
+      story << "move " << i << ": " << error.what() << "; ";
+      break;  // what a scan does
+    }
+  }
+  outcome.moves_too_many = std::max(0, plant.drive().moves() - before - commanded);
+  outcome.unconsumed = plant.faults().unconsumed();
+  outcome.story = story.str();
+  return outcome;
+}
+
+}  // namespace fvd::test

@@ -1,0 +1,93 @@
+#pragma once
+
+/// A simulated drive of any kind on either line, and the stage that drives it by the shipped profile.
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "drivers/modbus/modbus_z_stage.hpp"
+#include "sim/axis_model.hpp"
+#include "sim/drive_kinds.hpp"
+#include "tests/support/simulated_line.hpp"
+
+namespace fvd::test {
+
+/// A drive and the profile that ships for it.
+struct DriveCase {
+  sim::DriveKind kind;
+  const char* profile;
+  const char* name;
+};
+inline constexpr DriveCase kDriveCases[] = {{sim::DriveKind::kAz, "oriental-az.json", "Az"},
+                                            {sim::DriveKind::kAr, "oriental-ar.json", "Ar"},
+                                            {sim::DriveKind::kLeadshine, "leadshine-pr.json", "Leadshine"},
+                                            {sim::DriveKind::kScl, "applied-motion-scl.json", "Scl"},
+                                            {sim::DriveKind::kCia402, "nanotec-cia402.json", "Cia402"}};
+
+inline std::ostream& operator<<(std::ostream& out, const DriveCase& drive) { return out << drive.name; }
+
+/// A nearly perfect axis: what is wrong in the figures is fvd's.
+inline sim::AxisParameters good_axis() {
+  sim::AxisParameters parameters;
+  parameters.settle_noise_um = 0.02;
+  parameters.encoder_noise_um = 0.01;
+  parameters.start_latency_ms = 3.0;
+  return parameters;
+}
+
+/// 115200 baud, a drive that thinks for 4 ms, an adapter with its latency timer at 1 ms.
+inline sim::LineTiming real_line() {
+  sim::LineTiming timing;
+  timing.turnaround = std::chrono::milliseconds(4);
+  timing.usb_latency = std::chrono::milliseconds(1);
+  return timing;
+}
+
+class SimulatedDrive {
+ public:
+  SimulatedDrive(const DriveCase& drive, Transport transport, const sim::AxisParameters& parameters = good_axis(),
+                 const sim::LineTiming& timing = {})
+      : case_(drive),
+        axis_(parameters),
+        drive_(sim::make_drive(drive.kind, axis_)),
+        line_(transport, *drive_, faults_, drive_.get(), timing) {}
+
+  [[nodiscard]] sim::AxisModel& axis() { return axis_; }
+  [[nodiscard]] sim::SimDrive& drive() { return *drive_; }
+  [[nodiscard]] sim::FaultScript& faults() { return faults_; }
+  [[nodiscard]] SimulatedLine& line() { return line_; }
+
+  [[nodiscard]] StageConfig config() const {
+    const ModbusLinkConfig link = line_.config();
+    StageConfig config;
+    config.profile = std::string(FVD_SOURCE_DIR "/config/drives/") + case_.profile;
+    if (const auto* serial = std::get_if<ModbusSerialEndpoint>(&link.endpoint)) {
+      config.transport = "rtu";
+      config.serial_device = serial->device;
+    } else {
+      config.port = std::get<ModbusTcpEndpoint>(link.endpoint).port;
+    }
+    config.response_timeout = link.response_timeout;
+    config.quiet = link.quiet;
+    config.min = Micrometers{-500.0};
+    config.max = Micrometers{1500.0};
+    config.simulated = true;
+    return config;
+  }
+  [[nodiscard]] std::unique_ptr<ZStage> open() const { return open_modbus_stage(config()); }
+  [[nodiscard]] std::unique_ptr<ZStage> open_homed() const {
+    auto stage = open();
+    stage->home({});
+    return stage;
+  }
+
+ private:
+  const DriveCase case_;
+  sim::AxisModel axis_;
+  std::unique_ptr<sim::SimDrive> drive_;
+  sim::FaultScript faults_;
+  SimulatedLine line_;
+};
+
+}  // namespace fvd::test
