@@ -89,9 +89,19 @@ struct AxisModel::Impl {
     // What the motor does beyond its profile, the load does too.
     const double deviation = motor_um(move, at) - move.profile.at(since_start(move, at)).position;
     const double load = load_um(move, at);
-    const double screw = p.lead_error_um * std::sin(2.0 * std::numbers::pi * load / p.lead_um);
-    return load + deviation + screw + p.drift_um_per_min * seconds(at - born) / 60.0;
+    return stage_um(load, deviation) + p.drift_um_per_min * minutes(at) +
+           p.drift_um_per_k * p.temperature_rate_k_per_min * minutes(at);
   }
+
+  /// Where screw and scale put the stage for a load position, and a deviation of the motor from it.
+  [[nodiscard]] double stage_um(double load, double deviation) const {
+    const double screw = p.lead_error_um * std::sin(2.0 * std::numbers::pi * load / p.lead_um +
+                                                    p.lead_phase_deg * std::numbers::pi / 180.0);
+    const double motor = load + deviation;
+    return motor + p.scale_error * motor + screw;
+  }
+
+  [[nodiscard]] double minutes(HostTime at) const { return seconds(at - born) / 60.0; }
 
   [[nodiscard]] double origin_um(const Move& move, HostTime at) const {
     return running(move, at) ? move.origin : move.origin_after;
@@ -212,10 +222,18 @@ std::int32_t AxisModel::encoder_steps(HostTime now) const {
   const std::lock_guard lock(impl_->mutex);
   const auto& move = impl_->move_at(now);
   const double noise = impl_->p.encoder_noise_um * impl_->encoder_normal(impl_->encoder_random);
-  const double position = impl_->motor_um(move, now) - impl_->origin_um(move, now) + noise;
+  const double origin = impl_->origin_um(move, now);
+  const double seen = impl_->p.feedback == Feedback::kLinearScale
+                          ? impl_->true_um(now) - impl_->stage_um(origin, 0.0)  // 0 at the origin
+                          : impl_->motor_um(move, now) - origin;
+  const double position = seen + noise;
   const double resolution = impl_->p.encoder_resolution_um;
   const double quantised = resolution > 0 ? std::round(position / resolution) * resolution : position;
   return static_cast<std::int32_t>(std::lround(quantised * impl_->p.steps_per_um));
+}
+
+double AxisModel::temperature_c(HostTime at) const {
+  return impl_->p.temperature_c + impl_->p.temperature_rate_k_per_min * impl_->minutes(at);
 }
 
 double AxisModel::true_position_um(HostTime at) const {

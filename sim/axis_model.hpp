@@ -9,6 +9,12 @@
 
 namespace fvd::sim {
 
+/// What the drive's encoder sits on.
+enum class Feedback {
+  kMotorEncoder,  ///< sees the motor's shaft: neither backlash nor screw nor heat
+  kLinearScale,   ///< sees the stage: its true position; the drive does not correct what it sees
+};
+
 /// All errors of the axis, each 0 = absent. Lengths in um, frequencies in Hz.
 struct AxisParameters {
   double steps_per_um = 100.0;          ///< commanded steps per um (electronic gear)
@@ -18,10 +24,16 @@ struct AxisParameters {
   double ring_amplitude_um = 0.0;       ///< damped oscillation after a move
   double ring_frequency_hz = 70.0;
   double ring_decay_ms = 15.0;
-  double backlash_um = 0.0;              ///< lost motion on reversal; not seen by a motor encoder
-  double lead_error_um = 0.0;            ///< amplitude of the periodic screw error; not seen by a motor encoder
-  double lead_um = 1000.0;               ///< screw lead, the period of lead_error_um
-  double drift_um_per_min = 0.0;         ///< thermal drift of the true position
+  double backlash_um = 0.0;       ///< lost motion on reversal; not seen by a motor encoder
+  double lead_error_um = 0.0;     ///< amplitude of the periodic screw error; not seen by a motor encoder
+  double lead_um = 1000.0;        ///< screw lead, the period of lead_error_um
+  double lead_phase_deg = 0.0;    ///< phase of lead_error_um at motor position 0
+  double scale_error = 0.0;       ///< alpha_z - 1: true motion over commanded motion, about position 0
+  double drift_um_per_min = 0.0;  ///< drift of the true position with time
+  double temperature_c = 20.0;    ///< of the axis, at the start
+  double temperature_rate_k_per_min = 0.0;
+  double drift_um_per_k = 0.0;  ///< drift of the true position with temperature
+  Feedback feedback = Feedback::kMotorEncoder;
   double start_latency_ms = 0.0;         ///< command to motion; IN-POS is stale meanwhile
   double home_position_um = 0.0;         ///< where homing ends
   double power_on_position_um = -200.0;  ///< true position before homing
@@ -49,6 +61,9 @@ class AxisModel {
   [[nodiscard]] bool homed(HostTime now) const;
   [[nodiscard]] std::int32_t command_steps(HostTime now) const;
   [[nodiscard]] std::int32_t encoder_steps(HostTime now) const;
+
+  /// Temperature of the axis, degC.
+  [[nodiscard]] double temperature_c(HostTime at) const;
 
   /// Where the focal plane truly is. For any time not before the last command.
   [[nodiscard]] double true_position_um(HostTime at) const;

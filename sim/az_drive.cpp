@@ -1,5 +1,7 @@
 #include "sim/az_drive.hpp"
 
+#include <cmath>
+
 namespace fvd::sim {
 
 namespace {
@@ -51,6 +53,12 @@ constexpr int kAlarmLimitSwitch = 0x66;
 constexpr int kAlarmOvertravel = 0x67;
 constexpr int kAlarmTorqueOff = 0x68;
 
+/// Driver and motor are warmer than the axis by so much, K.
+constexpr double kDriverAboveAxis = 21.2;
+constexpr double kMotorAboveAxis = 18.5;
+
+std::int32_t tenths(double value) { return static_cast<std::int32_t>(std::lround(10.0 * value)); }
+
 /// Operation types: where a target counts from.
 constexpr int kAbsolute = 1;
 constexpr int kFromCommand = 2;
@@ -86,8 +94,9 @@ void AzDrive::refresh(HostTime now) {
   const std::int32_t actual = actual_position(now);
   image().set_value(reg::kActualPosition, actual);
   image().set_value(reg::kActualPosition32, actual);
-  image().set_value(reg::kDriverTemperature, 412);
-  image().set_value(reg::kMotorTemperature, 385);
+  const double temperature = axis().temperature_c(now);
+  image().set_value(reg::kDriverTemperature, tenths(temperature + kDriverAboveAxis));
+  image().set_value(reg::kMotorTemperature, tenths(temperature + kMotorAboveAxis));
   // Signal n of the fixed image is bit n % 16 of word n / 16.
   image().set_word(reg::kFixedImage, homed ? 1U : 0U);
   image().set_word(reg::kFixedImage + 1, (is_in_alarm ? 1U << 1U : 1U << 2U) | (1U << 3U) | (ready ? 1U << 4U : 0U) |

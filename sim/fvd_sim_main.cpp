@@ -1,8 +1,10 @@
 /// fvd-sim: a simulated microscope on real protocols, and the comparison of what fvd made of it with the truth.
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <optional>
 
@@ -11,6 +13,7 @@
 
 #include "core/error.hpp"
 #include "sim/evaluate.hpp"
+#include "sim/fault_config.hpp"
 #include "sim/plant.hpp"
 #include "sim/world_config.hpp"
 
@@ -23,6 +26,10 @@ struct Arguments {
   std::string camera_address = "127.0.0.1";
   std::string stage_address = "127.0.0.1";
   int stage_port = 1502;
+  std::string drive = "az";
+  std::filesystem::path stage_pty;
+  std::vector<double> line_timing;  // baud, turnaround ms, adapter's latency ms
+  std::filesystem::path faults;
   double packet_loss = 0.0;
   std::optional<std::uint64_t> seed;
   std::filesystem::path ready_file;
@@ -44,12 +51,35 @@ AxisParameters plant_of(const Arguments& arguments) {
   return plant;
 }
 
+LineTiming line_timing_of(const Arguments& arguments) {
+  const auto microseconds = [](double ms) {
+    return std::chrono::microseconds(static_cast<std::int64_t>(std::clamp(ms, -1.0, 60000.0) * 1000.0));
+  };
+  LineTiming timing;
+  if (arguments.line_timing.size() != 3) return timing;
+  timing.baud = static_cast<int>(std::clamp(arguments.line_timing[0], 0.0, 1e9));
+  timing.turnaround = microseconds(arguments.line_timing[1]);
+  timing.usb_latency = microseconds(arguments.line_timing[2]);
+  return timing;
+}
+
+/// Where the stage is, in words.
+std::string stage_of(const Plant& plant, const Arguments& arguments) {
+  if (!arguments.stage_pty.empty()) return arguments.stage_pty.string() + " unit 1 (Modbus RTU)";
+  return arguments.stage_address + ':' + std::to_string(plant.stage_port()) + " unit 1 (Modbus TCP)";
+}
+
 void write_ready_file(const std::filesystem::path& file, const Plant& plant, const Arguments& arguments) {
   if (file.empty()) return;
   const auto temporary = file.string() + ".tmp";
   std::ofstream out(temporary);
-  out << "{\"camera_address\": \"" << plant.camera_address() << "\", \"stage_address\": \"" << arguments.stage_address
-      << "\", \"stage_port\": " << plant.stage_port() << ", \"pid\": " << ::getpid() << "}\n";
+  out << "{\"camera_address\": \"" << plant.camera_address() << "\", ";
+  if (arguments.stage_pty.empty()) {
+    out << "\"stage_address\": \"" << arguments.stage_address << "\", \"stage_port\": " << plant.stage_port();
+  } else {
+    out << "\"stage_pty\": " << std::quoted(arguments.stage_pty.string());
+  }
+  out << ", \"drive\": \"" << arguments.drive << "\", \"pid\": " << ::getpid() << "}\n";
   out.close();
   if (!out || ::rename(temporary.c_str(), file.c_str()) != 0) {
     throw Error(ErrorCode::kStorageWrite, "cannot write " + file.string());
@@ -66,24 +96,29 @@ int run(const Arguments& arguments) {
                .axis = plant_of(arguments),
                .camera_address = arguments.camera_address,
                .stage_address = arguments.stage_address,
-               .stage_port = arguments.stage_port});
+               .stage_port = arguments.stage_port,
+               .drive = drive_kind(arguments.drive),
+               .stage_pty = arguments.stage_pty,
+               .line_timing = line_timing_of(arguments),
+               .faults = arguments.faults.empty() ? std::vector<FaultStep>{} : load_fault_steps(arguments.faults)});
   plant.camera().set_packet_loss(arguments.packet_loss);
   std::cout << "camera " << plant.camera_address() << ":3956 (GigE Vision), " << plant.world().sensor_width() << " x "
-            << plant.world().sensor_height() << " pixels; stage " << arguments.stage_address << ':'
-            << plant.stage_port() << " unit 1 (Modbus TCP); " << (plant.world().memory_bytes() >> 20U) << " MiB"
-            << std::endl;
+            << plant.world().sensor_height() << " pixels; stage " << stage_of(plant, arguments) << ", drive "
+            << arguments.drive << "; " << (plant.world().memory_bytes() >> 20U) << " MiB" << std::endl;
   write_ready_file(arguments.ready_file, plant, arguments);
   int received = 0;
   sigwait(&signals, &received);
   std::cout << "frames sent " << plant.camera().frames() << ", packets lost " << plant.camera().packets_lost()
-            << ", packets resent " << plant.camera().packets_resent() << ", Modbus requests "
-            << plant.stage().requests() << std::endl;
-  return 0;
+            << ", packets resent " << plant.camera().packets_resent() << ", Modbus requests " << plant.stage_requests()
+            << std::endl;
+  if (plant.faults().unconsumed() == 0) return 0;
+  std::cout << "faults that did not happen:\n" << plant.faults().describe_unconsumed() << std::endl;
+  return 1;
 }
 
 int main_of(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{"fvd-sim: a simulated microscope on GigE Vision and Modbus TCP", "fvd-sim"};
+  CLI::App app{"fvd-sim: a simulated microscope on GigE Vision and Modbus", "fvd-sim"};
   app.require_subcommand(1);
   const auto add_world = [&](CLI::App* command) {
     command->add_option("--world", arguments.world, "world file; default: the chapter's surface")
@@ -97,9 +132,25 @@ int main_of(int argc, char** argv) {
       ->capture_default_str();
   running->add_option("--stage-address", arguments.stage_address, "address of the Modbus server")
       ->capture_default_str();
-  running->add_option("--stage-port", arguments.stage_port, "its port, 0 = any free one")
-      ->check(CLI::Range(0, 65535))
+  auto* port = running->add_option("--stage-port", arguments.stage_port, "its port, 0 = any free one")
+                   ->check(CLI::Range(0, 65535))
+                   ->capture_default_str();
+  running->add_option("--drive", arguments.drive, "whose registers the stage has")
+      ->check(CLI::IsMember(drive_names()))
       ->capture_default_str();
+  auto* pty = running->add_option("--stage-pty", arguments.stage_pty,
+                                  "serve Modbus RTU on a pseudo-terminal linked here instead of TCP");
+  pty->excludes(port);
+  running
+      ->add_option("--line-timing", arguments.line_timing,
+                   "baud, turnaround ms, adapter's latency ms of that line; default: 115200,0,0")
+      ->expected(3)
+      ->delimiter(',')
+      ->needs(pty);
+  running
+      ->add_option("--faults", arguments.faults,
+                   "script of faults of stage and line; exit status 1 if one did not happen")
+      ->check(CLI::ExistingFile);
   running->add_option("--packet-loss", arguments.packet_loss, "fraction of stream packets that are lost")
       ->check(CLI::Range(0.0, 0.9));
   running->add_option("--ready-file", arguments.ready_file, "written once both serve: addresses and pid as JSON");

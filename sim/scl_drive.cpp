@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace fvd::sim {
@@ -57,6 +58,8 @@ constexpr int kLimitCw = 1 << 2;
 constexpr int kMoveWhileDisabled = 1 << 12;
 /// Position error, over-temperature, voltages, over-current, encoder.
 constexpr int kFaults = (1 << 0) | (1 << 3) | (1 << 4) | (1 << 5) | (1 << 6) | (1 << 7) | (1 << 9);
+
+constexpr double kAboveAxis = 21.2;  // K, the drive's electronics
 
 constexpr unsigned kMaxAcceleration = 32767;
 constexpr unsigned kMaxSpeed = 32000;
@@ -126,7 +129,8 @@ void SclDrive::refresh(HostTime now) {
   image().set_value(reg::kImmediate, command);
   image().set_value(reg::kTarget, static_cast<std::int32_t>(target_));
   image().set_value(reg::kPositionError, command - actual);
-  image().set_word(reg::kTemperature, 412);
+  image().set_word(reg::kTemperature,
+                   static_cast<unsigned>(std::lround(10.0 * (axis().temperature_c(now) + kAboveAxis))));
 }
 
 void SclDrive::was_written(const Written& written, HostTime now) {

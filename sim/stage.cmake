@@ -5,6 +5,7 @@ target_sources(fvd_sim PRIVATE
   az_drive.cpp
   cia402_drive.cpp
   drive_kinds.cpp
+  fault_config.cpp
   fault_script.cpp
   leadshine_drive.cpp
   modbus_responder.cpp

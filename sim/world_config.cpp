@@ -12,6 +12,7 @@ namespace {
 
 const std::vector<std::string> kSurfaces{"chapter", "tilted", "sphere", "rough", "height_map"};
 const std::vector<std::string> kTextures{"granite", "fine", "white"};
+const std::vector<std::string> kFeedbacks{"motor_encoder", "linear_scale"};
 
 void describe(WorldParameters& world, Fields& fields) {
   std::string surface = kSurfaces[static_cast<std::size_t>(world.surface)];
@@ -52,7 +53,16 @@ void describe(AxisParameters& plant, Fields& fields) {
   fields.number("backlash_um", plant.backlash_um, {0.0, 1000.0}, "lost motion on reversal");
   fields.number("lead_error_um", plant.lead_error_um, {0.0, 1000.0}, "amplitude of the periodic screw error");
   fields.number("lead_um", plant.lead_um, positive(1e6), "screw lead");
-  fields.number("drift_um_per_min", plant.drift_um_per_min, {-1000.0, 1000.0}, "thermal drift");
+  fields.number("lead_phase_deg", plant.lead_phase_deg, {-360.0, 360.0}, "phase of that error at motor position 0");
+  fields.number("scale_error", plant.scale_error, {-0.1, 0.1}, "true motion over commanded motion, minus 1");
+  fields.number("drift_um_per_min", plant.drift_um_per_min, {-1000.0, 1000.0}, "drift with time");
+  fields.number("temperature_c", plant.temperature_c, {-40.0, 100.0}, "of the axis, at the start");
+  fields.number("temperature_rate_k_per_min", plant.temperature_rate_k_per_min, {-100.0, 100.0}, "how it rises");
+  fields.number("drift_um_per_k", plant.drift_um_per_k, {-1000.0, 1000.0}, "drift with temperature");
+  std::string feedback = kFeedbacks[static_cast<std::size_t>(plant.feedback)];
+  fields.choice("feedback", feedback, kFeedbacks, "what the encoder sits on");
+  plant.feedback =
+      static_cast<Feedback>(std::find(kFeedbacks.begin(), kFeedbacks.end(), feedback) - kFeedbacks.begin());
   fields.number("start_latency_ms", plant.start_latency_ms, {0.0, 1000.0}, "command to motion");
   fields.number("home_position_um", plant.home_position_um, {-1e6, 1e6}, "where homing ends");
   fields.number("power_on_position_um", plant.power_on_position_um, {-1e6, 1e6}, "where the axis stands at the start");

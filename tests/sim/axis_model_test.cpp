@@ -121,6 +121,62 @@ TEST(AxisModel, RepeatsItsLeadErrorEveryTurnOfTheScrew) {
   EXPECT_EQ(axis.encoder_steps(time), 12500);
 }
 
+TEST(AxisModel, ShiftsItsLeadErrorByAPhase) {
+  AxisParameters parameters = ideal();
+  parameters.lead_error_um = 0.3;
+  parameters.lead_um = 100.0;
+  parameters.lead_phase_deg = 90.0;
+  AxisModel axis(parameters);
+  HostTime time = HostClock::now();
+  EXPECT_NEAR(axis.true_position_um(time), 0.3, 1e-9);
+  time = move(axis, time, 50.0);
+  EXPECT_NEAR(axis.true_position_um(time), 49.7, 1e-9);
+}
+
+TEST(AxisModel, ScalesItsMotion) {
+  AxisParameters parameters = ideal();
+  parameters.scale_error = 0.002;
+  AxisModel axis(parameters);
+  const HostTime time = move(axis, HostClock::now(), 100.0);
+  EXPECT_NEAR(axis.true_position_um(time), 100.2, 1e-9);
+  EXPECT_EQ(axis.encoder_steps(time), 10000) << "the motor does not know";
+}
+
+TEST(AxisModel, DriftsWithItsTemperature) {
+  AxisParameters parameters = ideal();
+  parameters.temperature_c = 21.0;
+  parameters.temperature_rate_k_per_min = 0.5;
+  parameters.drift_um_per_k = 3.5;
+  const HostTime start = HostClock::now();
+  AxisModel axis(parameters);
+  const HostTime later = after(start, 120.0);
+  EXPECT_NEAR(axis.temperature_c(later), 22.0, 0.1) << "two minutes, and the time to get here";
+  EXPECT_NEAR(axis.true_position_um(later), 3.5 * (axis.temperature_c(later) - 21.0), 1e-9);
+}
+
+TEST(AxisModel, SeesItsTruePositionByALinearScale) {
+  AxisParameters parameters = ideal();
+  parameters.power_on_position_um = -200.0;
+  parameters.feedback = Feedback::kLinearScale;
+  parameters.backlash_um = 1.2;
+  parameters.lead_error_um = 0.3;
+  parameters.lead_um = 100.0;
+  parameters.lead_phase_deg = 30.0;
+  parameters.scale_error = 0.001;
+  AxisModel axis(parameters);
+  HostTime time = HostClock::now();
+  axis.home(time);
+  time = after(time, 2.0);
+  EXPECT_EQ(axis.encoder_steps(time), 0) << "home is where the scale is 0";
+  const double home = axis.true_position_um(time);
+  for (const double target : {25.0, 80.0, 60.0}) {
+    time = move(axis, time, target);
+    EXPECT_NEAR(axis.encoder_steps(time), 100.0 * (axis.true_position_um(time) - home), 1.0) << target;
+    EXPECT_EQ(axis.command_steps(time), static_cast<int>(100 * target));
+  }
+  EXPECT_GT(axis.encoder_steps(time), 6050) << "the backlash is seen";
+}
+
 TEST(AxisModel, DrawsItsRestingErrorsFromTheSeed) {
   AxisParameters parameters = ideal();
   parameters.settle_noise_um = 0.02;

@@ -114,6 +114,11 @@ TEST_F(AnAzDrive, HasAPositionPreset) {
   EXPECT_NEAR(axis_.true_position_um(now_), 1.0, 1e-9);
 }
 
+TEST_F(AnAzDrive, TellsTheTemperaturesOfDriverAndMotor) {
+  EXPECT_EQ(client_.value(0x00F8), 412);
+  EXPECT_EQ(client_.value(0x00FA), 385) << "18.5 K above the axis, in 0.1 degC";
+}
+
 TEST_F(AnAzDrive, RefusesRegistersThatItHasNot) {
   EXPECT_EQ(client_.try_read(0x0400, 1), ModbusException::kIllegalAddress);
   EXPECT_EQ(client_.try_read(0x03FF, 2), ModbusException::kIllegalAddress);

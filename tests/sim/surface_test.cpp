@@ -120,6 +120,20 @@ TEST(WorldConfig, ReadsEveryShippedFile) {
   }
 }
 
+TEST(WorldConfig, ReadsEveryErrorOfAPlant) {
+  const test::ScratchDir directory;
+  const auto file = directory.path() / "plant.json";
+  std::ofstream(file) << R"({"lead_phase_deg": 30, "scale_error": -0.001, "temperature_c": 21,
+                             "temperature_rate_k_per_min": 0.2, "drift_um_per_k": 3.5, "feedback": "linear_scale"})";
+  const AxisParameters plant = load_plant(file);
+  EXPECT_EQ(plant.lead_phase_deg, 30.0);
+  EXPECT_EQ(plant.scale_error, -0.001);
+  EXPECT_EQ(plant.temperature_c, 21.0);
+  EXPECT_EQ(plant.temperature_rate_k_per_min, 0.2);
+  EXPECT_EQ(plant.drift_um_per_k, 3.5);
+  EXPECT_EQ(plant.feedback, Feedback::kLinearScale);
+}
+
 TEST(WorldConfig, ReportsAllMistakesWithTheirPlace) {
   const test::ScratchDir directory;
   const auto file = directory.path() / "world.json";
