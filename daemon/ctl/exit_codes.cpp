@@ -11,6 +11,7 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kUnknownJob:
     case ErrorCode::kBadSlice:
     case ErrorCode::kMemoryBudget:
+    case ErrorCode::kStageLimit:
       return kExitBadData;
     case ErrorCode::kStorageFull:
     case ErrorCode::kStorageWrite:
@@ -19,7 +20,13 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kBusy:
     case ErrorCode::kTimeout:
     case ErrorCode::kShuttingDown:
+    case ErrorCode::kStageDisconnected:
+    case ErrorCode::kStageNotHomed:
+    case ErrorCode::kStagePosition:
+    case ErrorCode::kStageAlarm:
       return kExitUnavailable;
+    case ErrorCode::kAborted:
+      return kExitJobFailed;
     case ErrorCode::kJobFailed:
       return kExitJobFailed;
     default:

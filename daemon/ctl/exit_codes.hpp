@@ -10,7 +10,7 @@ inline constexpr int kExitOk = 0;
 inline constexpr int kExitJobFailed = 1;     ///< the job failed or was aborted
 inline constexpr int kExitUsage = 64;        ///< wrong arguments
 inline constexpr int kExitBadData = 65;      ///< a file, parameter, job or recipe that cannot be used
-inline constexpr int kExitUnavailable = 69;  ///< no daemon, no answer in time, or it takes no jobs now
+inline constexpr int kExitUnavailable = 69;  ///< no daemon or drive, no answer in time, or it takes no commands now
 inline constexpr int kExitInternal = 70;     ///< a bug on either side
 inline constexpr int kExitIo = 74;           ///< a file could not be read or written
 

@@ -99,8 +99,8 @@ double ideal_step_ms() {
 
 // --- stop ---
 
-/// From stop() to the moment at which the axis begins to slow down, over the response timeout; the worst over the faults
-/// that befall a poll.
+/// From stop() to the moment at which the axis begins to slow down, over the response timeout; the worst over the
+/// faults that befall a poll.
 double run_stops() {
   double worst = 0.0;
   for (const Transport transport : {Transport::kTcp, Transport::kRtu}) {
@@ -146,7 +146,7 @@ struct ReportFigures {
 /// A linear scale, so that what the screw does can be seen; three leads of 100 um.
 ReportFigures run_report() {
   sim::AxisParameters planted = good_axis();
-  planted.feedback = sim::AxisFeedback::kLinearScale;
+  planted.feedback = sim::Feedback::kLinearScale;
   planted.lead_error_um = 0.4;
   planted.lead_um = 100.0;
   planted.lead_phase_deg = 35.0;
@@ -174,14 +174,15 @@ ReportFigures run_report() {
   const auto& fit = report.fit;
   figures.lead_amplitude = std::abs(fit->lead->amplitude_um.value / planted.lead_error_um - 1.0);
   figures.lead_phase_deg = std::abs(std::remainder(fit->lead->phase_deg - planted.lead_phase_deg, 360.0));
-  figures.alpha_z = std::abs(fit->alpha_z.value - 1.0 - planted.scale_error);
+  figures.alpha_z = std::abs(fit->alpha_z->value - 1.0 - planted.scale_error);
   figures.reversal_um = std::abs(std::abs(fit->reversal_um->value) - planted.backlash_um);
   figures.drift = std::abs(fit->drift_um_per_min->value / planted.drift_um_per_min - 1.0);
   std::printf(
-      "report: lead error %.4f um (planted %.4f) at %.1f deg (%.1f), alpha_z %.6f (%.6f), reversal %.3f um (%.3f), drift "
+      "report: lead error %.4f um (planted %.4f) at %.1f deg (%.1f), alpha_z %.6f (%.6f), reversal %.3f um (%.3f), "
+      "drift "
       "%.3f um/min (%.3f)\n",
       fit->lead->amplitude_um.value, planted.lead_error_um, fit->lead->phase_deg, planted.lead_phase_deg,
-      fit->alpha_z.value, 1.0 + planted.scale_error, fit->reversal_um->value, planted.backlash_um,
+      fit->alpha_z->value, 1.0 + planted.scale_error, fit->reversal_um->value, planted.backlash_um,
       fit->drift_um_per_min->value, planted.drift_um_per_min);
   return figures;
 }

@@ -1,0 +1,145 @@
+/// fvdctl stage check and stage accuracy against simulated drives.
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/fvdctl.hpp"
+#include "gtest/gtest.h"
+#include "tests/support/scratch_dir.hpp"
+#include "tests/support/simulated_drive.hpp"
+
+namespace fvd::ctl {
+namespace {
+
+using nlohmann::json;
+using test::Transport;
+
+struct Ran {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+
+Ran fvdctl(const std::vector<std::string>& arguments) {
+  std::ostringstream out;
+  std::ostringstream err;
+  Ran run;
+  run.code = run_fvdctl(arguments, {out, err, false});
+  run.out = out.str();
+  run.err = err.str();
+  return run;
+}
+
+/// "stage WHAT PROFILE" and how to reach the drive.
+std::vector<std::string> stage_words(const char* what, const StageConfig& config) {
+  std::vector<std::string> words{"stage", what, config.profile.string()};
+  if (config.transport == "rtu") {
+    words.insert(words.end(), {"--serial", config.serial_device});
+  } else {
+    words.insert(words.end(), {"--tcp", "127.0.0.1:" + std::to_string(config.port)});
+  }
+  return words;
+}
+
+class StageCheck : public testing::TestWithParam<std::tuple<test::DriveCase, Transport>> {};
+
+TEST_P(StageCheck, FindsThatTheDriveFitsItsProfileAndMovesNothing) {
+  const auto& [drive, transport] = GetParam();
+  test::SimulatedDrive plant(drive, transport);
+  auto words = stage_words("check", plant.config());
+  words.emplace_back("--json");
+  const Ran run = fvdctl(words);
+  EXPECT_EQ(run.code, kExitOk) << run.out << run.err;
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["disagreements"], json::array());
+  EXPECT_EQ(report["status"]["moving"], "no");
+  EXPECT_EQ(plant.drive().moves(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, StageCheck,
+                         testing::Combine(testing::ValuesIn(test::kDriveCases),
+                                          testing::Values(Transport::kTcp, Transport::kRtu)),
+                         [](const auto& on) {
+                           return testing::PrintToString(std::get<0>(on.param)) +
+                                  testing::PrintToString(std::get<1>(on.param));
+                         });
+
+TEST(StageCheckOf, ADriveWithAnotherMapNamesWhatDisagrees) {
+  const test::SimulatedDrive plant(test::kDriveCases[0], Transport::kTcp);
+  StageConfig config = plant.config();
+  config.profile = FVD_SOURCE_DIR "/config/drives/leadshine-pr.json";
+  const Ran run = fvdctl(stage_words("check", config));
+  EXPECT_EQ(run.code, kExitBadData);
+  EXPECT_NE(run.out.find("register 'status' at 4099 (0x1003) cannot be read: Illegal data address"), std::string::npos)
+      << run.out;
+}
+
+TEST(StageCheckOf, ADriveInAlarmSaysWhich) {
+  test::SimulatedDrive plant(test::kDriveCases[0], Transport::kTcp);
+  plant.drive().raise_alarm(0x30);
+  const Ran run = fvdctl(stage_words("check", plant.config()));
+  EXPECT_EQ(run.code, kExitOk) << run.out;
+  EXPECT_NE(run.out.find("alarm 0x30: overload"), std::string::npos) << run.out;
+}
+
+TEST(StageCheckOf, ALineThatCannotBeIsRefused) {
+  const std::string profile = FVD_SOURCE_DIR "/config/drives/oriental-az.json";
+  EXPECT_EQ(fvdctl({"stage", "check", profile}).code, kExitUsage);
+  EXPECT_EQ(fvdctl({"stage", "check", profile, "--tcp", "host:99999"}).code, kExitUsage);
+  EXPECT_EQ(fvdctl({"stage", "check", profile, "--tcp", "127.0.0.1:1"}).code, kExitUnavailable);
+  EXPECT_EQ(fvdctl({"stage", "check", "/nonexistent.json", "--tcp", "127.0.0.1"}).code, kExitUsage);
+  const Ran baud = fvdctl({"stage", "check", profile, "--serial", "/dev/null", "--baud", "12345"});
+  EXPECT_NE(baud.code, kExitOk);
+  EXPECT_NE(baud.err.find("12345: expected one of"), std::string::npos) << baud.err;
+}
+
+class StageAccuracy : public testing::Test {
+ protected:
+  Ran measure(std::vector<std::string> more) {
+    auto words = stage_words("accuracy", plant_.config());
+    words.insert(words.end(), {"--from-um", "0", "--to-um", "40", "--steps", "4", "--repeats", "1", "--out", out()});
+    words.insert(words.end(), more.begin(), more.end());
+    return fvdctl(words);
+  }
+  [[nodiscard]] std::string out() const { return (scratch_ / "report").string(); }
+
+  test::ScratchDir scratch_;
+  test::SimulatedDrive plant_{test::kDriveCases[0], Transport::kTcp};
+};
+
+TEST_F(StageAccuracy, WritesReportPointsAndPicture) {
+  const Ran run = measure({"--home", "--simulated"});
+  ASSERT_EQ(run.code, kExitOk) << run.err;
+  std::ifstream in(out() + "/stage_accuracy.json");
+  const json report = json::parse(in);
+  EXPECT_LT(report["error"]["sd_um"].get<double>(), 0.1);
+  EXPECT_TRUE(std::filesystem::exists(out() + "/stage_accuracy.png"));
+  std::ifstream csv(out() + "/stage_accuracy.csv");
+  int lines = 0;
+  for (std::string line; std::getline(csv, line);) ++lines;
+  EXPECT_GE(lines, 11) << "ten points and a head";
+  EXPECT_EQ(fvdctl({"stage", "accuracy"}).code, kExitUsage);
+  const Ran again = measure({});
+  EXPECT_NE(again.err.find("exists already"), std::string::npos) << "an old report is not overwritten";
+}
+
+TEST_F(StageAccuracy, DoesNotHomeUnasked) {
+  const Ran run = measure({});
+  EXPECT_NE(run.code, kExitOk);
+  EXPECT_NE(run.err.find("--home"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(out()));
+}
+
+TEST_F(StageAccuracy, MovesNothingWhereTakeUpDoesNotFit) {
+  const Ran run = measure({"--home", "--max-um", "50"});
+  EXPECT_NE(run.code, kExitOk);
+  EXPECT_NE(run.err.find("-20..60 um"), std::string::npos) << run.err;
+  EXPECT_EQ(plant_.drive().moves(), 0);
+}
+
+}  // namespace
+}  // namespace fvd::ctl
