@@ -14,6 +14,7 @@
 
 #include "daemon/config_file.hpp"
 #include "daemon/recipe_book.hpp"
+#include "drivers/modbus/drive_profile.hpp"
 #include "tests/daemon/expect_error.hpp"
 
 namespace fvd {
@@ -76,6 +77,44 @@ TEST(ShippedFiles, HaveRecipesThatPassReaderSchemaAndTheSimulatedStage) {
   }
 }
 
+/// Reader and schema are two descriptions of one thing: what one refuses the other does not accept.
+TEST(ShippedFiles, HaveDriveProfilesThatPassReaderAndSchema) {
+  const Schema schema(text_of(kConfigFolder / "drive.schema.json"));
+  const auto reader_accepts = [](const json& profile) {
+    try {
+      (void)parse_drive_profile(profile.dump(), "profile");
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  for (const auto& entry : std::filesystem::directory_iterator(kConfigFolder / "drives")) {
+    if (entry.path().extension() != ".json") continue;
+    SCOPED_TRACE(entry.path().string());
+    const json profile = parse(text_of(entry.path()));
+    EXPECT_TRUE(reader_accepts(profile));
+    EXPECT_TRUE(schema.accepts(profile));
+    const json mistakes = json::array({{{"op", "add"}, {"path", "/sped"}, {"value", 1}},
+                                       {{"op", "replace"}, {"path", "/scale/steps_per_um"}, {"value", 0}},
+                                       {{"op", "add"}, {"path", "/scale/direction"}, {"value", "up"}},
+                                       {{"op", "replace"}, {"path", "/poll/0/address"}, {"value", 70000}},
+                                       {{"op", "remove"}, {"path", "/status/moving"}},
+                                       {{"op", "add"}, {"path", "/status/moving/colour"}, {"value", 1}},
+                                       {{"op", "remove"}, {"path", "/sequences/stop"}},
+                                       {{"op", "add"}, {"path", "/sequences/stop/-"}, {"value", {{"jump", 1}}}},
+                                       {{"op", "add"}, {"path", "/sequences/stop/-"}, {"value", {{"delay_ms", -1}}}},
+                                       {{"op", "add"}, {"path", "/sequences/stop/0/write/0/1"}, {"value", "$targets"}},
+                                       {{"op", "add"}, {"path", "/alarms/0x99"}, {"value", 5}},
+                                       {{"op", "replace"}, {"path", "/registers"}, {"value", 5}}});
+    for (const json& mistake : mistakes) {
+      SCOPED_TRACE(mistake.dump());
+      const json wrong = profile.patch(json::array({mistake}));
+      EXPECT_FALSE(reader_accepts(wrong));
+      EXPECT_FALSE(schema.accepts(wrong));
+    }
+  }
+}
+
 TEST(ShippedFiles, HaveTheReferenceRecipe) {
   const Recipe chapter = load_recipe(kConfigFolder / "recipes", "chapter");
   EXPECT_EQ(chapter.start_um, -7);
@@ -84,7 +123,8 @@ TEST(ShippedFiles, HaveTheReferenceRecipe) {
   EXPECT_EQ(chapter.focus.window_px, 9);
   EXPECT_EQ(chapter.focus.min_prominence, 0.5);
   EXPECT_EQ(chapter.peak, PeakMethod::kLogParabola);
-  EXPECT_THAT(chapter.extra_peaks, ::testing::ElementsAre(PeakMethod::kNearest, PeakMethod::kParabola, PeakMethod::kFiveSample));
+  EXPECT_THAT(chapter.extra_peaks,
+              ::testing::ElementsAre(PeakMethod::kNearest, PeakMethod::kParabola, PeakMethod::kFiveSample));
   EXPECT_EQ(chapter.focus.distance_px, 1);
 }
 
