@@ -163,7 +163,7 @@ TEST(ScriptedResponder, AnswersExceptionsWithoutExecuting) {
   test::PlainBank bank;
   ScriptedResponder responder(bank, &script, nullptr);
   EXPECT_EQ(responder.answer(kWrite).pdu, (ModbusBytes{0x90, 6}));
-  EXPECT_EQ(bank.writes, 0);
+  EXPECT_EQ(bank.writes(), 0);
 }
 
 TEST(ScriptedResponder, DoesWithoutScriptAndDrive) {

@@ -165,7 +165,7 @@ TEST_F(FaultsOfATcpLine, LinkCut) {
   script_.add({.fault = FaultKind::kLinkCut, .delay = milliseconds(150)});
   TcpClient client(server_.port());
   TcpClient bystander(server_.port());
-  bank_.registers[5] = 0x1234;
+  bank_.set(5, 0x1234);
   const auto start = HostClock::now();
   ask(client, kWrite);
   EXPECT_TRUE(client.receive(1).empty());
@@ -173,12 +173,12 @@ TEST_F(FaultsOfATcpLine, LinkCut) {
   TcpClient again(server_.port());
   expect_alive(again);
   EXPECT_GE(HostClock::now() - start, milliseconds(150));
-  EXPECT_EQ(bank_.writes, 0);
+  EXPECT_EQ(bank_.writes(), 0);
 }
 
 TEST_F(FaultsOfASerialLine, LinkCut) {
   script_.add({.fault = FaultKind::kLinkCut, .delay = milliseconds(300)});
-  bank_.registers[5] = 0x1234;
+  bank_.set(5, 0x1234);
   ask(kWrite);
   ask(kWrite);
   ModbusBytes reply;
@@ -187,7 +187,7 @@ TEST_F(FaultsOfASerialLine, LinkCut) {
     reply = client_.receive(7, kNothing);
   }
   EXPECT_EQ(reply, frame(kValue)) << "what was sent meanwhile is gone, and the line is back";
-  EXPECT_EQ(bank_.writes, 0);
+  EXPECT_EQ(bank_.writes(), 0);
 }
 
 TEST_F(FaultsOfATcpLine, OfTheServersOwnScript) {

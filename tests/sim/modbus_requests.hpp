@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <mutex>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -105,34 +107,66 @@ class BankClient {
   RegisterBank& bank_;
 };
 
-/// 100 registers from address 0 and 32 coils, nothing else.
+/// 100 registers from address 0 and 32 coils, nothing else. context: thread-safe.
 class PlainBank final : public RegisterBank {
  public:
+  /// Register n holds 0x0100 + n.
+  void count_up() {
+    const std::lock_guard lock(mutex_);
+    std::iota(registers_.begin(), registers_.end(), std::uint16_t{0x0100});
+  }
+  void set(std::size_t at, std::uint16_t value) {
+    const std::lock_guard lock(mutex_);
+    registers_[at] = value;
+  }
+  [[nodiscard]] std::uint16_t at(std::size_t at) const {
+    const std::lock_guard lock(mutex_);
+    return registers_[at];
+  }
+  /// Writes of registers so far.
+  [[nodiscard]] int writes() const {
+    const std::lock_guard lock(mutex_);
+    return writes_;
+  }
+
   [[nodiscard]] ModbusException read(int address, std::span<std::uint16_t> values) override {
-    if (address + values.size() > registers.size()) return ModbusException::kIllegalAddress;
-    for (auto& value : values) value = registers[static_cast<std::size_t>(address++)];
-    return ModbusException::kNone;
+    return copy_out(registers_, address, values);
   }
   [[nodiscard]] ModbusException write(int address, std::span<const std::uint16_t> values) override {
-    if (address + values.size() > registers.size()) return ModbusException::kIllegalAddress;
-    ++writes;
-    for (const auto value : values) registers[static_cast<std::size_t>(address++)] = value;
-    return ModbusException::kNone;
+    const auto exception = copy_in(registers_, address, values);
+    const std::lock_guard lock(mutex_);
+    if (exception == ModbusException::kNone) ++writes_;
+    return exception;
   }
   [[nodiscard]] ModbusException read_bits(int address, std::span<std::uint8_t> bits) override {
-    if (address + bits.size() > coils.size()) return ModbusException::kIllegalAddress;
-    for (auto& bit : bits) bit = coils[static_cast<std::size_t>(address++)];
-    return ModbusException::kNone;
+    return copy_out(coils_, address, bits);
   }
   [[nodiscard]] ModbusException write_bits(int address, std::span<const std::uint8_t> bits) override {
-    if (address + bits.size() > coils.size()) return ModbusException::kIllegalAddress;
-    for (const auto bit : bits) coils[static_cast<std::size_t>(address++)] = bit;
+    return copy_in(coils_, address, bits);
+  }
+
+ private:
+  template <typename Value>
+  ModbusException copy_out(const std::vector<Value>& from, int address, std::span<Value> to) const {
+    const std::lock_guard lock(mutex_);
+    const auto first = static_cast<std::size_t>(address);
+    if (first + to.size() > from.size()) return ModbusException::kIllegalAddress;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[first + i];
+    return ModbusException::kNone;
+  }
+  template <typename Value>
+  ModbusException copy_in(std::vector<Value>& to, int address, std::span<const Value> from) {
+    const std::lock_guard lock(mutex_);
+    const auto first = static_cast<std::size_t>(address);
+    if (first + from.size() > to.size()) return ModbusException::kIllegalAddress;
+    for (std::size_t i = 0; i < from.size(); ++i) to[first + i] = from[i];
     return ModbusException::kNone;
   }
 
-  Words registers = Words(100);
-  std::vector<std::uint8_t> coils = std::vector<std::uint8_t>(32);
-  int writes = 0;
+  mutable std::mutex mutex_;
+  Words registers_ = Words(100);  // this and all below: guarded by mutex_
+  std::vector<std::uint8_t> coils_ = std::vector<std::uint8_t>(32);
+  int writes_ = 0;
 };
 
 }  // namespace fvd::sim::test

@@ -1,7 +1,5 @@
 #include "sim/modbus_rtu_server.hpp"
 
-#include <numeric>
-
 #include "gtest/gtest.h"
 #include "tests/sim/modbus_requests.hpp"
 #include "tests/sim/serial_client.hpp"
@@ -22,7 +20,7 @@ constexpr LineTiming kPatient{.frame_silence = milliseconds(100)};
 
 class AnRtuServer : public testing::Test {
  protected:
-  AnRtuServer() { std::iota(bank_.registers.begin(), bank_.registers.end(), std::uint16_t{0x0100}); }
+  AnRtuServer() { bank_.count_up(); }
 
   static ModbusBytes request(int unit = 1) { return SerialClient::frame(unit, short_request(3, 2, 1)); }
   static ModbusBytes answer() { return SerialClient::frame(1, ModbusBytes{3, 2, 0x01, 0x02}); }
@@ -48,7 +46,7 @@ TEST_F(AnRtuServer, AnswersARequest) {
   EXPECT_EQ(client.receive(7), answer());
   client.send(SerialClient::frame(1, write_request(5, {7, 8})));
   EXPECT_EQ(client.receive(8), SerialClient::frame(1, short_request(16, 5, 2)));
-  EXPECT_EQ(bank_.registers[6], 8);
+  EXPECT_EQ(bank_.at(6), 8);
   client.send(SerialClient::frame(1, ModbusBytes{23, 0, 2, 0, 1, 0, 2, 0, 1, 2, 0, 9}));
   EXPECT_EQ(client.receive(7), SerialClient::frame(1, ModbusBytes{23, 2, 0, 9}));
   EXPECT_EQ(server.requests(), 3U);

@@ -9,7 +9,8 @@ fvd_add_test(sim_stage_test LABELS unit LIBRARIES fvd::sim SOURCES
   modbus_responder_test.cpp
   scl_drive_test.cpp
 )
-fvd_add_test(sim_line_test LABELS sim LIBRARIES fvd::sim SOURCES
+fvd_add_test(sim_line_test LABELS sim LIBRARIES fvd::sim PkgConfig::MODBUS SOURCES
+  libmodbus_test.cpp
   line_faults_test.cpp
   modbus_rtu_server_test.cpp
 )
