@@ -228,8 +228,15 @@ std::optional<DriveStep> ProfileParts::step(const std::string& pointer, const js
   const auto has = [&](const char* key) { return value.is_object() && value.contains(key); };
   const auto inner = [&](const char* key) -> const json& { return value[key]; };
   if (has("write")) {
-    refuse_other_keys(pointer, value, {"write"});
-    WriteStep step{values(pointer + "/write", inner("write"), true)};
+    refuse_other_keys(pointer, value, {"write", "repeatable"});
+    WriteStep step{values(pointer + "/write", inner("write"), true), false};
+    if (has("repeatable")) {
+      if (inner("repeatable").is_boolean()) {
+        step.repeatable = inner("repeatable").get<bool>();
+      } else {
+        report(pointer + "/repeatable", inner("repeatable"), "true or false");
+      }
+    }
     if (step.writes.empty()) return std::nullopt;
     return step;
   }

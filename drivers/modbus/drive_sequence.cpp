@@ -12,6 +12,7 @@ namespace {
 using std::chrono::milliseconds;
 using SteadyClock = std::chrono::steady_clock;
 
+constexpr int kRepeats = 3;            // of a write that does no harm twice
 constexpr milliseconds kLookEvery{2};  // a wait's pause between two looks
 
 /// False when the wait was ended by a stop request.
@@ -28,9 +29,10 @@ class Runner {
   Runner(ModbusLink& link, const DriveValues& values, ModbusPriority priority, std::stop_token stop)
       : link_(link), values_(values), priority_(priority), stop_(std::move(stop)) {}
 
-  SequenceResult run(const DriveSequence& sequence) {
-    for (const DriveStep& step : sequence) {
-      SequenceResult result = std::visit([this](const auto& s) { return run_step(s); }, step);
+  SequenceResult run(const DriveSequence& sequence, std::size_t first = 0) {
+    for (std::size_t i = first; i < sequence.size(); ++i) {
+      SequenceResult result = std::visit([this](const auto& s) { return run_step(s); }, sequence[i]);
+      result.step = i;
       if (result.outcome != ModbusOutcome::kOk) return result;
     }
     return {};
@@ -52,10 +54,10 @@ class Runner {
 
   static SequenceResult ended(const ModbusReply& reply, const std::string& what) {
     if (reply.outcome == ModbusOutcome::kOk) return {};
-    return {reply.outcome, what + ": " + reply.error};
+    return {reply.outcome, what + ": " + reply.error, 0};
   }
   static SequenceResult interrupted(const std::string& what) {
-    return {ModbusOutcome::kUnknown, what + ": the axis was asked to stop"};
+    return {ModbusOutcome::kUnknown, what + ": the axis was asked to stop", 0};
   }
 
   SequenceResult run_step(const WriteStep& step) {
@@ -65,8 +67,12 @@ class Runner {
       words.insert(words.end(), encoded.begin(), encoded.end());
     }
     const DriveRegister& first = step.writes.front().reg;
-    return ended(link_.write(first.table, first.address, words, priority_, first.write_single),
-                 "write of " + first.name);
+    ModbusReply reply;
+    for (int attempt = 0; attempt < (step.repeatable ? kRepeats : 1); ++attempt) {
+      reply = link_.write(first.table, first.address, words, priority_, first.write_single);
+      if (reply.outcome != ModbusOutcome::kUnknown || stop_.stop_requested()) break;
+    }
+    return ended(reply, "write of " + first.name);
   }
 
   SequenceResult change(const DriveRegister& reg, std::uint32_t set, std::uint32_t clear) {
@@ -98,7 +104,7 @@ class Runner {
     for (;;) {
       const auto begun = SteadyClock::now();  // a look that began in time counts however long it took
       const auto holds = look(step.condition);
-      if (!holds) return {ModbusOutcome::kUnknown, "wait: the drive does not answer"};
+      if (!holds) return {ModbusOutcome::kUnknown, "wait: the drive does not answer", 0};
       if (*holds) return {};
       if (begun > deadline) {
         return {ModbusOutcome::kRejected,
@@ -111,10 +117,12 @@ class Runner {
   SequenceResult run_step(const ExpectStep& step) {
     for (const RegisterWrite& expected : step.values) {
       const auto value = read_register(link_, expected.reg, priority_);
-      if (!value) return {ModbusOutcome::kUnknown, "read of " + expected.reg.name + ": no answer"};
+      if (!value) return {ModbusOutcome::kUnknown, "read of " + expected.reg.name + ": no answer", 0};
       if (*value != number(expected.value)) {
-        return {ModbusOutcome::kRejected, expected.reg.name + " reads " + std::to_string(*value) + ", expected " +
-                                              std::to_string(number(expected.value))};
+        return {ModbusOutcome::kRejected,
+                expected.reg.name + " reads " + std::to_string(*value) + ", expected " +
+                    std::to_string(number(expected.value)),
+                0};
       }
     }
     return {};
@@ -122,7 +130,7 @@ class Runner {
 
   SequenceResult run_step(const std::shared_ptr<const BranchStep>& step) {
     const auto holds = look(step->condition);
-    if (!holds) return {ModbusOutcome::kUnknown, "branch: the drive does not answer"};
+    if (!holds) return {ModbusOutcome::kUnknown, "branch: the drive does not answer", 0};
     return run(*holds ? step->then : step->otherwise);
   }
 
@@ -145,8 +153,8 @@ class Runner {
 }  // namespace
 
 SequenceResult run_sequence(ModbusLink& link, const DriveSequence& sequence, const DriveValues& values,
-                            ModbusPriority priority, std::stop_token stop) {
-  return Runner(link, values, priority, std::move(stop)).run(sequence);
+                            ModbusPriority priority, std::stop_token stop, std::size_t first) {
+  return Runner(link, values, priority, std::move(stop)).run(sequence, first);
 }
 
 std::optional<std::int64_t> read_register(ModbusLink& link, const DriveRegister& reg, ModbusPriority priority) {

@@ -25,6 +25,7 @@ struct RegisterWrite {
 /// Registers or coils that follow each other, written in one frame: all of them or none.
 struct WriteStep {
   std::vector<RegisterWrite> writes;
+  bool repeatable = false;  ///< does no harm twice: sent up to three times until it is answered
 };
 /// Sets bits, holds them, clears them: an edge for drives that start on one.
 struct PulseStep {
@@ -69,13 +70,15 @@ struct DriveValues {
 /// How a sequence ended. kUnknown: a step got no usable answer; what was sent may or may not have been executed.
 struct SequenceResult {
   ModbusOutcome outcome = ModbusOutcome::kOk;
-  std::string error;  ///< empty if kOk; else which step and why
+  std::string error;     ///< empty if kOk; else which step and why
+  std::size_t step = 0;  ///< that did not end with kOk, 0-based; a branch counts as one
 };
 
-/// Runs the steps in order up to the first that is not ok. Writes are sent once each. A wait that runs out and an
-/// expectation that is not met are kRejected. A stop request ends waits and delays with kUnknown. context: blocks.
+/// Runs the steps in order up to the first that is not ok. Writes are sent once each, but for repeatable ones. A wait
+/// that runs out and an expectation that is not met are kRejected. first: of the steps to run. A stop request ends
+/// waits and delays with kUnknown. context: blocks.
 [[nodiscard]] SequenceResult run_sequence(ModbusLink& link, const DriveSequence& sequence, const DriveValues& values,
-                                          ModbusPriority priority, std::stop_token stop);
+                                          ModbusPriority priority, std::stop_token stop, std::size_t first = 0);
 
 /// One register, read in a transaction of its own; nothing if it could not be read.
 [[nodiscard]] std::optional<std::int64_t> read_register(ModbusLink& link, const DriveRegister& reg,

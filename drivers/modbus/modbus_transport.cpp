@@ -95,7 +95,8 @@ ModbusTransport::ModbusTransport(const ModbusLinkConfig& config) : config_(confi
                 "no Modbus connection to " + description() + ": " + modbus_strerror(errno));
   }
   modbus_set_error_recovery(context_.get(), MODBUS_ERROR_RECOVERY_NONE);
-  const auto timeout = std::chrono::duration_cast<std::chrono::microseconds>(config_.response_timeout).count();
+  // A tenth is left for the urgent request that waits behind this one: it is to be through within the whole.
+  const auto timeout = std::chrono::duration_cast<std::chrono::microseconds>(config_.response_timeout).count() * 9 / 10;
   modbus_set_response_timeout(context_.get(), static_cast<std::uint32_t>(timeout / 1000000),
                               static_cast<std::uint32_t>(timeout % 1000000));
   // 0 = the whole reply within the response timeout: a trickle of bytes cannot stretch it.

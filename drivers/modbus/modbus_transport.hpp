@@ -37,7 +37,7 @@ inline constexpr int kModbusBauds[] = {9600, 19200, 38400, 57600, 115200, 230400
 struct ModbusLinkConfig {
   std::variant<ModbusTcpEndpoint, ModbusSerialEndpoint> endpoint = ModbusTcpEndpoint{};
   int unit = 1;  ///< 1..247
-  /// For one whole reply; also for a TCP connection to be made. An urgent request waits for one of these at most.
+  /// An urgent request is through within it. A reply, and a TCP connection to be made, may take nine tenths.
   std::chrono::milliseconds response_timeout{200};
   /// RTU: how long the line must be silent before a request may follow a doubtful answer; at least the slowest reply.
   std::chrono::milliseconds quiet{250};

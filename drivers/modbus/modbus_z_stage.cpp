@@ -20,6 +20,8 @@ namespace {
 
 /// A stop that got no answer is sent again: it does no harm twice.
 constexpr int kStopAttempts = 3;
+/// A sample of a resting axis counts as present for so long.
+constexpr std::chrono::milliseconds kFresh{50};
 
 class ModbusZStage final : public ZStage {
  public:
@@ -106,6 +108,7 @@ class ModbusZStage final : public ZStage {
       const bool begun = moved || sample.time - started > profile_.start_within;
       if (begun && !sample.moving && (sample.homed || !profile_.homed)) {
         poller_->remember_homed(true);
+        changed_ = HostClock::now();
         return;
       }
       if (sample.time - started > profile_.home_timeout) {
@@ -124,7 +127,8 @@ class ModbusZStage final : public ZStage {
     move.target_counts = quantise(target);
     move.target_quantised = Micrometers{profile_.direction * move.target_counts.value / profile_.steps_per_um};
     require_within_limits(move.target_quantised);
-    const AxisSample before = sample_after(HostClock::now(), stop);
+    // The axis rests and is sampled all the time; what happens to it from now on, settle() sees.
+    const AxisSample before = sample_after(std::max(HostClock::now() - kFresh, changed_.load()), stop);
     require_no_alarm(before);
     if (!before.homed) {
       throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + link_.description() + " before it is homed");
@@ -150,6 +154,7 @@ class ModbusZStage final : public ZStage {
       SequenceResult result;
       for (int attempt = 0; attempt < kStopAttempts; ++attempt) {
         result = run_sequence(link_, profile_.stop, {}, ModbusPriority::kUrgent, {});
+        changed_ = HostClock::now();
         if (result.outcome == ModbusOutcome::kOk) return;
       }
       spdlog::error("stage stop was not confirmed: {}", result.error);
@@ -194,6 +199,7 @@ class ModbusZStage final : public ZStage {
   void enable(std::stop_token stop) {
     require_done(run(profile_.enable, "enable", std::move(stop)));
     expect_enabled_ = true;
+    changed_ = HostClock::now();
   }
 
   /// A drive that somebody else has disabled - an emergency stop, a power cut - may have been moved by hand since.
@@ -342,11 +348,21 @@ class ModbusZStage final : public ZStage {
                     "the drive at " + link_.description() + " refused the move: " + result.error);
       }
       spdlog::warn("no answer to a move to {} um: {}", move.target.value, result.error);
-      if (has_begun(move, before, criterion, stop)) return;
+      if (has_begun(move, before, criterion, stop)) {
+        finish_start(result.step + 1, move, stop);
+        return;
+      }
       if (attempt == 2) {
         throw Error(ErrorCode::kStageDisconnected, "the drive at " + link_.description() + " answers no move command");
       }
     }
+  }
+
+  /// The rest of a start whose decisive step was executed but not answered: edges are to be taken back.
+  void finish_start(std::size_t first, const MoveRecord& move, std::stop_token stop) {
+    const SequenceResult rest =
+        run_sequence(link_, profile_.move_absolute, values(move.target_counts), ModbusPriority::kNormal, stop, first);
+    if (rest.outcome != ModbusOutcome::kOk) spdlog::warn("the start of a move could not be completed: {}", rest.error);
   }
 
   [[nodiscard]] bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& before,
@@ -414,7 +430,8 @@ class ModbusZStage final : public ZStage {
   ModbusLink link_;
   std::atomic<AxisState> state_{AxisState::kIdentifying};
   std::atomic<bool> expect_enabled_{false};
-  std::optional<std::int64_t> target_;  // steps, last one sent since homing
+  std::atomic<HostTime> changed_{HostTime{}};  // by fvd: older samples do not tell what the drive is like now
+  std::optional<std::int64_t> target_;         // steps, last one sent since homing
   std::unique_ptr<AxisPoller> poller_;
 };
 

@@ -124,8 +124,10 @@ double run_stops() {
       const StageConfig config = plant.config();
       const double braking_ms = 1000.0 * config.speed_um_per_s / config.acceleration_um_per_s2;
       const double latency_ms = milliseconds_of(HostClock::now() - asked) - braking_ms;
-      const double ratio = latency_ms / milliseconds_of(config.response_timeout);
-      std::printf("stop: %s %-18s %.1f ms, %.2f response timeouts\n", transport == Transport::kTcp ? "TCP" : "RTU",
+      // A drive that thinks for longer than the timeout hears no stop meanwhile.
+      const double ratio =
+          latency_ms / std::max(milliseconds_of(config.response_timeout), milliseconds_of(fault.step.delay));
+      std::printf("stop: %s %-18s %.1f ms, %.2f of the bound\n", transport == Transport::kTcp ? "TCP" : "RTU",
                   fault.name, latency_ms, ratio);
       worst = std::max(worst, ratio);
     }
@@ -162,7 +164,7 @@ ReportFigures run_report() {
   plan.steps = 50;
   plan.repeats = 4;
   plan.settle = kCriterion;
-  plan.settle.window = Micrometers{2.0};  // the planted errors are errors of the settled position
+  plan.settle.window = Micrometers{5.0};  // the drive does not close its loop on the scale
   const auto points = run_stage(*stage, clock, plan, {}, {});
   StageReportOptions options;
   options.feedback = FeedbackSource::kLinearScale;
