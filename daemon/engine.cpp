@@ -40,6 +40,7 @@ bool matches(const JobStatus& job, const JobKey& key) {
 Engine::Engine(const Config& config, const EngineDependencies& deps)
     : config_(config),
       store_(deps.store),
+      stage_history_(config.paths.state_dir / "stage_history.json"),
       clock_(deps.clock),
       pool_(thread_count(config.compute.threads)),
       current_(deps.store.latest()),
@@ -151,6 +152,8 @@ JobStatus Engine::abort(const JobKey& key) {
   }
   return store_.find(key).status;
 }
+
+std::optional<StepHistorySummary> Engine::stage_history() const { return stage_history_.summary(); }
 
 std::string Engine::result_json(const JobKey& key) const { return store_.find(key).result_json; }
 
@@ -314,6 +317,7 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
             {camera_.get(), stage_.get(), clock_, pool_, static_cast<std::size_t>(config_.compute.queue_slices)},
             observer, result, stop);
     observer.on_phase("storing");
+    stage_history_.add(stage_.get().info().feedback, result.steps);
     if (recorder) recorder->finish("job " + job.status.job_id + (result.simulated ? ", simulated" : ""));
     write_result(directory, result);
     directory.commit();

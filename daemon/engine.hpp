@@ -20,6 +20,7 @@
 #include "daemon/measurement.hpp"
 #include "daemon/recipe.hpp"
 #include "daemon/store/job_store.hpp"
+#include "daemon/store/stage_history.hpp"
 
 namespace fvd {
 
@@ -50,6 +51,7 @@ class Engine final : public JobService {
   [[nodiscard]] std::vector<std::string> recipe_ids() const override;
   [[nodiscard]] std::string recipe_json(const std::string& recipe_id) const override;
   [[nodiscard]] MachineStatus machine() const override;
+  [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override;
   void on_change(std::function<void()> listener) override;
 
   /// Refuses new jobs from now on and aborts the running one; returns at once.
@@ -86,6 +88,7 @@ class Engine final : public JobService {
 
   const Config& config_;
   JobStore& store_;
+  StageHistory stage_history_;
   Clock& clock_;
   WorkerPool pool_;
 

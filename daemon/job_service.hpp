@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/metrology/step_history.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_state.hpp"
 
@@ -94,6 +95,9 @@ class JobService {
   [[nodiscard]] virtual std::string recipe_json(const std::string& recipe_id) const = 0;
 
   [[nodiscard]] virtual MachineStatus machine() const = 0;
+
+  /// What all scans so far say of the stage; nothing before the first.
+  [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
 
   /// Called after every change of a job or the machine, from the engine's threads; must return at once. Set before use.
   virtual void on_change(std::function<void()> listener) = 0;

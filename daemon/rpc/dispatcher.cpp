@@ -110,6 +110,9 @@ void Dispatcher::add_system_methods() {
   add("system.state", {"The machine's state, flat and cheap to poll", {}, [this](const Json&) {
                          return machine_status_json(service_.machine(), heartbeat());
                        }});
+  add("stage.accuracy", {"The stage's step errors over all scans so far", {}, [this](const Json&) {
+                           return stage_history_json(service_.stage_history());
+                         }});
   add("rpc.discover", {"OpenRPC description of all methods", {}, [this](const Json&) { return describe_methods(); }});
 }
 

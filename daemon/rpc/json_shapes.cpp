@@ -107,4 +107,24 @@ ordered_json full_result_json(const JobStatus& job, const std::string& result_te
   return json;
 }
 
+nlohmann::ordered_json stage_history_json(const std::optional<StepHistorySummary>& history) {
+  using Json = nlohmann::ordered_json;
+  const StepHistorySummary summary = history.value_or(StepHistorySummary{});
+  const auto value = [](const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); };
+  return {{"scans", summary.scans},
+          {"steps", summary.steps},
+          {"lost_steps", summary.lost_steps},
+          {"observable", summary.observable},
+          {"error_mean_um", value(summary.error_mean_um)},
+          {"error_sd_um", value(summary.error_sd_um)},
+          {"error_max_um", value(summary.error_max_um)},
+          {"error_p95_um", value(summary.error_p95_um)},
+          {"increment_error_mean_um", value(summary.increment_error_mean_um)},
+          {"increment_error_sd_um", value(summary.increment_error_sd_um)},
+          {"increment_error_max_um", value(summary.increment_error_max_um)},
+          {"move_p50_ms", value(summary.move_p50_ms)},
+          {"move_p95_ms", value(summary.move_p95_ms)},
+          {"move_max_ms", value(summary.move_max_ms)}};
+}
+
 }  // namespace fvd

@@ -13,6 +13,9 @@ namespace fvd {
 /// hb: counts up once a second.
 [[nodiscard]] nlohmann::ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb);
 /// At most 440 bytes: the main values of a result, picked from result.json.
+/// null for what is not observable or not known yet; all counts 0 before the first scan.
+[[nodiscard]] nlohmann::ordered_json stage_history_json(const std::optional<StepHistorySummary>& history);
+
 [[nodiscard]] nlohmann::ordered_json compact_result_json(const JobStatus& job, const std::string& result_text);
 /// At most 1400 bytes: the whole result.json without what is long, and where the files are.
 [[nodiscard]] nlohmann::ordered_json full_result_json(const JobStatus& job, const std::string& result_text,

@@ -39,8 +39,11 @@ AxisPoller::~AxisPoller() = default;
 
 void AxisPoller::run(std::stop_token stop) {
   while (!stop.stop_requested() && connected_) {
-    poll_once();
-    read_temperatures();
+    {
+      const std::lock_guard polling(polling_);
+      poll_once();
+      read_temperatures();
+    }
     std::unique_lock lock(mutex_);
     const HostTime now = HostClock::now();
     const HostTime next = now + (now < fast_until_ ? kFastPoll : kIdlePoll);

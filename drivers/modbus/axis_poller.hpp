@@ -34,6 +34,8 @@ class AxisPoller {
   [[nodiscard]] AxisSample sample_after(HostTime after, std::stop_token stop);
   [[nodiscard]] PositionMean mean(HostTime from, HostTime to);
   [[nodiscard]] std::vector<StageTemperature> temperatures() const;
+  /// No samples are taken while the lock is held: on a slow line they would come between the frames of a start.
+  [[nodiscard]] std::unique_lock<std::mutex> pause() { return std::unique_lock(polling_); }
   /// For drives that have no bit that says so.
   void remember_homed(bool homed) noexcept { homed_ = homed; }
   [[nodiscard]] bool connected() const noexcept { return connected_; }
@@ -50,6 +52,7 @@ class AxisPoller {
   ModbusLink& link_;
   const DriveProfile& profile_;
   const double max_speed_um_per_s_;
+  std::mutex polling_;  // held for the length of a poll
   mutable std::mutex mutex_;
   std::condition_variable_any sampled_;
   std::condition_variable_any wake_;

@@ -335,8 +335,10 @@ class ModbusZStage final : public ZStage {
   void start_move(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
                   std::stop_token stop) {
     for (int attempt = 1;; ++attempt) {
-      const SequenceResult result =
-          run_sequence(link_, profile_.move_absolute, values(move.target_counts), ModbusPriority::kNormal, stop);
+      const SequenceResult result = [&] {
+        const auto paused = poller_->pause();
+        return run_sequence(link_, profile_.move_absolute, values(move.target_counts), ModbusPriority::kNormal, stop);
+      }();
       target_ = move.target_counts.value;
       if (result.outcome == ModbusOutcome::kOk) return;
       if (stop.stop_requested()) {

@@ -219,8 +219,8 @@ TEST_F(ADispatcher, DescribesEveryMethod) {
   std::set<std::string> names;
   for (const auto& method : methods) names.insert(method["name"]);
   for (const char* name :
-       {"system.ping", "system.info", "system.state", "recipe.list", "recipe.get", "recipe.prepare", "job.start",
-        "job.status", "job.wait", "job.abort", "result.get", "result.next", "result.ack"}) {
+       {"system.ping", "system.info", "system.state", "stage.accuracy", "recipe.list", "recipe.get", "recipe.prepare",
+        "job.start", "job.status", "job.wait", "job.abort", "result.get", "result.next", "result.ack"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }

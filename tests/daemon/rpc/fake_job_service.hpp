@@ -39,6 +39,8 @@ class FakeJobService final : public JobService {
   [[nodiscard]] std::string result_dir(const JobKey& key) const override {
     return job(key).state == JobState::kCompleted ? "/results/x" : "";
   }
+  [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return history; }
+  std::optional<StepHistorySummary> history;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override {
     const std::lock_guard lock(mutex_);
     for (const auto& [seq, job] : jobs_) {
