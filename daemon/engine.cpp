@@ -125,11 +125,11 @@ void Engine::require_acceptable_locked(const Recipe& recipe) const {
   const int height = recipe.camera.height > 0 ? recipe.camera.height : facts_->sensor_height;
   const auto maps = 1 + recipe.extra_peaks.size();
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  const std::size_t frames = pixels * static_cast<std::size_t>(bytes_per_pixel(recipe.camera.pixel_format)) *
-                             static_cast<std::size_t>(recipe.camera.pool_frames);
-  const std::size_t needed = maps * StreamingFocusStack::memory_bytes(width, height, recipe.camera.pixel_format,
-                                                                      focus_settings(recipe), pool_.threads()) +
-                             frames;
+  const PixelFormat format = recipe.camera.slice_format();
+  const std::size_t frames =
+      pixels * static_cast<std::size_t>(bytes_per_pixel(format)) * static_cast<std::size_t>(recipe.camera.pool_frames);
+  const std::size_t needed =
+      maps * StreamingFocusStack::memory_bytes(width, height, format, focus_settings(recipe), pool_.threads()) + frames;
   const std::size_t budget = static_cast<std::size_t>(config_.compute.memory_budget_mib) << 20U;
   if (needed <= budget) return;
   std::ostringstream message;

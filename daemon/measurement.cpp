@@ -68,7 +68,8 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   result.simulated = result.simulated || camera.simulated || stage.simulated;
   result.slices_planned = recipe.slices;
   const CameraSettings settings = deps.camera.configure(recipe.camera);
-  StreamingFocusStack stack(settings.width, settings.height, settings.pixel_format, focus_settings(recipe), deps.pool);
+  StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe),
+                            deps.pool);
   result.state_bytes_per_pixel = stack.state_bytes_per_pixel();
   if (!deps.stage.status().homed) deps.stage.home(stop);
   result.times.prepare_ms = milliseconds_since(deps.clock, started);

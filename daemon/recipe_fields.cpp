@@ -1,8 +1,6 @@
 /// The keys of a recipe: names, ranges, meanings.
 
-#include <array>
 #include <chrono>
-#include <utility>
 
 #include "daemon/recipe_book.hpp"
 
@@ -12,21 +10,19 @@ namespace {
 
 constexpr int kMaxSidePx = 65535;
 
-constexpr std::array kPixelFormats{std::pair{PixelFormat::kMono8, "Mono8"}, std::pair{PixelFormat::kMono10, "Mono10"},
-                                   std::pair{PixelFormat::kMono12, "Mono12"},
-                                   std::pair{PixelFormat::kMono16, "Mono16"}};
-
-void describe_format(Fields& fields, PixelFormat& format) {
+void describe_format(Fields& fields, CameraSettings& camera) {
   std::vector<std::string> names;
-  std::string name;
-  for (const auto& [value, text] : kPixelFormats) {
-    names.emplace_back(text);
-    if (value == format) name = text;
-  }
+  for (const SensorFormat format : kAllSensorFormats) names.emplace_back(sensor_format_info(format).name);
+  std::string name(sensor_format_info(camera.pixel_format).name);
   fields.choice("pixel_format", name, names, "PixelFormat by its GenICam name");
-  for (const auto& [value, text] : kPixelFormats) {
-    if (name == text) format = value;
+  for (const SensorFormat format : kAllSensorFormats) {
+    if (name == sensor_format_info(format).name) camera.pixel_format = format;
   }
+  fields.integer("significant_bits", camera.significant_bits, {0, 12},
+                 "of a camera whose Mono16 has its values at the upper end: 10 or 12; 0 = 16");
+  std::string bayer = camera.bayer == BayerUse::kGreen ? "green" : "luminance";
+  fields.choice("bayer", bayer, {"green", "luminance"}, "what of a colour mosaic is measured");
+  camera.bayer = bayer == "green" ? BayerUse::kGreen : BayerUse::kLuminance;
 }
 
 std::vector<std::string> peak_names() {
@@ -59,7 +55,7 @@ void describe_scan(Recipe& recipe, Fields& fields) {
 }
 
 void describe_camera(CameraSettings& camera, Fields& fields) {
-  describe_format(fields, camera.pixel_format);
+  describe_format(fields, camera);
   fields.integer("width_px", camera.width, {0, kMaxSidePx}, "0 = all the sensor has");
   fields.integer("height_px", camera.height, {0, kMaxSidePx}, "0 = all the sensor has");
   fields.integer("offset_x_px", camera.offset_x, {0, kMaxSidePx}, "left edge of the region");

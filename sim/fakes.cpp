@@ -142,6 +142,14 @@ MoveRecord FakeZStage::move_to(Micrometers target, const SettleCriterion& /*crit
   return move;
 }
 
+MoveRecord FakeZStage::sweep_to(Micrometers target, double /*speed_um_per_s*/, std::stop_token stop) {
+  return move_to(target, {}, stop);
+}
+
+PositionMean FakeZStage::position_at(HostTime /*at*/, std::chrono::microseconds /*reach*/) {
+  return {Micrometers{position_um_}, Micrometers{0.0}, 3};
+}
+
 PositionMean FakeZStage::mean_position(HostTime /*from*/, HostTime /*to*/) {
   return {Micrometers{position_um_}, Micrometers{0.0}, 3};
 }

@@ -92,7 +92,9 @@ class FakeZStage final : public ZStage {
   [[nodiscard]] StageStatus status() override;
   void home(std::stop_token stop) override;
   MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) override;
+  MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override;
   [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override;
+  [[nodiscard]] PositionMean position_at(HostTime at, std::chrono::microseconds reach) override;
   void stop() noexcept override { ++stops; }
   [[nodiscard]] bool connected() const noexcept override { return true; }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The camera as the scan needs it: software-triggered frames from a fixed pool.
+/// The camera as the scan needs it: frames from a fixed pool, triggered or free-running.
 
 #include <chrono>
 #include <cstdint>
@@ -9,19 +9,35 @@
 
 #include "core/frame.hpp"
 #include "core/image.hpp"
+#include "core/sensor_format.hpp"
 
 namespace fvd {
 
+/// What starts an exposure.
+enum class TriggerMode {
+  kSoftware,  ///< trigger(): TriggerMode On, TriggerSource Software
+  kLine,      ///< an edge on trigger_line, e.g. from the drive's in-position output: TriggerMode On
+  kFreeRun,   ///< the end of the one before, at frame_rate_hz: TriggerMode Off
+};
+
 /// What the recipe asks of the camera. SFNC names in the comments.
 struct CameraSettings {
-  PixelFormat pixel_format = PixelFormat::kMono8;  ///< PixelFormat
-  int width = 0;                                   ///< Width in pixels, 0 = all the sensor has
-  int height = 0;                                  ///< Height in pixels, 0 = all the sensor has
-  int offset_x = 0;                                ///< OffsetX in pixels
-  int offset_y = 0;                                ///< OffsetY in pixels
-  double exposure_us = 5000.0;                     ///< ExposureTime, > 0
-  double gain_db = 0.0;                            ///< Gain
-  int pool_frames = 8;                             ///< slots of the frame pool, >= 3
+  SensorFormat pixel_format = SensorFormat::kMono8;  ///< PixelFormat
+  int significant_bits = 0;  ///< of a 16-bit format whose values fill the upper bits: 10 or 12; 0 = as its name says
+  BayerUse bayer = BayerUse::kGreen;  ///< what of a colour mosaic is measured
+  int width = 0;                      ///< Width in pixels, 0 = all the sensor has
+  int height = 0;                     ///< Height in pixels, 0 = all the sensor has
+  int offset_x = 0;                   ///< OffsetX in pixels
+  int offset_y = 0;                   ///< OffsetY in pixels
+  double exposure_us = 5000.0;        ///< ExposureTime, > 0
+  double gain_db = 0.0;               ///< Gain
+  TriggerMode trigger = TriggerMode::kSoftware;
+  std::string trigger_line = "Line0";  ///< kLine: TriggerSource
+  double frame_rate_hz = 0.0;          ///< kFreeRun: AcquisitionFrameRate, 0 = as fast as the camera can
+  int pool_frames = 8;                 ///< slots of the frame pool, >= 3
+
+  /// The format of the slices that come out.
+  [[nodiscard]] PixelFormat slice_format() const { return fvd::slice_format(pixel_format, significant_bits); }
 
   bool operator==(const CameraSettings&) const = default;
 };
@@ -43,6 +59,7 @@ struct CameraHealth {
   std::uint64_t underruns = 0;
   std::uint64_t packets_resent = 0;
   std::uint64_t packets_missing = 0;
+  std::uint64_t ids_skipped = 0;  ///< gaps in the frame ids: frames the camera took and nobody saw
 };
 
 /// An open camera. Constructing one opens it (throws Error kCameraDisconnected), destroying it closes it; destruction
@@ -55,18 +72,20 @@ class Camera {
 
   [[nodiscard]] virtual CameraInfo info() const = 0;
 
-  /// Applies and reads back every setting, (re)builds the pool and starts acquisition in trigger mode; cheap when the
+  /// Applies and reads back every setting, (re)builds the pool where its shape changed, and acquires from then on:
+  /// triggered, or at once if free-running. Frames of the settings before are gone when it returns. Cheap when the
   /// settings have not changed. Returns what is in force. Throws Error kCameraSettings, kCameraDisconnected.
   virtual CameraSettings configure(const CameraSettings& settings) = 0;
 
-  /// Starts one exposure. Throws Error kCameraDisconnected; may block as long as the camera's command timeout.
+  /// Starts one exposure; only with TriggerMode::kSoftware. Throws Error kCameraDisconnected; blocks half a second at
+  /// most.
   virtual void trigger() = 0;
 
   /// The next frame in order of arrival, good or bad, or nothing by `deadline` or after interrupt(). A deadline in the
   /// past only looks. Throws Error kCameraDisconnected once the connection is known to be gone.
   [[nodiscard]] virtual std::optional<Frame> next_frame(HostTime deadline) = 0;
 
-  /// Longest time from trigger() to the arrival of its frame with the settings in force.
+  /// Longest time from the start of an exposure to the arrival of its frame with the settings in force.
   [[nodiscard]] virtual std::chrono::microseconds frame_deadline() const = 0;
 
   /// Ends a next_frame() that is waiting, now or the next time it is called. context: any thread.

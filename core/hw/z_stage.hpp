@@ -22,12 +22,14 @@ struct StageInfo {
   std::string name;     ///< the drive profile's name
   std::string address;  ///< e.g. "127.0.0.1:502 unit 1"
   FeedbackSource feedback = FeedbackSource::kNone;
-  Micrometers step_quantum;         ///< smallest commandable step
-  Micrometers feedback_resolution;  ///< smallest step of the measured position
-  Micrometers min;                  ///< lowest target allowed, take-up included
-  Micrometers max;                  ///< highest target allowed
-  Micrometers take_up;              ///< overshoot below the first target that loads the backlash
-  Micrometers lead{};               ///< of the screw, the period of its error; 0 = unknown
+  Micrometers step_quantum;             ///< smallest commandable step
+  Micrometers feedback_resolution;      ///< smallest step of the measured position
+  Micrometers min;                      ///< lowest target allowed, take-up included
+  Micrometers max;                      ///< highest target allowed
+  Micrometers take_up;                  ///< overshoot below the first target that loads the backlash
+  Micrometers lead{};                   ///< of the screw, the period of its error; 0 = unknown
+  double speed_um_per_s = 0.0;          ///< of moves, and the fastest a sweep may be
+  double acceleration_um_per_s2 = 0.0;  ///< of both
   bool simulated = false;
 };
 
@@ -108,7 +110,7 @@ struct PositionMean {
 };
 
 /// A connected axis. Constructing one connects and identifies the drive (throws Error kStageDisconnected).
-/// context: one thread at a time, except stop(), connected() and mean_position().
+/// context: one thread at a time, except stop(), connected(), mean_position() and position_at().
 class ZStage {
  public:
   virtual ~ZStage() = default;
@@ -127,9 +129,18 @@ class ZStage {
   /// kStageDisconnected, kAborted.
   virtual MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) = 0;
 
+  /// Moves to an absolute position at a speed of its own, so that positions may be taken on the way; returns when at
+  /// rest. Throws as move_to does; kStageLimit also for a speed that is not above 0 or above that of moves.
+  virtual MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) = 0;
+
   /// The measured position over [from, to]; waits at most for one sample at or after `to`.
   /// Throws Error kStageDisconnected.
   [[nodiscard]] virtual PositionMean mean_position(HostTime from, HostTime to) = 0;
+
+  /// The measured position of a moving axis: a line through the samples from `reach` before to `reach` after `at`, read
+  /// at `at`. sd is that of the samples about the line, samples their number; 0 = none there, the position is
+  /// extrapolated. Waits at most for one sample at or after at + reach. Throws Error kStageDisconnected.
+  [[nodiscard]] virtual PositionMean position_at(HostTime at, std::chrono::microseconds reach) = 0;
 
   /// Halts the axis ahead of everything else that is queued. context: any thread.
   virtual void stop() noexcept = 0;

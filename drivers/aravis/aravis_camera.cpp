@@ -26,34 +26,6 @@ using std::chrono::microseconds;
 /// A wait for a frame looks up so often whether it was interrupted.
 constexpr microseconds kWaitSlice{20000};
 
-const char* pfnc_name(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono8:
-      return "Mono8";
-    case PixelFormat::kMono10:
-      return "Mono10";
-    case PixelFormat::kMono12:
-      return "Mono12";
-    case PixelFormat::kMono16:
-      return "Mono16";
-  }
-  return "Mono8";
-}
-
-ArvPixelFormat pfnc_value(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kMono8:
-      return ARV_PIXEL_FORMAT_MONO_8;
-    case PixelFormat::kMono10:
-      return ARV_PIXEL_FORMAT_MONO_10;
-    case PixelFormat::kMono12:
-      return ARV_PIXEL_FORMAT_MONO_12;
-    case PixelFormat::kMono16:
-      return ARV_PIXEL_FORMAT_MONO_16;
-  }
-  return ARV_PIXEL_FORMAT_MONO_8;
-}
-
 class AravisCamera final : public Camera {
  public:
   explicit AravisCamera(const CameraConfig& config) : config_(config) {
@@ -120,7 +92,7 @@ class AravisCamera final : public Camera {
   [[nodiscard]] std::chrono::microseconds frame_deadline() const override {
     // Exposure, then the line: a gigabit a second, counted generously.
     const double payload =
-        static_cast<double>(effective_.width) * effective_.height * bytes_per_pixel(effective_.pixel_format);
+        static_cast<double>(effective_.width) * effective_.height * bytes_per_pixel(effective_.slice_format());
     return microseconds(static_cast<std::int64_t>(effective_.exposure_us + payload * 0.02)) +
            std::chrono::milliseconds(config_.frame_margin_ms);
   }
@@ -239,8 +211,9 @@ class AravisCamera final : public Camera {
     if (effective.width == 0) effective.width = info_.sensor_width - settings.offset_x;
     if (effective.height == 0) effective.height = info_.sensor_height - settings.offset_y;
     GErrorSlot error;
-    arv_camera_set_pixel_format_from_string(camera_.get(), pfnc_name(settings.pixel_format), error.out());
-    if (error.failed()) refuse(error, "PixelFormat", pfnc_name(settings.pixel_format));
+    const std::string name(sensor_format_info(settings.pixel_format).name);
+    arv_camera_set_pixel_format_from_string(camera_.get(), name.c_str(), error.out());
+    if (error.failed()) refuse(error, "PixelFormat", name);
     set_integer("OffsetX", 0);
     set_integer("OffsetY", 0);
     set_integer("Width", effective.width);
@@ -328,9 +301,9 @@ class AravisCamera final : public Camera {
     std::size_t bytes = 0;
     const void* data = arv_buffer_get_data(buffer, &bytes);
     const auto expected = static_cast<std::size_t>(effective_.width) * static_cast<std::size_t>(effective_.height) *
-                          static_cast<std::size_t>(bytes_per_pixel(effective_.pixel_format));
+                          static_cast<std::size_t>(bytes_per_pixel(effective_.slice_format()));
     const bool fits = arv_buffer_get_payload_type(buffer) == ARV_BUFFER_PAYLOAD_TYPE_IMAGE &&
-                      arv_buffer_get_image_pixel_format(buffer) == pfnc_value(effective_.pixel_format) &&
+                      arv_buffer_get_image_pixel_format(buffer) == sensor_format_info(effective_.pixel_format).pfnc &&
                       arv_buffer_get_image_width(buffer) == effective_.width &&
                       arv_buffer_get_image_height(buffer) == effective_.height && bytes >= expected;
     frame.id = counter_.unwrap(arv_buffer_get_frame_id(buffer));
@@ -340,8 +313,8 @@ class AravisCamera final : public Camera {
       return frame;
     }
     ++frames_complete_;
-    frame.image = {effective_.pixel_format, effective_.width, effective_.height,
-                   static_cast<std::ptrdiff_t>(effective_.width) * bytes_per_pixel(effective_.pixel_format),
+    frame.image = {effective_.slice_format(), effective_.width, effective_.height,
+                   static_cast<std::ptrdiff_t>(effective_.width) * bytes_per_pixel(effective_.slice_format()),
                    static_cast<const std::byte*>(data)};
     // The warm-up frame comes before the clock is measured; nobody looks at its time.
     frame.exposure_start = clock_.to_host(arv_buffer_get_timestamp(buffer)).value_or(HostTime::min());

@@ -169,4 +169,9 @@ PositionMean AxisPoller::mean(HostTime from, HostTime to) {
   return log_.mean(from, to);
 }
 
+PositionMean AxisPoller::line(HostTime at, std::chrono::microseconds reach) {
+  const std::lock_guard lock(mutex_);
+  return log_.line(at, reach);
+}
+
 }  // namespace fvd

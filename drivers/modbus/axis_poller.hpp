@@ -33,6 +33,7 @@ class AxisPoller {
   /// The first sample that was taken wholly after `after`. Throws Error kStageDisconnected, kAborted on a stop request.
   [[nodiscard]] AxisSample sample_after(HostTime after, std::stop_token stop);
   [[nodiscard]] PositionMean mean(HostTime from, HostTime to);
+  [[nodiscard]] PositionMean line(HostTime at, std::chrono::microseconds reach);
   [[nodiscard]] std::vector<StageTemperature> temperatures() const;
   /// No samples are taken while the lock is held: on a slow line they would come between the frames of a start.
   [[nodiscard]] std::unique_lock<std::mutex> pause() { return std::unique_lock(polling_); }

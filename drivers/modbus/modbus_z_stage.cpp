@@ -22,6 +22,9 @@ namespace {
 constexpr int kStopAttempts = 3;
 /// A sample of a resting axis counts as present for so long.
 constexpr std::chrono::milliseconds kFresh{50};
+/// A sweep has ended when the axis rests this close to its target, so long after its due time at the latest.
+constexpr Micrometers kSweepWindow{5.0};
+constexpr std::chrono::milliseconds kSweepPatience{3000};
 
 class ModbusZStage final : public ZStage {
  public:
@@ -59,6 +62,8 @@ class ModbusZStage final : public ZStage {
     info.max = config_.max;
     info.take_up = config_.take_up;
     info.lead = Micrometers{profile_.lead_um};
+    info.speed_um_per_s = config_.speed_um_per_s;
+    info.acceleration_um_per_s2 = config_.acceleration_um_per_s2;
     info.simulated = config_.simulated;
     return info;
   }
@@ -122,6 +127,26 @@ class ModbusZStage final : public ZStage {
   }
 
   MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) override {
+    return move_at(config_.speed_um_per_s, target, criterion, stop);
+  }
+
+  MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override {
+    if (!(speed_um_per_s > 0.0) || speed_um_per_s > config_.speed_um_per_s) {
+      std::ostringstream message;
+      message << "a sweep at " << speed_um_per_s << " um/s is outside 0.." << config_.speed_um_per_s
+              << " um/s, the speed of moves; nothing was moved";
+      throw Error(ErrorCode::kStageLimit, message.str());
+    }
+    const AxisSample here = sample_after(std::max(HostClock::now() - kFresh, changed_.load()), stop);
+    const double seconds =
+        abs(target - here.position).value / speed_um_per_s + speed_um_per_s / config_.acceleration_um_per_s2;
+    const SettleCriterion rest{kSweepWindow, 1, std::chrono::milliseconds(0),
+                               kSweepPatience + std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000.0))};
+    return move_at(speed_um_per_s, target, rest, stop);
+  }
+
+  MoveRecord move_at(double speed_um_per_s, Micrometers target, const SettleCriterion& criterion,
+                     std::stop_token stop) {
     MoveRecord move;
     move.target = target;
     move.target_counts = quantise(target);
@@ -138,7 +163,7 @@ class ModbusZStage final : public ZStage {
     require_reference(before);
     const Doing moving(state_, AxisState::kMoving);
     move.started = HostClock::now();
-    start_move(move, before, criterion, stop);
+    start_move(move, speed_um_per_s, before, criterion, stop);
     halting_on_stop([&] { settle(move, before, criterion, stop); });
     return move;
   }
@@ -146,6 +171,11 @@ class ModbusZStage final : public ZStage {
   [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
     (void)sample_after(to, {});
     return poller_->mean(from, to);
+  }
+
+  [[nodiscard]] PositionMean position_at(HostTime at, std::chrono::microseconds reach) override {
+    (void)sample_after(at + reach, {});
+    return poller_->line(at, reach);
   }
 
   void stop() noexcept override {
@@ -274,8 +304,8 @@ class ModbusZStage final : public ZStage {
 
   // --- moving ---
 
-  [[nodiscard]] DriveValues values(StageCounts target) const {
-    return {target.value, profile_.speed.value(config_.speed_um_per_s),
+  [[nodiscard]] DriveValues values(StageCounts target, double speed_um_per_s) const {
+    return {target.value, profile_.speed.value(speed_um_per_s),
             profile_.acceleration.value(config_.acceleration_um_per_s2)};
   }
 
@@ -284,7 +314,8 @@ class ModbusZStage final : public ZStage {
     const char* name;
   };
   Outcome run(const DriveSequence& sequence, const char* name, std::stop_token stop) {
-    return {run_sequence(link_, sequence, values({}), ModbusPriority::kNormal, std::move(stop)), name};
+    return {run_sequence(link_, sequence, values({}, config_.speed_um_per_s), ModbusPriority::kNormal, std::move(stop)),
+            name};
   }
 
   /// For sequences whose repetition would do no harm: anything but "ok" is an error.
@@ -332,12 +363,13 @@ class ModbusZStage final : public ZStage {
 
   /// Sends the move. Without a usable answer it looks whether the axis obeys, and only if it does not, sends the same
   /// absolute target once more: an absolute move that did arrive is not repeated by that.
-  void start_move(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
-                  std::stop_token stop) {
+  void start_move(const MoveRecord& move, double speed_um_per_s, const AxisSample& before,
+                  const SettleCriterion& criterion, std::stop_token stop) {
+    const DriveValues sent = values(move.target_counts, speed_um_per_s);
     for (int attempt = 1;; ++attempt) {
       const SequenceResult result = [&] {
         const auto paused = poller_->pause();
-        return run_sequence(link_, profile_.move_absolute, values(move.target_counts), ModbusPriority::kNormal, stop);
+        return run_sequence(link_, profile_.move_absolute, sent, ModbusPriority::kNormal, stop);
       }();
       target_ = move.target_counts.value;
       if (result.outcome == ModbusOutcome::kOk) return;
@@ -351,7 +383,7 @@ class ModbusZStage final : public ZStage {
       }
       spdlog::warn("no answer to a move to {} um: {}", move.target.value, result.error);
       if (has_begun(move, before, criterion, stop)) {
-        finish_start(result.step + 1, move, stop);
+        finish_start(result.step + 1, sent, stop);
         return;
       }
       if (attempt == 2) {
@@ -361,9 +393,8 @@ class ModbusZStage final : public ZStage {
   }
 
   /// The rest of a start whose decisive step was executed but not answered: edges are to be taken back.
-  void finish_start(std::size_t first, const MoveRecord& move, std::stop_token stop) {
-    const SequenceResult rest =
-        run_sequence(link_, profile_.move_absolute, values(move.target_counts), ModbusPriority::kNormal, stop, first);
+  void finish_start(std::size_t first, const DriveValues& sent, std::stop_token stop) {
+    const SequenceResult rest = run_sequence(link_, profile_.move_absolute, sent, ModbusPriority::kNormal, stop, first);
     if (rest.outcome != ModbusOutcome::kOk) spdlog::warn("the start of a move could not be completed: {}", rest.error);
   }
 

@@ -61,4 +61,42 @@ PositionMean PositionLog::mean(HostTime from, HostTime to) const {
   return result;
 }
 
+PositionMean PositionLog::line(HostTime at, std::chrono::microseconds reach) const {
+  assert(count_ > 0);
+  // Differences to the moment and to the newest position keep the squares small.
+  const double reference = this->at(0).position.value;
+  double n = 0.0;
+  double t = 0.0;
+  double z = 0.0;
+  double tt = 0.0;
+  double tz = 0.0;
+  double zz = 0.0;
+  for (std::size_t age = 0; age < count_; ++age) {
+    const AxisSample& sample = this->at(age);
+    if (sample.time > at + reach) continue;
+    if (sample.time < at - reach) break;
+    const double seconds = std::chrono::duration<double>(sample.time - at).count();
+    const double um = sample.position.value - reference;
+    n += 1.0;
+    t += seconds;
+    z += um;
+    tt += seconds * seconds;
+    tz += seconds * um;
+    zz += um * um;
+  }
+  const double spread = n * tt - t * t;
+  if (n < 2.0 || spread <= 0.0) {
+    PositionMean result = mean(at, at);
+    result.samples = 0;
+    return result;
+  }
+  const double slope = (n * tz - t * z) / spread;
+  const double offset = (z - slope * t) / n;
+  PositionMean result;
+  result.mean = Micrometers{reference + offset};
+  result.samples = static_cast<int>(n);
+  if (n > 2.0) result.sd = Micrometers{std::sqrt(std::max(0.0, (zz - offset * z - slope * tz) / (n - 2.0)))};
+  return result;
+}
+
 }  // namespace fvd

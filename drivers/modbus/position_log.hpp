@@ -40,6 +40,10 @@ class PositionLog {
   /// nearest neighbours when none lies inside. The log is not empty.
   [[nodiscard]] PositionMean mean(HostTime from, HostTime to) const;
 
+  /// A straight line through the samples of [at - reach, at + reach], read at `at`; sd is that of the samples about it.
+  /// With fewer than two samples there it is what mean() says, with 0 samples. The log is not empty.
+  [[nodiscard]] PositionMean line(HostTime at, std::chrono::microseconds reach) const;
+
  private:
   [[nodiscard]] const AxisSample& at(std::size_t age) const;  // 0 = newest
 

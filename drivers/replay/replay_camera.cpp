@@ -55,13 +55,13 @@ class ReplayCamera final : public Camera {
   CameraSettings configure(const CameraSettings& settings) override {
     const auto fits = [](int asked, int there) { return asked == 0 || asked == there; };
     if (!fits(settings.width, stack_.width()) || !fits(settings.height, stack_.height()) || settings.offset_x != 0 ||
-        settings.offset_y != 0 || settings.pixel_format != stack_.format()) {
+        settings.offset_y != 0 || settings.slice_format() != stack_.format()) {
       throw Error(ErrorCode::kCameraSettings,
                   "recorded slices are delivered as they are: " + std::to_string(stack_.width()) + " x " +
                       std::to_string(stack_.height()) + " pixels of " +
                       std::to_string(significant_bits(stack_.format())) + " bit, offset 0; asked for were " +
                       std::to_string(settings.width) + " x " + std::to_string(settings.height) + " of " +
-                      std::to_string(significant_bits(settings.pixel_format)) + " bit, offset " +
+                      std::to_string(significant_bits(settings.slice_format())) + " bit, offset " +
                       std::to_string(settings.offset_x) + ", " + std::to_string(settings.offset_y));
     }
     if (settings.pool_frames < 1) {

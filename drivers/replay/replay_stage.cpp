@@ -76,6 +76,14 @@ class ReplayStage final : public ZStage {
     return move;
   }
 
+  MoveRecord sweep_to(Micrometers target, double /*speed_um_per_s*/, std::stop_token /*stop*/) override {
+    fail(ErrorCode::kStagePosition, target, "cannot be swept to: recorded slices are scanned step by step");
+  }
+
+  [[nodiscard]] PositionMean position_at(HostTime /*at*/, std::chrono::microseconds /*reach*/) override {
+    return {position(), Micrometers{}, 1};
+  }
+
   [[nodiscard]] PositionMean mean_position(HostTime /*from*/, HostTime /*to*/) override {
     return {position(), Micrometers{}, 1};
   }

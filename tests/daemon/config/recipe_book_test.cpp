@@ -58,7 +58,7 @@ TEST(Recipe, ReadsEveryKey) {
   EXPECT_EQ(recipe.settle.samples, 5);
   EXPECT_EQ(recipe.settle.dwell.count(), 20);
   EXPECT_EQ(recipe.settle.timeout.count(), 1000);
-  EXPECT_EQ(recipe.camera.pixel_format, PixelFormat::kMono12);
+  EXPECT_EQ(recipe.camera.pixel_format, SensorFormat::kMono12);
   EXPECT_EQ(recipe.camera.width, 640);
   EXPECT_EQ(recipe.camera.height, 480);
   EXPECT_EQ(recipe.camera.offset_x, 8);

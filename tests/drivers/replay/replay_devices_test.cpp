@@ -125,7 +125,7 @@ TEST_F(AReplayedStack, RefusesSettingsThatItsSlicesDoNotHave) {
   wrong.width = 41;
   expect_error(ErrorCode::kCameraSettings, {"40 x 30", "41"}, [&] { camera->configure(wrong); });
   wrong = settings_;
-  wrong.pixel_format = PixelFormat::kMono16;
+  wrong.pixel_format = SensorFormat::kMono16;
   expect_error(ErrorCode::kCameraSettings, {"8 bit", "16 bit"}, [&] { camera->configure(wrong); });
   wrong = settings_;
   wrong.offset_y = 1;
