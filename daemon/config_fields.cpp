@@ -27,9 +27,13 @@ void describe(CameraConfig& camera, Fields& fields) {
   fields.choice("driver", camera.driver, {"aravis", "replay"},
                 "aravis = GigE Vision or USB3 Vision, replay = a folder");
   fields.text("address", camera.address, kMaxName, "IP address, or vendor-model-serial");
-  fields.integer("packet_size_bytes", camera.packet_size_bytes, {576, 16000},
-                 "GevSCPSPacketSize; not above the MTU of the interface");
+  fields.integer("packet_size_bytes", camera.packet_size_bytes, {0, 16000},
+                 "GevSCPSPacketSize; 0 = the largest that comes through, never above the MTU of the interface");
+  fields.integer("packet_delay_ns", camera.packet_delay_ns, {0, 1000000}, "GevSCPD; 0 = leave it as it is");
   fields.boolean("packet_socket", camera.packet_socket, "receive through AF_PACKET where CAP_NET_RAW allows");
+  fields.integer("stream_priority", camera.stream_priority, {0, 99},
+                 "real-time priority of the thread that receives frames; 0 = none");
+  fields.choice("usb_mode", camera.usb_mode, {"sync", "async"}, "USB3 Vision: how frames are asked for");
   fields.integer("frame_margin_ms", camera.frame_margin_ms, {10, 10000},
                  "added to exposure and readout before a frame counts as missing");
   fields.boolean("simulated", camera.simulated, "stamped into every result");

@@ -22,8 +22,9 @@ namespace fvd {
 
 namespace {
 
-/// How often an idle engine looks after its devices.
+/// How often an idle engine looks after its devices, and how often when one is missing.
 constexpr std::chrono::milliseconds kDeviceCheckPeriod{500};
+constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
 
 int thread_count(int configured) {
   if (configured > 0) return configured;
@@ -231,7 +232,8 @@ void Engine::run(std::stop_token stop) {
   while (!stop.stop_requested()) {
     check_devices();
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, stop, kDeviceCheckPeriod, [this] { return pending_.has_value(); });
+    changed_.wait_for(lock, stop, failure_ ? kDeviceRetryPeriod : kDeviceCheckPeriod,
+                      [this] { return pending_.has_value(); });
     if (!pending_) continue;
     const PendingJob job = std::move(*pending_);
     pending_.reset();

@@ -3,7 +3,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/support/setup.sh"
 
-fvd_packages+=(mbpoll python3-pymodbus)  # peers that are not fvd's
+fvd_packages+=(mbpoll python3-pymodbus aravis-tools)  # peers that are not fvd's
 fvd_install_packages
 fvd_build
 # Only the thread sanitizer reads this: which libraries' locks it cannot see, and that a test's forked child starts threads.

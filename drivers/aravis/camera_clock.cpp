@@ -1,12 +1,19 @@
 #include "drivers/aravis/camera_clock.hpp"
 
+#include <cmath>
+
 #include "drivers/aravis/gobject.hpp"
 
 namespace fvd {
 
 namespace {
 
-constexpr int kTries = 30;
+constexpr int kLatches = 12;
+/// Pairs closer together than this say nothing of the rate.
+constexpr std::chrono::seconds kRateBase{2};
+constexpr std::chrono::seconds kRateSpan{60};
+/// A larger difference is no drift: the camera's clock was set anew.
+constexpr double kLargestRateError = 1e-3;
 
 /// The two names of the latch: GigE Vision 1.x in ticks, SFNC 2 in ns.
 struct Latch {
@@ -27,38 +34,70 @@ std::optional<Latch> latch_of(ArvDevice* device) {
   return std::nullopt;
 }
 
+double nanoseconds(HostClock::duration duration) { return std::chrono::duration<double, std::nano>(duration).count(); }
+
+/// Host time over camera time between two pairs.
+double rate_between(const ClockPair& from, const ClockPair& to) {
+  return nanoseconds(to.host - from.host) / static_cast<double>(to.camera_ns - from.camera_ns);
+}
+
 }  // namespace
 
-void CameraClock::measure(ArvDevice* device) {
-  if (offset_ && HostClock::now() - measured_ < kRenewAfter) return;
+std::optional<ClockPair> latch_clock(ArvDevice* device) {
   const auto latch = latch_of(device);
-  if (!latch) return;
+  if (!latch) return std::nullopt;
   GErrorSlot error;
   double ns_per_tick = 1.0;
   if (latch->tick_frequency != nullptr) {
     const gint64 frequency = arv_device_get_integer_feature_value(device, latch->tick_frequency, error.out());
-    if (error.failed() || frequency <= 0) return;
+    if (error.failed() || frequency <= 0) return std::nullopt;
     ns_per_tick = 1e9 / static_cast<double>(frequency);
   }
-  auto quickest = HostClock::duration::max();
-  for (int i = 0; i < kTries; ++i) {
+  std::optional<ClockPair> best;
+  for (int i = 0; i < kLatches; ++i) {
     const HostTime before = HostClock::now();
     arv_device_execute_command(device, latch->command, error.out());
     const HostTime after = HostClock::now();
-    if (error.failed()) return;
+    if (error.failed()) return std::nullopt;
     const gint64 ticks = arv_device_get_integer_feature_value(device, latch->value, error.out());
-    if (error.failed()) return;
-    if (after - before >= quickest) continue;
-    quickest = after - before;
-    const std::chrono::nanoseconds camera(static_cast<std::int64_t>(static_cast<double>(ticks) * ns_per_tick));
-    offset_ = (before + (after - before) / 2).time_since_epoch() - camera;
-    measured_ = after;
+    if (error.failed()) return std::nullopt;
+    const auto bound = (after - before) / 2;
+    if (best && bound >= best->bound) continue;
+    best = ClockPair{std::llround(static_cast<long double>(ticks) * ns_per_tick), before + bound, bound};
   }
+  return best;
+}
+
+void CameraClock::add(const ClockPair& pair) {
+  const std::lock_guard lock(mutex_);
+  const bool follows = first_ && pair.camera_ns > latest_->camera_ns && pair.host > latest_->host &&
+                       std::abs(rate_between(*latest_, pair) - 1.0) <=
+                           kLargestRateError + nanoseconds(pair.bound + latest_->bound) /
+                                                   static_cast<double>(pair.camera_ns - latest_->camera_ns);
+  if (!follows) {
+    first_ = pair;
+  } else if (pair.host - first_->host > kRateSpan) {
+    first_ = latest_;  // the rate changes with temperature
+  }
+  latest_ = pair;
+}
+
+bool CameraClock::known() const {
+  const std::lock_guard lock(mutex_);
+  return latest_.has_value();
+}
+
+bool CameraClock::due(HostTime now) const {
+  const std::lock_guard lock(mutex_);
+  return !latest_ || now - latest_->host > kRenewAfter;
 }
 
 std::optional<HostTime> CameraClock::to_host(std::uint64_t camera_ns) const {
-  if (!offset_) return std::nullopt;
-  return HostTime(*offset_ + std::chrono::nanoseconds(static_cast<std::int64_t>(camera_ns)));
+  const std::lock_guard lock(mutex_);
+  if (!latest_) return std::nullopt;
+  const double rate = latest_->host - first_->host >= kRateBase ? rate_between(*first_, *latest_) : 1.0;
+  const auto since = static_cast<double>(static_cast<std::int64_t>(camera_ns) - latest_->camera_ns);
+  return latest_->host + std::chrono::nanoseconds(std::llround(since * rate));
 }
 
 }  // namespace fvd

@@ -1,7 +1,9 @@
 #pragma once
 
-/// Maps the camera's timestamps to the host's monotonic clock.
+/// The camera's clock seen from the host's.
 
+#include <cstdint>
+#include <mutex>
 #include <optional>
 
 #include <arv.h>
@@ -10,24 +12,35 @@
 
 namespace fvd {
 
-/// The latch register is read with the host's clock taken before and after; of many tries the quickest bounds the error
-/// best (some 10 us on a local link). Renewed now and then, because the two clocks drift.
-/// context: the device's thread.
+/// A moment on both clocks.
+struct ClockPair {
+  std::int64_t camera_ns = 0;
+  HostTime host{};
+  HostClock::duration bound{};  ///< the two differ by no more
+};
+
+/// Latches the camera's clock some ten times and keeps the latch with the shortest round trip; nothing if the camera
+/// has no latch that works. Blocks for as many commands. context: the device's thread.
+[[nodiscard]] std::optional<ClockPair> latch_clock(ArvDevice* device);
+
+/// Offset and rate from pairs taken now and then: quartz clocks differ by up to 0.1 ms a second.
+/// context: thread-safe.
 class CameraClock {
  public:
-  /// Measures anew if the last measurement is older than kRenewAfter. Without a latch in the camera there is no map.
-  void measure(ArvDevice* device);
+  /// A pair this old should be followed by another.
+  static constexpr std::chrono::seconds kRenewAfter{5};
 
-  [[nodiscard]] bool measured() const { return offset_.has_value(); }
-
-  /// Host time of a camera timestamp in ns; nothing without a map.
+  void add(const ClockPair& pair);
+  [[nodiscard]] bool known() const;
+  /// True before the first pair too.
+  [[nodiscard]] bool due(HostTime now) const;
+  /// Nothing before the first pair.
   [[nodiscard]] std::optional<HostTime> to_host(std::uint64_t camera_ns) const;
 
  private:
-  static constexpr std::chrono::seconds kRenewAfter{10};
-
-  std::optional<HostClock::duration> offset_;  // host = camera + offset
-  HostTime measured_{};
+  mutable std::mutex mutex_;
+  std::optional<ClockPair> first_;  // of the present rate; guarded by mutex_, as is latest_
+  std::optional<ClockPair> latest_;
 };
 
 }  // namespace fvd

@@ -40,6 +40,15 @@ ArvBuffer* FrameBuffers::pop(std::chrono::microseconds timeout) {
   return arv_stream_timeout_pop_buffer(stream_.get(), static_cast<guint64>(timeout.count()));
 }
 
+void FrameBuffers::restart_thread() {
+  arv_stream_stop_thread(stream_.get(), FALSE);
+  arv_stream_start_thread(stream_.get());
+}
+
+std::uint64_t FrameBuffers::ignored_packets() const {
+  return arv_stream_get_info_uint64_by_name(stream_.get(), "n_ignored_packets");
+}
+
 void FrameBuffers::recycle(void* slot) noexcept {
   arv_stream_push_buffer(stream_.get(), static_cast<ArvBuffer*>(slot));
 }

@@ -27,6 +27,11 @@ class FrameBuffers final : public FrameRecycler {
   [[nodiscard]] FrameLease lease(ArvBuffer* buffer) { return {buffer, FrameSlotDeleter{this}}; }
   void recycle(void* slot) noexcept override;
 
+  /// Forgets the numbers of the frames received so far, so that smaller ones are not taken for late. Some 60 ms.
+  void restart_thread();
+  /// Packets that Aravis threw away as belonging to late frames; 0 where there are no packets.
+  [[nodiscard]] std::uint64_t ignored_packets() const;
+
   [[nodiscard]] ArvStream* stream() const { return stream_.get(); }
 
  private:

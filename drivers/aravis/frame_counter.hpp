@@ -16,6 +16,9 @@ class FrameCounter {
     previous_ = 0;
   }
 
+  /// The newest, 0 before the first.
+  [[nodiscard]] std::uint64_t last() const { return last_; }
+
   /// An older number than the one before (a late frame) gives a smaller result.
   [[nodiscard]] std::uint64_t unwrap(std::uint64_t block) {
     if (block > kPeriod) return last_ = base_ + block;

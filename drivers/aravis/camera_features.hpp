@@ -1,0 +1,48 @@
+#pragma once
+
+/// Settings into the camera's features, in the order that works, each checked and read back. Inside the driver only:
+/// this header brings in Aravis.
+
+#include <string>
+
+#include <arv.h>
+
+#include "core/hw/camera.hpp"
+
+namespace fvd {
+
+/// Every function throws Error kCameraSettings, naming feature, value and what the camera accepts, or
+/// kCameraDisconnected. context: the device's thread.
+class CameraFeatures {
+ public:
+  /// where: for messages, e.g. the camera's address. The camera outlives this.
+  CameraFeatures(ArvCamera* camera, std::string where) : camera_(camera), where_(std::move(where)) {}
+
+  /// What of the settings stands only while nothing is acquired: format and region. Returns what is in force.
+  [[nodiscard]] CameraSettings apply_shape(const CameraSettings& settings) const;
+  /// Exposure, gain, rate and trigger, the trigger last: Aravis switches it off when it sets the rate. Changes what is
+  /// in force.
+  void apply_timing(const CameraSettings& settings, CameraSettings& in_force) const;
+
+  /// Sensor's size in pixels.
+  void sensor_size(int& width, int& height) const;
+  void set_integer(const char* feature, gint64 value) const;
+  [[nodiscard]] gint64 integer(const char* feature) const;
+  /// Steps in which it may be set, from its minimum on.
+  [[nodiscard]] gint64 increment(const char* feature) const;
+  [[nodiscard]] bool available(const char* feature) const;
+
+ private:
+  void set_pixel_format(SensorFormat format) const;
+  void set_region(const CameraSettings& settings, CameraSettings& in_force) const;
+  [[nodiscard]] double set_exposure_us(double exposure_us) const;
+  [[nodiscard]] double set_gain_db(double gain_db) const;
+  [[nodiscard]] double set_frame_rate_hz(double frame_rate_hz) const;
+  void set_trigger(const CameraSettings& settings) const;
+  [[noreturn]] void refuse(const std::string& what) const;
+
+  ArvCamera* camera_;
+  std::string where_;
+};
+
+}  // namespace fvd

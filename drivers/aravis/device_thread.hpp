@@ -1,0 +1,47 @@
+#pragma once
+
+/// The one thread that talks to an Aravis device.
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <type_traits>
+#include <utility>
+
+namespace fvd {
+
+/// Aravis devices are not thread-safe, and a command to a camera that no longer answers blocks for 2.5 s; who wants
+/// something of one waits on the future for as long as he likes. context: thread-safe.
+class DeviceThread {
+ public:
+  DeviceThread();
+  /// Waits for the command under way; those behind it are dropped, their futures broken.
+  ~DeviceThread();
+  DeviceThread(const DeviceThread&) = delete;
+  DeviceThread& operator=(const DeviceThread&) = delete;
+
+  /// Commands run one after the other. What they throw, the future throws.
+  template <typename Command>
+  [[nodiscard]] std::future<std::invoke_result_t<Command>> post(Command command) {
+    auto task = std::make_shared<std::packaged_task<std::invoke_result_t<Command>()>>(std::move(command));
+    auto result = task->get_future();
+    enqueue([task] { (*task)(); });
+    return result;
+  }
+
+ private:
+  void enqueue(std::function<void()> command);
+  void run(std::stop_token stop);
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::deque<std::function<void()>> commands_;  // guarded by mutex_
+  std::jthread thread_;                         // last
+};
+
+}  // namespace fvd

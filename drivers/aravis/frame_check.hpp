@@ -1,0 +1,21 @@
+#pragma once
+
+/// Is a buffer the image that was configured? Inside the driver only: this header brings in Aravis.
+
+#include <span>
+
+#include <arv.h>
+
+#include "core/frame.hpp"
+#include "core/hw/camera.hpp"
+
+namespace fvd {
+
+/// kOk: complete, one image, of the format and size of `settings`, whose width and height are > 0. Of an incomplete
+/// buffer nothing but the status is looked at: the rest may be left over from its last use.
+[[nodiscard]] FrameStatus check_frame(ArvBuffer* buffer, const CameraSettings& settings);
+
+/// The image of a buffer that check_frame found kOk, as it came over the wire.
+[[nodiscard]] std::span<const std::byte> wire_image(ArvBuffer* buffer, const CameraSettings& settings);
+
+}  // namespace fvd

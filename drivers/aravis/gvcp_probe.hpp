@@ -1,0 +1,51 @@
+#pragma once
+
+/// Asks a GigE Vision camera whether it is there, beside the control channel of Aravis, whose commands block for 2.5 s
+/// when it is not.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "core/hw/clock.hpp"
+
+namespace fvd {
+
+/// Reads the control privilege register (GigE Vision 1.2, CCP at 0x0A00), which every camera tells everybody.
+/// context: one thread.
+class GvcpProbe {
+ public:
+  /// ip: dotted quad of the camera. Throws Error kCameraDisconnected if there is no way to it.
+  explicit GvcpProbe(const std::string& ip);
+  ~GvcpProbe();
+  GvcpProbe(const GvcpProbe&) = delete;
+  GvcpProbe& operator=(const GvcpProbe&) = delete;
+
+  enum class Answer {
+    kNone,        ///< silence so far
+    kAbsent,      ///< its host says that nobody listens there
+    kFree,        ///< there, and nobody holds control
+    kControlled,  ///< there, and somebody does
+  };
+
+  /// A request is repeated so often while no answer comes.
+  static constexpr std::chrono::milliseconds kRepeat{50};
+
+  /// Forgets what was asked before and asks.
+  void begin() noexcept;
+  /// The answer to the question, at once; asks again after kRepeat. begin() came first.
+  [[nodiscard]] Answer look() noexcept;
+  /// begin(), and look() until there is an answer or `patience` is over.
+  [[nodiscard]] Answer ask(std::chrono::milliseconds patience) noexcept;
+
+ private:
+  void send() noexcept;
+  void wait(HostTime until) const noexcept;
+
+  int fd_;
+  std::uint16_t first_id_ = 1;  // of the requests that belong to the question
+  std::uint16_t last_id_ = 1;
+  HostTime sent_{};
+};
+
+}  // namespace fvd
