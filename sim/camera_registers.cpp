@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <map>
+#include <optional>
 #include <utility>
 
 #include "sim/genicam_xml.hpp"
@@ -20,10 +20,12 @@ namespace reg = gvcp::reg;
 constexpr std::uint32_t kBootstrapBytes = 0x0E00;
 constexpr std::uint32_t kXmlAddress = 0x10000;
 
-const std::map<std::uint32_t, PixelFormat> kFormats{{0x01080001, PixelFormat::kMono8},
-                                                    {0x01100003, PixelFormat::kMono10},
-                                                    {0x01100005, PixelFormat::kMono12},
-                                                    {0x01100007, PixelFormat::kMono16}};
+std::optional<SensorFormat> format_of(std::uint32_t pfnc) {
+  for (const SensorFormat format : kAllSensorFormats) {
+    if (sensor_format_info(format).pfnc == pfnc) return format;
+  }
+  return std::nullopt;
+}
 
 std::uint64_t wide_at(const std::uint8_t* bytes) {
   std::uint64_t value = 0;
@@ -33,8 +35,19 @@ std::uint64_t wide_at(const std::uint8_t* bytes) {
 
 }  // namespace
 
-CameraRegisters::CameraRegisters(const CameraIdentity& identity)
-    : bootstrap_(kBootstrapBytes), features_(feature::kBytes) {
+CameraRegisters::CameraRegisters(const CameraIdentity& identity) : identity_(identity) { initialise_locked(); }
+
+void CameraRegisters::reset() {
+  const std::lock_guard lock(mutex_);
+  const std::uint32_t port = get_locked(reg::kStreamSourcePort);
+  initialise_locked();
+  set_locked(reg::kStreamSourcePort, port);
+}
+
+void CameraRegisters::initialise_locked() {
+  const CameraIdentity& identity = identity_;
+  bootstrap_.assign(kBootstrapBytes, 0);
+  features_.assign(feature::kBytes, 0);
   const std::string xml = genicam_xml();
   xml_.assign(xml.begin(), xml.end());
   xml_.resize((xml_.size() + 3) / 4 * 4);  // memory is read in multiples of 4
@@ -137,7 +150,7 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
     const double value = std::bit_cast<double>(wide_at(bytes.data()));
     if (address == feature::kExposureTime) return within(value, 10.0, 1e7);
     if (address == feature::kGain) return within(value, 0.0, 24.0);
-    return within(value, 0.1, 1000.0);
+    return within(value, 0.1, kLargestFrameRate_hz);
   }
   if (bytes.size() != 4) return Status::kWriteProtect;
   const std::uint32_t value = gvcp::get32(bytes, 0);
@@ -158,13 +171,14 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
     }
     case feature::kPixelFormat:
       if (locked) return Status::kAccessDenied;
-      return kFormats.contains(value) ? Status::kSuccess : Status::kInvalidParameter;
+      return format_of(value) ? Status::kSuccess : Status::kInvalidParameter;
     case feature::kTriggerMode:
     case feature::kFrameRateEnable:
     case feature::kParametersLocked:
       return within(value, 0, 1);
-    case feature::kAcquisitionMode:
     case feature::kTriggerSource:
+      return within(value, 0, 1);
+    case feature::kAcquisitionMode:
     case feature::kTriggerSelector:
       return within(value, 0, 0);
     case feature::kAcquisitionStart:
@@ -196,16 +210,16 @@ Status CameraRegisters::write(std::uint32_t address, std::span<const std::uint8_
 }
 
 void CameraRegisters::refresh_payload_locked() {
-  const PixelFormat format = kFormats.at(get_locked(feature::kPixelFormat));
-  set_locked(feature::kPayloadSize, get_locked(feature::kWidth) * get_locked(feature::kHeight) *
-                                        static_cast<std::uint32_t>(bytes_per_pixel(format)));
+  const SensorFormat format = format_of(get_locked(feature::kPixelFormat)).value();
+  const std::size_t bytes = sensor_image_bytes(format, static_cast<int>(get_locked(feature::kWidth)),
+                                               static_cast<int>(get_locked(feature::kHeight)));
+  set_locked(feature::kPayloadSize, static_cast<std::uint32_t>(bytes));
 }
 
 CameraState CameraRegisters::state() const {
   const std::lock_guard lock(mutex_);
   CameraState state;
-  state.pfnc = get_locked(feature::kPixelFormat);
-  state.format = kFormats.at(state.pfnc);
+  state.format = format_of(get_locked(feature::kPixelFormat)).value();
   state.width = static_cast<int>(get_locked(feature::kWidth));
   state.height = static_cast<int>(get_locked(feature::kHeight));
   state.offset_x = static_cast<int>(get_locked(feature::kOffsetX));
@@ -214,9 +228,11 @@ CameraState CameraRegisters::state() const {
   state.gain_db = get_float_locked(feature::kGain);
   state.frame_rate_hz = get_float_locked(feature::kFrameRate);
   state.triggered = get_locked(feature::kTriggerMode) != 0;
+  state.by_line = get_locked(feature::kTriggerSource) != 0;
   state.stream_address = get_locked(reg::kStreamAddress);
   state.stream_port = static_cast<int>(get_locked(reg::kStreamPort) & 0xFFFFU);
   state.packet_size = static_cast<int>(get_locked(reg::kStreamPacketSize) & 0xFFFFU);
+  state.packet_delay_ns = get_locked(reg::kStreamPacketDelay);
   return state;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/sensor_format.hpp"
 #include "sim/gvcp.hpp"
 
 namespace fvd::sim {
@@ -39,10 +39,11 @@ inline constexpr std::uint32_t kParametersLocked = kBase + 0x58;
 inline constexpr std::uint32_t kBytes = 0x60;
 }  // namespace feature
 
+inline constexpr double kLargestFrameRate_hz = 5000.0;
+
 /// What the camera does now, as its registers say.
 struct CameraState {
-  PixelFormat format = PixelFormat::kMono8;
-  std::uint32_t pfnc = 0;  ///< the format's PFNC value
+  SensorFormat format = SensorFormat::kMono8;
   int width = 0;
   int height = 0;
   int offset_x = 0;
@@ -51,9 +52,11 @@ struct CameraState {
   double gain_db = 0.0;
   double frame_rate_hz = 0.0;
   bool triggered = false;
+  bool by_line = false;              ///< TriggerSource Line0, else Software
   std::uint32_t stream_address = 0;  ///< IPv4, host order; 0 = nobody listens
   int stream_port = 0;
   int packet_size = 0;  ///< bytes on the wire: IP, UDP and GVSP headers included
+  std::uint32_t packet_delay_ns = 0;
 };
 
 struct CameraIdentity {
@@ -76,6 +79,9 @@ class CameraRegisters {
   /// Writes with the checks a camera makes: unknown and read-only registers, ranges, parameters locked while acquiring.
   [[nodiscard]] gvcp::Status write(std::uint32_t address, std::span<const std::uint8_t> bytes);
 
+  /// All as it was in the beginning, but for what set() wrote to the bootstrap registers of the stream channel.
+  void reset();
+
   [[nodiscard]] std::uint32_t get(std::uint32_t address) const;
   void set(std::uint32_t address, std::uint32_t value);
   [[nodiscard]] CameraState state() const;
@@ -86,11 +92,13 @@ class CameraRegisters {
   void set_locked(std::uint32_t address, std::uint32_t value);
   void set_float_locked(std::uint32_t address, double value);
   void set_text(std::uint32_t address, const std::string& text);
+  void initialise_locked();
   void refresh_payload_locked();
   [[nodiscard]] gvcp::Status check_locked(std::uint32_t address, std::span<const std::uint8_t> bytes) const;
   [[nodiscard]] std::uint8_t* locate(std::uint32_t address, std::size_t count);
   [[nodiscard]] const std::uint8_t* locate(std::uint32_t address, std::size_t count) const;
 
+  const CameraIdentity identity_;
   mutable std::mutex mutex_;
   std::vector<std::uint8_t> bootstrap_;  // these three: guarded by mutex_
   std::vector<std::uint8_t> xml_;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/camera_fault_script.hpp"
 #include "sim/fault_script.hpp"
 
 namespace fvd::sim {
@@ -18,5 +19,12 @@ namespace fvd::sim {
 [[nodiscard]] std::vector<FaultStep> read_fault_steps(std::string_view json_text, const std::string& source);
 /// Throws Error kBadInput too, if the file cannot be read.
 [[nodiscard]] std::vector<FaultStep> load_fault_steps(const std::filesystem::path& file);
+
+/// [ { "fault": "late_frame", "on": "frame", "after": 3, "count": 1, "delay_ms": 400, "value": 0 }, ... ]
+///
+/// Likewise with CameraFaultStep; "on" (command, trigger or frame) only for mute, hang and restart. Throws as above.
+[[nodiscard]] std::vector<CameraFaultStep> read_camera_fault_steps(std::string_view json_text,
+                                                                   const std::string& source);
+[[nodiscard]] std::vector<CameraFaultStep> load_camera_fault_steps(const std::filesystem::path& file);
 
 }  // namespace fvd::sim

@@ -30,6 +30,7 @@ struct Arguments {
   std::filesystem::path stage_pty;
   std::vector<double> line_timing;  // baud, turnaround ms, adapter's latency ms
   std::filesystem::path faults;
+  std::filesystem::path camera_faults;
   double packet_loss = 0.0;
   std::optional<std::uint64_t> seed;
   std::filesystem::path ready_file;
@@ -100,7 +101,9 @@ int run(const Arguments& arguments) {
                .drive = drive_kind(arguments.drive),
                .stage_pty = arguments.stage_pty,
                .line_timing = line_timing_of(arguments),
-               .faults = arguments.faults.empty() ? std::vector<FaultStep>{} : load_fault_steps(arguments.faults)});
+               .faults = arguments.faults.empty() ? std::vector<FaultStep>{} : load_fault_steps(arguments.faults),
+               .camera_faults = arguments.camera_faults.empty() ? std::vector<CameraFaultStep>{}
+                                                                : load_camera_fault_steps(arguments.camera_faults)});
   plant.camera().set_packet_loss(arguments.packet_loss);
   std::cout << "camera " << plant.camera_address() << ":3956 (GigE Vision), " << plant.world().sensor_width() << " x "
             << plant.world().sensor_height() << " pixels; stage " << stage_of(plant, arguments) << ", drive "
@@ -111,8 +114,12 @@ int run(const Arguments& arguments) {
   std::cout << "frames sent " << plant.camera().frames() << ", packets lost " << plant.camera().packets_lost()
             << ", packets resent " << plant.camera().packets_resent() << ", Modbus requests " << plant.stage_requests()
             << std::endl;
-  if (plant.faults().unconsumed() == 0) return 0;
-  std::cout << "faults that did not happen:\n" << plant.faults().describe_unconsumed() << std::endl;
+  if (plant.faults().unconsumed() + plant.camera().faults().unconsumed() == 0) return 0;
+  std::cout << "faults that did not happen:\n";
+  for (const std::string& steps :
+       {plant.faults().describe_unconsumed(), plant.camera().faults().describe_unconsumed()}) {
+    if (!steps.empty()) std::cout << steps << std::endl;
+  }
   return 1;
 }
 
@@ -150,6 +157,10 @@ int main_of(int argc, char** argv) {
   running
       ->add_option("--faults", arguments.faults,
                    "script of faults of stage and line; exit status 1 if one did not happen")
+      ->check(CLI::ExistingFile);
+  running
+      ->add_option("--camera-faults", arguments.camera_faults,
+                   "script of faults of the camera; exit status 1 if one did not happen")
       ->check(CLI::ExistingFile);
   running->add_option("--packet-loss", arguments.packet_loss, "fraction of stream packets that are lost")
       ->check(CLI::Range(0.0, 0.9));

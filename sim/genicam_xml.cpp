@@ -119,8 +119,12 @@ std::string genicam_xml() {
   d.integer("Height", feature::kHeight, "RW", "<Min>1</Min><pMax>SensorHeight</pMax><Inc>1</Inc>");
   d.integer("OffsetX", feature::kOffsetX, "RW", "<Min>0</Min><pMax>SensorWidth</pMax><Inc>1</Inc>");
   d.integer("OffsetY", feature::kOffsetY, "RW", "<Min>0</Min><pMax>SensorHeight</pMax><Inc>1</Inc>");
-  d.enumeration("PixelFormat", feature::kPixelFormat,
-                {{"Mono8", 0x01080001}, {"Mono10", 0x01100003}, {"Mono12", 0x01100005}, {"Mono16", 0x01100007}});
+  std::vector<Description::Entry> formats;
+  for (const SensorFormat format : kAllSensorFormats) {
+    const SensorFormatInfo info = sensor_format_info(format);
+    formats.push_back({std::string(info.name), info.pfnc});
+  }
+  d.enumeration("PixelFormat", feature::kPixelFormat, formats);
 
   d.category("AcquisitionControl",
              {"AcquisitionMode", "AcquisitionStart", "AcquisitionStop", "ExposureTime", "AcquisitionFrameRate",
@@ -129,11 +133,11 @@ std::string genicam_xml() {
   d.command("AcquisitionStart", feature::kAcquisitionStart);
   d.command("AcquisitionStop", feature::kAcquisitionStop);
   d.number("ExposureTime", feature::kExposureTime, 10.0, 10000000.0, "us");
-  d.number("AcquisitionFrameRate", feature::kFrameRate, 0.1, 1000.0, "Hz");
+  d.number("AcquisitionFrameRate", feature::kFrameRate, 0.1, kLargestFrameRate_hz, "Hz");
   d.boolean("AcquisitionFrameRateEnable", feature::kFrameRateEnable);
   d.enumeration("TriggerSelector", feature::kTriggerSelector, {{"FrameStart", 0}});
   d.enumeration("TriggerMode", feature::kTriggerMode, {{"Off", 0}, {"On", 1}});
-  d.enumeration("TriggerSource", feature::kTriggerSource, {{"Software", 0}});
+  d.enumeration("TriggerSource", feature::kTriggerSource, {{"Software", 0}, {"Line0", 1}});
   d.command("TriggerSoftware", feature::kTriggerSoftware);
 
   d.category("AnalogControl", {"Gain"});

@@ -3,11 +3,11 @@
 /// A GigE Vision camera on a loopback address: what an unmodified GigE Vision client opens, configures and streams
 /// from.
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
 
+#include "sim/camera_fault_script.hpp"
 #include "sim/frame_source.hpp"
 
 namespace fvd::sim {
@@ -15,14 +15,15 @@ namespace fvd::sim {
 struct GigeCameraOptions {
   std::string address = "127.0.0.1";  ///< any address of 127.0.0.0/8 works without being set up
   std::string serial = "SIM01";
-  double link_mbps = 1000.0;         ///< speed of the line the stream leaves on
-  std::uint16_t first_block_id = 1;  ///< of the first frame after AcquisitionStart
+  double link_mbps = 1000.0;         ///< speed of the line the stream leaves on; 0 = as fast as it goes
+  std::uint64_t first_block_id = 1;  ///< of the first frame after AcquisitionStart
+  bool extended_ids = false;         ///< block ids of 64 bit, as GigE Vision 2.0 has them
   std::uint64_t seed = 1;            ///< of packet loss
 };
 
-/// GVCP: discovery, register and memory access, control privilege with heartbeat, packet resend, timestamp latch; NACKs
-/// as the standard has them. GVSP: Mono8, Mono10, Mono12, Mono16. Software trigger, or free run at
-/// AcquisitionFrameRate. Control is answered while frames are exposed, rendered and sent. A trigger during an exposure
+/// GVCP: discovery, register and memory access, control privilege with heartbeat, packet resend, timestamp latch, test
+/// packets; NACKs as the standard has them. GVSP: all of SensorFormat. Trigger by software or line, or free run at
+/// AcquisitionFrameRate; an exposure runs while the image before it is read out and sent. A trigger during an exposure
 /// is ignored.
 class GigeCameraServer {
  public:
@@ -32,18 +33,16 @@ class GigeCameraServer {
   ~GigeCameraServer();
 
   [[nodiscard]] std::string address() const;
-  [[nodiscard]] std::uint64_t frames() const noexcept;
+  [[nodiscard]] std::uint64_t frames() const noexcept;          ///< that left, wholly or in part
+  [[nodiscard]] std::uint64_t frames_dropped() const noexcept;  ///< because rendering or line could not keep up
   [[nodiscard]] std::uint64_t packets_lost() const noexcept;
   [[nodiscard]] std::uint64_t packets_resent() const noexcept;
 
-  // Faults. context: any thread.
+  // context: any thread
+  /// An edge on the camera's Line0.
+  void pulse_line();
   void set_packet_loss(double ratio);  ///< each stream packet, repeated ones too, is lost with this probability
-  void set_mute(bool mute);            ///< answers nothing and sends nothing
-  void drop_frames(int count);         ///< the next frames are never sent and cannot be repeated
-  void ignore_triggers(int count);     ///< the next triggers are acknowledged and forgotten
-  void repeat_frames(int count);       ///< the next frames are sent twice
-  void delay_frames(int count, std::chrono::milliseconds delay);  ///< the next frames leave late
-  void cut_frames(int count);                                     ///< the next frames are half as high as configured
+  [[nodiscard]] CameraFaultScript& faults();
 
  private:
   struct Impl;

@@ -30,6 +30,7 @@ enum class Status : std::uint16_t {
   kWriteProtect = 0x8004,
   kBadAlignment = 0x8005,
   kAccessDenied = 0x8006,
+  kBusy = 0x8007,
 };
 
 /// Bootstrap registers the server gives a meaning to.

@@ -4,54 +4,28 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <arpa/inet.h>
+#include <net/if.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "core/error.hpp"
-#include "sim/gvcp.hpp"
 
 namespace fvd::sim {
 
 namespace {
 
-constexpr int kHeadersOnWire = 20 + 8 + 8;  // IP, UDP, GVSP
-constexpr std::uint32_t kLeader = 1;
-constexpr std::uint32_t kTrailer = 2;
-constexpr std::uint32_t kPayload = 3;
-constexpr unsigned kPayloadTypeImage = 1;
-constexpr std::size_t kBatch = 16;
-
-std::uint32_t payload_packets(const StreamFrame& frame) {
-  const auto room = static_cast<std::size_t>(frame.packet_size - kHeadersOnWire);
-  return static_cast<std::uint32_t>((frame.pixels.size() + room - 1) / room);
-}
-
-/// GVSP header and, for leader and trailer, their contents.
-std::vector<std::uint8_t> head_of(const StreamFrame& frame, std::uint32_t packet, std::uint32_t trailer) {
-  std::vector<std::uint8_t> bytes;
-  gvcp::put16(bytes, 0);
-  gvcp::put16(bytes, frame.block_id);
-  const std::uint32_t type = packet == 0 ? kLeader : packet == trailer ? kTrailer : kPayload;
-  gvcp::put32(bytes, (type << 24U) | packet);
-  if (type == kLeader) {
-    gvcp::put16(bytes, 0);
-    gvcp::put16(bytes, kPayloadTypeImage);
-    gvcp::put32(bytes, static_cast<std::uint32_t>(frame.timestamp_ns >> 32U));
-    gvcp::put32(bytes, static_cast<std::uint32_t>(frame.timestamp_ns & 0xFFFFFFFFU));
-    for (const auto value : {frame.pfnc, frame.width, frame.height, frame.offset_x, frame.offset_y, 0U}) {
-      gvcp::put32(bytes, value);
-    }
-  } else if (type == kTrailer) {
-    gvcp::put32(bytes, kPayloadTypeImage);
-    gvcp::put32(bytes, frame.height);
-  }
-  return bytes;
-}
+constexpr std::size_t kBatch = 32;
+/// Pacing need not wake up more often than these take on a gigabit line.
+constexpr std::size_t kBatchBytes = 48 * 1024;
+constexpr std::ptrdiff_t kReordered = 8;
 
 sockaddr_in to_sockaddr(std::uint32_t address, int port) {
   sockaddr_in result{};
@@ -61,10 +35,20 @@ sockaddr_in to_sockaddr(std::uint32_t address, int port) {
   return result;
 }
 
+/// The camera lives on loopback.
+int loopback_mtu(int fd) {
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  return ::ioctl(fd, SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 65536;
+}
+
 }  // namespace
 
 GvspSender::GvspSender(std::uint32_t address, double link_mbps, std::uint64_t seed)
-    : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)), bytes_per_second_(link_mbps * 1e6 / 8), random_(seed) {
+    : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)),
+      mtu_(loopback_mtu(socket_)),
+      bytes_per_second_(link_mbps * 125000.0),
+      random_(seed) {
   sockaddr_in own = to_sockaddr(address, 0);
   socklen_t length = sizeof(own);
   if (socket_ < 0 || ::bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof(own)) != 0 ||
@@ -87,16 +71,51 @@ bool GvspSender::lose_packet() {
   return true;
 }
 
-void GvspSender::send(std::shared_ptr<const StreamFrame> frame) {
+std::shared_ptr<StreamFrame> GvspSender::spare() {
+  std::shared_ptr<const StreamFrame> frame;
+  {
+    const std::lock_guard lock(mutex_);
+    frame = std::move(spare_);
+  }
+  // Nobody else refers to it: a frame leaves the store for good before it becomes the spare one.
+  if (frame && frame.use_count() == 1) return std::const_pointer_cast<StreamFrame>(frame);
+  return std::make_shared<StreamFrame>();
+}
+
+void GvspSender::forget() {
+  const std::lock_guard lock(mutex_);
+  kept_.clear();
+}
+
+void GvspSender::send(const std::shared_ptr<const StreamFrame>& frame, const Sending& what) {
   {
     const std::lock_guard lock(mutex_);
     kept_.push_back(frame);
-    if (kept_.size() > kKept) kept_.pop_front();
+    if (kept_.size() > kKept) {
+      spare_ = std::move(kept_.front());
+      kept_.pop_front();
+    }
   }
-  transmit(*frame, 0, payload_packets(*frame) + 1);
+  std::vector<std::uint32_t> packets(gvsp::trailer_id(*frame) + 1);
+  std::iota(packets.begin(), packets.end(), 0U);
+  if (what.reordered) {
+    for (auto begin = packets.begin() + 1; begin != packets.end() - 1;) {
+      const auto end = begin + std::min(kReordered, packets.end() - 1 - begin);
+      std::reverse(begin, end);
+      begin = end;
+    }
+  }
+  if (what.without != 0) std::erase(packets, what.without);
+  auto first = packets.begin();
+  auto last = packets.end();
+  if (!what.leader) ++first;
+  if (!what.trailer) --last;
+  transmit(*frame, std::span(first, last));
 }
 
-void GvspSender::resend(std::uint16_t block_id, std::uint32_t first, std::uint32_t last) {
+void GvspSender::send_leader(const StreamFrame& frame) { transmit(frame, std::array<std::uint32_t, 1>{0}); }
+
+void GvspSender::resend(std::uint64_t block_id, std::uint32_t first, std::uint32_t last) {
   std::shared_ptr<const StreamFrame> frame;
   {
     const std::lock_guard lock(mutex_);
@@ -105,47 +124,55 @@ void GvspSender::resend(std::uint16_t block_id, std::uint32_t first, std::uint32
     if (found == kept_.rend()) return;
     frame = *found;
   }
-  const std::uint32_t trailer = payload_packets(*frame) + 1;
-  if (first > last || first > trailer) return;
-  packets_resent_ += std::min(last, trailer) - first + 1;
-  transmit(*frame, first, std::min(last, trailer));
+  last = std::min(last, gvsp::trailer_id(*frame));
+  if (first > last) return;
+  std::vector<std::uint32_t> packets(last - first + 1);
+  std::iota(packets.begin(), packets.end(), first);
+  packets_resent_ += packets.size();
+  transmit(*frame, packets);
 }
 
-void GvspSender::transmit(const StreamFrame& frame, std::uint32_t first, std::uint32_t last) {
-  const std::uint32_t trailer = payload_packets(frame) + 1;
-  const auto room = static_cast<std::size_t>(frame.packet_size - kHeadersOnWire);
+void GvspSender::transmit(const StreamFrame& frame, std::span<const std::uint32_t> packets) {
   sockaddr_in to = to_sockaddr(frame.to_address, frame.to_port);
   std::array<std::vector<std::uint8_t>, kBatch> heads;
   std::array<std::array<iovec, 2>, kBatch> parts{};
   std::array<mmsghdr, kBatch> messages{};
   const HostTime begin = HostClock::now();
-  std::size_t bytes_sent = 0;
-  for (std::uint32_t packet = first; packet <= last;) {
+  double due_s = 0.0;
+  for (std::size_t next = 0; next < packets.size();) {
     unsigned count = 0;
-    for (; packet <= last && count < kBatch; ++packet) {
-      const std::size_t at = packet == 0 || packet == trailer ? 0 : (packet - 1) * room;
-      const std::size_t size = packet == 0 || packet == trailer ? 0 : std::min(room, frame.pixels.size() - at);
-      bytes_sent += static_cast<std::size_t>(kHeadersOnWire) + size;
-      if (lose_packet()) continue;
-      heads[count] = head_of(frame, packet, trailer);
+    std::size_t batch_bytes = 0;
+    for (; next < packets.size() && count < kBatch && batch_bytes < kBatchBytes; ++next) {
+      const std::uint32_t packet = packets[next];
+      const auto pixels = gvsp::body(frame, packet);
+      batch_bytes += static_cast<std::size_t>(gvsp::header_bytes(frame.extended_ids)) + pixels.size();
+      due_s += frame.delay_ns * 1e-9;
+      if (frame.gone.contains(packet) || lose_packet()) continue;
+      heads[count] = gvsp::head(frame, packet);
       parts[count][0] = {heads[count].data(), heads[count].size()};
-      parts[count][1] = {const_cast<std::byte*>(frame.pixels.data()) + at, size};
+      parts[count][1] = {const_cast<std::byte*>(pixels.data()), pixels.size()};
       messages[count] = {};
       messages[count].msg_hdr.msg_name = &to;
       messages[count].msg_hdr.msg_namelen = sizeof(to);
       messages[count].msg_hdr.msg_iov = parts[count].data();
-      messages[count].msg_hdr.msg_iovlen = size > 0 ? 2 : 1;
+      messages[count].msg_hdr.msg_iovlen = pixels.empty() ? 1 : 2;
       ++count;
     }
     // A receiver that is gone is no concern of a camera.
-    if (count > 0) ::sendmmsg(socket_, messages.data(), count, MSG_NOSIGNAL);
-    const auto due = std::chrono::duration<double>(static_cast<double>(bytes_sent) / bytes_per_second_);
-    std::this_thread::sleep_until(begin + std::chrono::duration_cast<HostClock::duration>(due));
+    for (unsigned sent = 0; sent < count;) {
+      const int done = ::sendmmsg(socket_, messages.data() + sent, count - sent, MSG_NOSIGNAL);
+      sent += static_cast<unsigned>(std::max(done, 1));  // a packet the network refuses is a packet lost
+    }
+    if (bytes_per_second_ > 0.0) due_s += static_cast<double>(batch_bytes) / bytes_per_second_;
+    if (due_s <= 0.0) continue;
+    std::this_thread::sleep_until(
+        begin + std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(due_s)));
   }
 }
 
 void GvspSender::send_test_packet(std::uint32_t to_address, int to_port, int size) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max(0, size - (kHeadersOnWire - 8))));
+  if (size > mtu_) return;
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max(0, size - (gvsp::header_bytes(false) - 8))));
   const sockaddr_in to = to_sockaddr(to_address, to_port);
   ::sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The GigE Vision stream protocol: an image as leader, payload and trailer packets, and their repetition on request.
+/// Sends the packets of frames at the speed of a line, and repeats them on request.
 
 #include <atomic>
 #include <cstdint>
@@ -8,33 +8,26 @@
 #include <memory>
 #include <mutex>
 #include <random>
-#include <vector>
+#include <span>
 
 #include "core/hw/clock.hpp"
+#include "sim/gvsp.hpp"
 
 namespace fvd::sim {
 
-/// One image ready to be sent.
-struct StreamFrame {
-  std::uint16_t block_id = 0;  ///< 1..65535
-  std::uint64_t timestamp_ns = 0;
-  std::uint32_t pfnc = 0;
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::uint32_t offset_x = 0;
-  std::uint32_t offset_y = 0;
-  std::vector<std::byte> pixels;
-
-  std::uint32_t to_address = 0;  ///< IPv4, host order
-  int to_port = 0;
-  int packet_size = 1500;  ///< IP, UDP and GVSP headers included
+/// Which packets of a frame leave now.
+struct Sending {
+  bool leader = true;
+  bool trailer = true;
+  bool reordered = false;     ///< payload in reverse, eight packets at a time
+  std::uint32_t without = 0;  ///< a payload packet that does not leave, 0 = none
 };
 
-/// context: send() from the streaming thread, resend() from the control thread, the rest from any.
+/// context: send() from the readout thread, resend() from the control thread, the rest from any.
 class GvspSender {
  public:
   /// Binds a socket of its own to the camera's address. link_mbps: the speed packets leave at, as on the real wire;
-  /// a burst at memory speed overruns every receiver's buffer. Throws Error kBadConfig.
+  /// a burst at memory speed overruns every receiver's buffer; 0 = as fast as they go. Throws Error kBadConfig.
   GvspSender(std::uint32_t address, double link_mbps, std::uint64_t seed);
   ~GvspSender();
   GvspSender(const GvspSender&) = delete;
@@ -46,26 +39,34 @@ class GvspSender {
   [[nodiscard]] std::uint64_t packets_resent() const { return packets_resent_; }
 
   /// Sends the frame and keeps it for repetition.
-  void send(std::shared_ptr<const StreamFrame> frame);
+  void send(const std::shared_ptr<const StreamFrame>& frame, const Sending& what);
+  /// Sends the leader alone; its frame is not there yet.
+  void send_leader(const StreamFrame& frame);
   /// Repeats packets first..last of a block that is still kept.
-  void resend(std::uint16_t block_id, std::uint32_t first, std::uint32_t last);
-  /// One packet of exactly `size` bytes on the wire.
+  void resend(std::uint64_t block_id, std::uint32_t first, std::uint32_t last);
+  /// One packet of exactly `size` bytes on the wire, unless it would have to be fragmented.
   void send_test_packet(std::uint32_t to_address, int to_port, int size);
+  /// A frame nobody else refers to, to be filled anew; an empty one if there is none.
+  [[nodiscard]] std::shared_ptr<StreamFrame> spare();
+  /// Forgets the frames kept.
+  void forget();
 
  private:
   static constexpr std::size_t kKept = 4;
 
-  void transmit(const StreamFrame& frame, std::uint32_t first, std::uint32_t last);
+  void transmit(const StreamFrame& frame, std::span<const std::uint32_t> packets);
   [[nodiscard]] bool lose_packet();
 
   int socket_;
   int source_port_ = 0;
+  int mtu_;
   double bytes_per_second_;
   std::atomic<double> packet_loss_{0.0};
   std::atomic<std::uint64_t> packets_lost_{0};
   std::atomic<std::uint64_t> packets_resent_{0};
   std::mutex mutex_;
-  std::deque<std::shared_ptr<const StreamFrame>> kept_;  // this and random_: guarded by mutex_
+  std::deque<std::shared_ptr<const StreamFrame>> kept_;  // this, spare_ and random_: guarded by mutex_
+  std::shared_ptr<const StreamFrame> spare_;
   std::mt19937_64 random_;
 };
 

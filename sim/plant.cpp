@@ -17,6 +17,13 @@ Plant::Plant(const PlantOptions& options)
 void Plant::plug_camera() {
   camera_ = std::make_unique<GigeCameraServer>(
       world_, GigeCameraOptions{.address = camera_address_, .seed = options_.world.seed});
+  for (const CameraFaultStep& step : options_.camera_faults) camera_->faults().add(step);
+  wire_ = std::make_unique<LineTrigger>(axis_, [this] { camera_->pulse_line(); });
+}
+
+void Plant::unplug_camera() {
+  wire_.reset();
+  camera_.reset();
 }
 
 void Plant::plug_stage() {

@@ -11,6 +11,7 @@
 #include "sim/drive_kinds.hpp"
 #include "sim/fault_script.hpp"
 #include "sim/gige_camera_server.hpp"
+#include "sim/line_trigger.hpp"
 #include "sim/modbus_rtu_server.hpp"
 #include "sim/modbus_tcp_server.hpp"
 #include "sim/sim_world.hpp"
@@ -28,6 +29,7 @@ struct PlantOptions {
   std::filesystem::path stage_pty{};  ///< if given, RTU on a pseudo-terminal linked here instead of TCP
   LineTiming line_timing{};           ///< of that
   std::vector<FaultStep> faults{};    ///< what befalls line and drive of the stage
+  std::vector<CameraFaultStep> camera_faults{};
 };
 
 /// Camera and drive can be taken away and brought back at the same address: unplugged cables in tests.
@@ -48,7 +50,7 @@ class Plant {
   [[nodiscard]] const SimWorld& world() const { return world_; }
   [[nodiscard]] AxisModel& axis() { return axis_; }
 
-  void unplug_camera() { camera_.reset(); }
+  void unplug_camera();
   void plug_camera();
   void unplug_stage();
   void plug_stage();
@@ -62,6 +64,7 @@ class Plant {
   std::string camera_address_;
   int stage_port_;
   std::unique_ptr<GigeCameraServer> camera_;
+  std::unique_ptr<LineTrigger> wire_;  // from the drive to the camera
   std::unique_ptr<ModbusTcpServer> stage_;
   std::unique_ptr<ModbusRtuServer> serial_stage_;
 };

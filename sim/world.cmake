@@ -1,4 +1,5 @@
 target_sources(fvd_sim PRIVATE
+  line_trigger.cpp
   defocus_renderer.cpp
   gaussian_transfer.cpp
   gsf_reader.cpp

@@ -34,9 +34,9 @@ struct WorldParameters {
   double defocus_px_per_um = 0.04;  ///< sigma of the blur per um of defocus
   double readout_noise = 1.5;       ///< standard deviation in 8-bit grey levels
   TextureKind texture = TextureKind::kGranite;
-  double contrast = 28.0;           ///< standard deviation of the texture in 8-bit grey levels
-  double poor_contrast = 0.03;      ///< of the texture-poor patch, as a fraction
-  std::uint64_t seed = 1;           ///< of texture, surface and noise
+  double contrast = 28.0;       ///< standard deviation of the texture in 8-bit grey levels
+  double poor_contrast = 0.03;  ///< of the texture-poor patch, as a fraction
+  std::uint64_t seed = 1;       ///< of texture, surface and noise
 };
 
 }  // namespace fvd::sim

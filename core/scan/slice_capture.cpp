@@ -33,7 +33,13 @@ std::optional<Frame> SliceCapture::trigger_once(HostTime settled, std::stop_toke
   camera_.trigger();
   const HostTime deadline = clock_.now() + camera_.frame_deadline();
   for (;;) {
-    auto frame = camera_.next_frame(deadline);
+    std::optional<Frame> frame;
+    try {
+      frame = camera_.next_frame(deadline);
+    } catch (...) {
+      ledger_.missing();
+      throw;
+    }
     if (!frame) {
       if (camera_.health().underruns > underruns_before && !stop.stop_requested()) {
         ledger_.underrun();

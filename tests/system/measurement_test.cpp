@@ -85,8 +85,8 @@ TEST_F(AMicroscope, RetriesLostFramesAndAccountsForThem) {
   start();
   begin(1);
   await_slices(1, 3);
-  plant_->camera().drop_frames(1);
-  plant_->camera().ignore_triggers(1);
+  plant_->camera().faults().add({.fault = sim::CameraFault::kDropFrame});
+  plant_->camera().faults().add({.fault = sim::CameraFault::kIgnoreTrigger});
   const json ended = await_end(1);
   ASSERT_EQ(ended["state"], "completed") << ended.dump();
   EXPECT_EQ(ended["frames_ok"], 21);

@@ -187,12 +187,12 @@ TEST_F(AnAravisCamera, ReportsNothingForAFrameThatNeverComesAndGoesOn) {
   serve();
   const auto camera = open();
   camera->configure(settings());
-  server_->drop_frames(1);
+  server_->faults().add({.fault = sim::CameraFault::kDropFrame});
   EXPECT_FALSE(shoot(*camera).has_value());
   const auto frame = shoot(*camera);
   ASSERT_TRUE(frame.has_value());
   EXPECT_EQ(frame->status, FrameStatus::kOk);
-  server_->ignore_triggers(1);
+  server_->faults().add({.fault = sim::CameraFault::kIgnoreTrigger});
   EXPECT_FALSE(shoot(*camera).has_value());
   EXPECT_TRUE(shoot(*camera).has_value());
 }
@@ -201,7 +201,7 @@ TEST_F(AnAravisCamera, GivesALateFrameItsOwnTime) {
   serve();
   const auto camera = open();
   camera->configure(settings());
-  server_->delay_frames(1, milliseconds(400));
+  server_->faults().add({.fault = sim::CameraFault::kLateFrame, .delay = milliseconds(400)});
   const HostTime triggered = HostClock::now();
   EXPECT_FALSE(shoot(*camera).has_value());
   const auto late = camera->next_frame(HostClock::now() + milliseconds(500));
@@ -213,7 +213,7 @@ TEST_F(AnAravisCamera, RefusesFramesOfAnotherSize) {
   serve();
   const auto camera = open();
   camera->configure(settings());
-  server_->cut_frames(1);
+  server_->faults().add({.fault = sim::CameraFault::kWrongSize});
   const auto frame = shoot(*camera);
   ASSERT_TRUE(frame.has_value());
   EXPECT_NE(frame->status, FrameStatus::kOk);

@@ -1,0 +1,81 @@
+#pragma once
+
+/// Faults of the simulated camera in the order in which they are to happen.
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fvd::sim {
+
+/// What a fault may strike at.
+enum class CameraEvent {
+  kCommand,  ///< a command of the controller, heartbeats included
+  kTrigger,  ///< a software trigger or an edge on the trigger line
+  kFrame,    ///< the start of an exposure; the fault befalls its frame
+};
+
+enum class CameraFault {
+  kDropLeader,  ///< of a frame; can be asked for again, as the next two
+  kDropTrailer,
+  kDropPacket,      ///< a packet in the middle of the image; with `value` 1 it is gone for good
+  kDropFrame,       ///< no packet of the frame leaves, none can be asked for; its block id is used up
+  kDropAck,         ///< executed, not acknowledged
+  kIgnoreTrigger,   ///< acknowledged, nothing is exposed, no block id used
+  kNackTrigger,     ///< refused: busy
+  kDuplicateFrame,  ///< sent twice
+  kReorderPackets,  ///< payload packets leave in reverse order, eight at a time
+  kLateFrame,       ///< leaves `delay` late, all after it too
+  kWrongSize,       ///< half as high as configured, and says so
+  kTooLong,         ///< 64 bytes more than configured
+  kEarlyLeader,     ///< the leader leaves when the exposure starts
+  kIdJump,          ///< the block id grows by `value` more
+  kIdsRestart,      ///< block ids start at the first again
+  kStaleFrame,      ///< the pixels and the time of the frame before under a new id; the exposure is lost
+  kMute,            ///< answers and sends nothing for `delay`
+  kHang,            ///< stands still for `delay`, then goes on where it was
+  kRestart,         ///< as a power cycle: absent for `delay`, then knows nothing of control, settings and ids
+};
+
+/// Their names in scripts: "drop_leader" and so on.
+[[nodiscard]] const std::vector<std::string>& camera_fault_names();
+[[nodiscard]] std::string_view name_of(CameraFault fault);
+/// What the fault strikes at; mute, hang and restart strike at a frame unless the step says otherwise.
+[[nodiscard]] CameraEvent event_of(CameraFault fault);
+
+struct CameraFaultStep {
+  CameraFault fault = CameraFault::kDropFrame;
+  std::optional<CameraEvent> on{};  ///< only for kMute, kHang, kRestart
+  int after = 0;                    ///< so many matching events pass first, >= 0
+  int count = 1;                    ///< happens so often, > 0
+  std::chrono::milliseconds delay{0};
+  int value = 0;
+};
+
+/// Steps are taken one after the other: a step waits until the one before it has happened as often as it should.
+/// context: thread-safe.
+class CameraFaultScript {
+ public:
+  /// Appends a step. Throws Error kBadConfig for one that cannot happen, naming it.
+  void add(const CameraFaultStep& step);
+
+  /// The fault that strikes at this event, if any. To be asked once an event.
+  [[nodiscard]] std::optional<CameraFaultStep> next(CameraEvent event);
+
+  /// Steps that have not happened as often as they should.
+  [[nodiscard]] std::size_t unconsumed() const;
+  /// One line a step, empty if all have happened.
+  [[nodiscard]] std::string describe_unconsumed() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::deque<CameraFaultStep> steps_;  // guarded by mutex_; after and count of the first run down
+  int taken_ = 0;
+};
+
+}  // namespace fvd::sim
