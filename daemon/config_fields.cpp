@@ -36,6 +36,10 @@ void describe(CameraConfig& camera, Fields& fields) {
   fields.choice("usb_mode", camera.usb_mode, {"sync", "async"}, "USB3 Vision: how frames are asked for");
   fields.integer("frame_margin_ms", camera.frame_margin_ms, {10, 10000},
                  "added to exposure and readout before a frame counts as missing");
+  auto offset_us = camera.time_offset.count();
+  fields.integer("time_offset_us", offset_us, {-1000000, 1000000},
+                 "continuous scans: stage's clock minus camera's, as two scans in opposite directions tell");
+  camera.time_offset = std::chrono::microseconds(offset_us);
   fields.boolean("simulated", camera.simulated, "stamped into every result");
   path(fields, "replay_dir", camera.replay_dir, "driver replay: folder of recorded slices");
 }

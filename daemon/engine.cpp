@@ -121,6 +121,7 @@ Recipe Engine::load_checked_recipe_locked(const std::string& recipe_id) const {
 
 void Engine::require_acceptable_locked(const Recipe& recipe) const {
   if (!facts_) return;
+  if (recipe.mode == ScanMode::kContinuous) check_continuous(scan_plan(recipe), recipe.camera, facts_->stage);
   check_plan(scan_plan(recipe), facts_->stage);
   const int width = recipe.camera.width > 0 ? recipe.camera.width : facts_->sensor_width;
   const int height = recipe.camera.height > 0 ? recipe.camera.height : facts_->sensor_height;
@@ -316,10 +317,12 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
       observer.tap = [&recorder](const ImageView& pixels, double z_um) { recorder->add(pixels, z_um); };
     }
     measure(job.recipe,
-            {camera_.get(), stage_.get(), clock_, pool_, static_cast<std::size_t>(config_.compute.queue_slices)},
+            {camera_.get(), stage_.get(), clock_, pool_, static_cast<std::size_t>(config_.compute.queue_slices),
+             config_.camera.time_offset},
             observer, result, stop);
     observer.on_phase("storing");
-    stage_history_.add(stage_.get().info().feedback, result.steps);
+    // In a continuous scan nobody commands the stage to be just there.
+    if (job.recipe.mode == ScanMode::kStep) stage_history_.add(stage_.get().info().feedback, result.steps);
     if (recorder) recorder->finish("job " + job.status.job_id + (result.simulated ? ", simulated" : ""));
     write_result(directory, result);
     directory.commit();

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
+#include "core/scan/continuous_scan.hpp"
 
 namespace fvd {
 
@@ -23,19 +24,26 @@ std::string describe(const CameraInfo& camera, const StageInfo& stage) {
 void copy_books(const ScanReport& report, ResultData& result) {
   result.steps = report.steps;
   result.frames = report.frames;
+  result.ramp_frames = report.ramp_frames;
   result.step_summary = summarize_steps(report.steps);
 }
 
 /// Runs the scan into the stack. What broke the focus thread is the reason to report, not the push it then refused.
-void acquire(const ScanPlan& plan, const MeasurementDependencies& deps, const MeasurementObserver& observer,
-             StreamingFocusStack& stack, ResultData& result, std::stop_token stop) {
+void acquire(const ScanPlan& plan, const CameraSettings& settings, const MeasurementDependencies& deps,
+             const MeasurementObserver& observer, StreamingFocusStack& stack, ResultData& result,
+             std::stop_token stop) {
   FocusWorker worker(stack, deps.queue_slices, observer.tap);
-  ScanRunner runner({deps.camera, deps.stage, deps.clock, worker});
+  const ScanDependencies scan{deps.camera, deps.stage, deps.clock, worker};
   ScanReport report;
   try {
-    runner.run(plan, report, observer.on_slice, stop);
+    if (plan.mode == ScanMode::kContinuous) {
+      ContinuousScan(scan, settings).run(plan, report, observer.on_slice, stop);
+    } else {
+      ScanRunner(scan).run(plan, report, observer.on_slice, stop);
+    }
   } catch (const Error& error) {
     copy_books(report, result);
+    observer.on_slice(report);  // the books as they ended
     if (error.code() == ErrorCode::kSliceLost) worker.finish();
     throw;
   }
@@ -55,6 +63,10 @@ ScanPlan scan_plan(const Recipe& recipe) {
   plan.settle = recipe.settle;
   plan.frame_retries = recipe.frame_retries;
   plan.allowed_lost_slices = recipe.allowed_lost_slices;
+  plan.mode = recipe.mode;
+  plan.line_trigger = recipe.camera.trigger == TriggerMode::kLine;
+  plan.speed_um_per_s = recipe.speed_um_per_s;
+  plan.max_blur_steps = recipe.max_blur_steps;
   return plan;
 }
 
@@ -67,6 +79,8 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   result.source = describe(camera, stage);
   result.simulated = result.simulated || camera.simulated || stage.simulated;
   result.slices_planned = recipe.slices;
+  result.scan_mode = recipe.mode;
+  result.speed_um_per_s = recipe.mode == ScanMode::kContinuous ? recipe.speed_um_per_s : 0.0;
   const CameraSettings settings = deps.camera.configure(recipe.camera);
   StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe),
                             deps.pool);
@@ -82,7 +96,9 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
     acquired = deps.clock.now();
     observer.on_acquired();
   };
-  acquire(scan_plan(recipe), deps, timed, stack, result, stop);
+  ScanPlan plan = scan_plan(recipe);
+  plan.time_offset = deps.time_offset;
+  acquire(plan, settings, deps, timed, stack, result, stop);
   result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
   result.map = stack.finish(recipe.peak);
   result.times.finish_ms = milliseconds_since(deps.clock, acquired);

@@ -2,6 +2,7 @@
 
 /// One measurement from the recipe to the height maps, on devices that are open.
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <stop_token>
@@ -27,6 +28,7 @@ struct MeasurementDependencies {
   Clock& clock;
   WorkerPool& pool;
   std::size_t queue_slices;
+  std::chrono::microseconds time_offset{0};  ///< of the stage's clock against the camera's
 };
 
 /// What the caller wants to hear while it runs; each is called on the measurement's thread.

@@ -8,6 +8,7 @@
 #include "core/focus/focus_settings.hpp"
 #include "core/hw/camera.hpp"
 #include "core/hw/z_stage.hpp"
+#include "core/scan/scan_plan.hpp"
 
 namespace fvd {
 
@@ -19,6 +20,9 @@ struct Recipe {
   double start_um = 0.0;  ///< z of the first slice
   double step_um = 10.0;  ///< > 0, distance of slices
   int slices = 21;        ///< 3..65535
+  ScanMode mode = ScanMode::kStep;
+  double speed_um_per_s = 0.0;  ///< continuous: > 0
+  double max_blur_steps = 0.5;  ///< continuous: > 0, way of the stage during an exposure
   SettleCriterion settle;
   int frame_retries = 3;        ///< 0..100, further triggers for a slice whose frame was lost
   int allowed_lost_slices = 0;  ///< 0..slices - 3; more fail the job

@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxIdLength = 32;
+constexpr int kContinuousPoolFrames = 24;
 
 std::string sha256(const std::string& bytes) {
   const std::unique_ptr<char, decltype(&g_free)> digest(
@@ -45,6 +46,9 @@ void check_together(const Recipe& recipe, Problems& problems) {
   if (recipe.allowed_lost_slices > recipe.slices - 3) {
     refuse("/scan/allowed_lost_slices", recipe.allowed_lost_slices,
            "leaves fewer than 3 slices; expected at most " + std::to_string(recipe.slices - 3));
+  }
+  if (recipe.mode == ScanMode::kContinuous && recipe.camera.trigger == TriggerMode::kLine) {
+    refuse("/scan/trigger", "line", "is for scan.mode step; in a continuous scan the camera runs free");
   }
   if (std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
     refuse("/focus/extra_peaks", peak_method_name(recipe.peak), "is the peak already; expected others only");
@@ -100,6 +104,8 @@ Recipe parse_recipe(std::string_view json_text, const std::string& id) {
       json_text, [&](Fields& fields) { describe(recipe, fields); }, problems);
   if (problems.empty()) check_together(recipe, problems);
   throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
+  // Frames wait for their position, and for those before them to be complete, while the camera goes on.
+  if (recipe.mode == ScanMode::kContinuous) recipe.camera.pool_frames = kContinuousPoolFrames;
   recipe.id = id;
   recipe.sha256 = sha256(canonical_text(recipe));
   return recipe;

@@ -49,6 +49,18 @@ void describe_scan(Recipe& recipe, Fields& fields) {
   fields.require("step_um");
   fields.integer("slices", recipe.slices, {3, 65535}, "number of slices");
   fields.require("slices");
+  std::string mode = recipe.mode == ScanMode::kContinuous ? "continuous" : "step";
+  fields.choice("mode", mode, {"step", "continuous"},
+                "step = the stage stops for every slice; continuous = it does not");
+  recipe.mode = mode == "continuous" ? ScanMode::kContinuous : ScanMode::kStep;
+  fields.number("speed_um_per_s", recipe.speed_um_per_s, {0.0, 1e6}, "continuous: speed of the stage");
+  fields.number("max_blur_steps", recipe.max_blur_steps, positive(10.0),
+                "continuous: way of the stage during an exposure, in steps; more is refused");
+  std::string trigger = recipe.camera.trigger == TriggerMode::kLine ? "line" : "software";
+  fields.choice("trigger", trigger, {"software", "line"},
+                "step: software, or the camera's line that the drive's in-position output is wired to");
+  recipe.camera.trigger = trigger == "line" ? TriggerMode::kLine : TriggerMode::kSoftware;
+  fields.text("trigger_line", recipe.camera.trigger_line, 64, "TriggerSource of that line");
   fields.integer("frame_retries", recipe.frame_retries, {0, 100}, "further triggers for a slice whose frame was lost");
   fields.integer("allowed_lost_slices", recipe.allowed_lost_slices, {0, 65532}, "up to slices - 3; more fail the job");
   fields.group("settle", "when the stage counts as arrived", [&](Fields& in) { describe_settle(recipe.settle, in); });

@@ -1,19 +1,64 @@
 #include "core/scan/scan_plan.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "core/error.hpp"
 
 namespace fvd {
 
+namespace {
+
+[[noreturn]] void refuse(const std::ostringstream& message) { throw Error(ErrorCode::kBadRecipe, message.str()); }
+
+}  // namespace
+
+Micrometers run_up(const ScanPlan& plan, const StageInfo& stage) {
+  const double ramp_um = stage.acceleration_um_per_s2 > 0.0
+                             ? plan.speed_um_per_s * plan.speed_um_per_s / 2.0 / stage.acceleration_um_per_s2
+                             : 0.0;
+  const double seconds = 2.0 * std::chrono::duration<double>(kPositionReach).count();
+  return std::max(Micrometers{ramp_um + seconds * plan.speed_um_per_s} + plan.step, stage.take_up);
+}
+
+void check_continuous(const ScanPlan& plan, const CameraSettings& settings, const StageInfo& stage) {
+  std::ostringstream message;
+  const double exposure_s = settings.exposure_us * 1e-6;
+  if (stage.feedback == FeedbackSource::kNone) {
+    message << "a continuous scan needs a stage that measures its position, " << stage.name
+            << " only counts steps: use scan.mode step";
+    refuse(message);
+  }
+  if (!(plan.speed_um_per_s > 0.0) || plan.speed_um_per_s > stage.speed_um_per_s) {
+    message << "scan.speed_um_per_s of " << plan.speed_um_per_s << " um/s must lie above 0 and at most at the stage's "
+            << stage.speed_um_per_s << " um/s";
+    refuse(message);
+  }
+  if (exposure_s * plan.speed_um_per_s > plan.max_blur_steps * plan.step.value) {
+    message << "in an exposure of " << settings.exposure_us << " us at " << plan.speed_um_per_s
+            << " um/s the stage moves " << exposure_s * plan.speed_um_per_s << " um, more than " << plan.max_blur_steps
+            << " steps of " << plan.step.value << " um: at most " << plan.max_blur_steps * plan.step.value / exposure_s
+            << " um/s, or a shorter exposure with more light";
+    refuse(message);
+  }
+  if (exposure_s * plan.frame_rate_hz() >= 1.0) {
+    message << "slices of " << plan.step.value << " um at " << plan.speed_um_per_s << " um/s need "
+            << plan.frame_rate_hz() << " frames a second, an exposure of " << settings.exposure_us << " us allows "
+            << 1.0 / exposure_s;
+    refuse(message);
+  }
+}
+
 void check_plan(const ScanPlan& plan, const StageInfo& stage) {
-  const Micrometers lowest = plan.start - stage.take_up;
-  const Micrometers highest = plan.last();
+  const bool moving = plan.mode == ScanMode::kContinuous;
+  const Micrometers before = moving ? run_up(plan, stage) : stage.take_up;
+  const Micrometers lowest = plan.start - before;
+  const Micrometers highest = moving ? plan.last() + before : plan.last();
   if (lowest >= stage.min && highest <= stage.max) return;
   std::ostringstream message;
-  message << "the scan from " << plan.start.value << " um to " << highest.value << " um with a take-up of "
-          << stage.take_up.value << " um below needs " << lowest.value << ".." << highest.value
-          << " um, the stage may travel " << stage.min.value << ".." << stage.max.value
+  message << "the scan from " << plan.start.value << " um to " << highest.value << " um with " << before.value
+          << (moving ? " um of run-up at both ends needs " : " um of take-up below needs ") << lowest.value << ".."
+          << highest.value << " um, the stage may travel " << stage.min.value << ".." << stage.max.value
           << " um: change the recipe's range or the stage's limits";
   throw Error(ErrorCode::kStageLimit, message.str());
 }

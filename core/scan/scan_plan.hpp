@@ -2,12 +2,21 @@
 
 /// Where the slices of a scan lie, and what may go wrong before it fails.
 
+#include <chrono>
+
+#include "core/hw/camera.hpp"
 #include "core/hw/z_stage.hpp"
 #include "core/units.hpp"
 
 namespace fvd {
 
+enum class ScanMode {
+  kStep,        ///< the stage stops for every slice
+  kContinuous,  ///< the stage moves on at constant speed while the camera runs free
+};
+
 struct ScanPlan {
+  ScanMode mode = ScanMode::kStep;
   Micrometers start;       ///< target of slice 0
   Micrometers step{10.0};  ///< > 0: the scan goes one way only, so that backlash stays loaded
   int slices = 0;          ///< >= 1
@@ -15,9 +24,30 @@ struct ScanPlan {
   int frame_retries = 3;        ///< further triggers for a slice whose frame was lost
   int allowed_lost_slices = 0;  ///< more fail the scan
 
+  bool line_trigger = false;  ///< kStep: the drive's in-position output triggers the camera
+
+  double speed_um_per_s = 0.0;  ///< kContinuous: > 0
+  double max_blur_steps = 0.5;  ///< kContinuous: way during an exposure, in steps
+  bool downwards = false;       ///< kContinuous: from the last slice to the first, for the calibration of the lag
+  std::chrono::microseconds time_offset{0};  ///< kContinuous: of the stage's clock against the camera's, see LagResult
+
+  /// Frames a second that lie one step apart.
+  [[nodiscard]] double frame_rate_hz() const { return speed_um_per_s / step.value; }
+
   [[nodiscard]] Micrometers target(int index) const { return start + static_cast<double>(index) * step; }
   [[nodiscard]] Micrometers last() const { return target(slices - 1); }
 };
+
+/// Way the axis needs before a continuous scan's first slice and after its last to be at constant speed there, and to
+/// have its position known from samples on both sides.
+[[nodiscard]] Micrometers run_up(const ScanPlan& plan, const StageInfo& stage);
+
+/// How far around a moment positions are looked at to know where a moving axis was.
+inline constexpr std::chrono::microseconds kPositionReach{10000};
+
+/// Throws Error kBadRecipe if a continuous scan would blur its slices, is faster than camera or stage, or the stage
+/// does not measure its position. settings: as they are in force, or as asked for.
+void check_continuous(const ScanPlan& plan, const CameraSettings& settings, const StageInfo& stage);
 
 /// Throws Error kStageLimit, with the values and the range, if the scan or its take-up move would leave the limits.
 void check_plan(const ScanPlan& plan, const StageInfo& stage);

@@ -68,6 +68,28 @@ void ScanRunner::hand_over(Slice&& slice, int index, std::stop_token stop) {
                   " s: the computation hangs or is far too slow; use more threads or a smaller window");
 }
 
+std::optional<CapturedFrame> ScanRunner::capture_by_line(const ScanPlan& plan, Micrometers target, MoveRecord& move,
+                                                         SliceCapture& capture, std::stop_token stop) {
+  // The drive says "in position" before the stage has settled: what counts is where it stood during the exposure.
+  const auto at_target = [&](const Frame& frame) {
+    const PositionMean position = deps_.stage.mean_position(frame.exposure_start, frame.exposure_end);
+    return frame.exposure_start >= move.started && abs(position.mean - move.target_quantised) <= plan.settle.window;
+  };
+  for (int attempt = 0;; ++attempt) {
+    if (auto captured = capture.await_line(at_target, stop)) {
+      captured->triggers = 1 + attempt;
+      return captured;
+    }
+    if (attempt == plan.frame_retries) return std::nullopt;
+    // Only another arrival makes another edge.
+    SettleCriterion wide = plan.settle;
+    const Micrometers away = std::max(deps_.stage.info().take_up, plan.step);
+    wide.window = std::max(plan.settle.window, away * 0.5);
+    deps_.stage.move_to(target - away, wide, stop);
+    move = deps_.stage.move_to(target, plan.settle, stop);
+  }
+}
+
 void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
                      std::stop_token stop) {
   check_plan(plan, deps_.stage.info());
@@ -85,9 +107,10 @@ void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::functi
     take_up(plan, stop);
     for (int index = 0; index < plan.slices; ++index) {
       const Micrometers target = plan.target(index);
-      const MoveRecord move = deps_.stage.move_to(target, plan.settle, stop);
+      MoveRecord move = deps_.stage.move_to(target, plan.settle, stop);
+      auto captured = plan.line_trigger ? capture_by_line(plan, target, move, capture, stop)
+                                        : capture.capture(move.settled, plan.frame_retries, stop);
       StepRecord step = record_move(index, target, move);
-      auto captured = capture.capture(move.settled, plan.frame_retries, stop);
       report.frames = ledger.counts();
       if (!captured) {
         if (++lost > plan.allowed_lost_slices) throw too_many_lost(index, target, lost, plan);

@@ -3,6 +3,7 @@
 /// The scan: move, settle, expose, measure, hand on. Knows interfaces only.
 
 #include <functional>
+#include <optional>
 #include <stop_token>
 
 #include "core/hw/camera.hpp"
@@ -10,6 +11,7 @@
 #include "core/hw/z_stage.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_plan.hpp"
+#include "core/scan/slice_capture.hpp"
 #include "core/scan/slice_sink.hpp"
 #include "core/scan/step_log.hpp"
 
@@ -19,6 +21,7 @@ namespace fvd {
 struct ScanReport {
   StepLog steps;
   FrameCounts frames;
+  int ramp_frames = 0;  ///< of a continuous scan, taken before its first slice and after its last; not in `frames`
 };
 
 struct ScanDependencies {
@@ -42,6 +45,8 @@ class ScanRunner {
 
  private:
   void hand_over(Slice&& slice, int index, std::stop_token stop);
+  [[nodiscard]] std::optional<CapturedFrame> capture_by_line(const ScanPlan& plan, Micrometers target, MoveRecord& move,
+                                                             SliceCapture& capture, std::stop_token stop);
   void take_up(const ScanPlan& plan, std::stop_token stop);
 
   ScanDependencies deps_;

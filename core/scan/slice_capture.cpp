@@ -64,4 +64,28 @@ std::optional<Frame> SliceCapture::trigger_once(HostTime settled, std::stop_toke
   }
 }
 
+std::optional<CapturedFrame> SliceCapture::await_line(const AtTarget& at_target, std::stop_token stop) {
+  const HostTime deadline = clock_.now() + camera_.frame_deadline();
+  for (;;) {
+    auto frame = camera_.next_frame(deadline);
+    if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped while it waited for a frame");
+    if (!frame) {
+      ledger_.missing();
+      return std::nullopt;
+    }
+    if (frame->status != FrameStatus::kOk) {
+      ledger_.incomplete();
+      return std::nullopt;
+    }
+    const bool newer = !last_id_ || frame->id > *last_id_;
+    if (!newer || !at_target(*frame)) {
+      ledger_.stale();
+      continue;
+    }
+    last_id_ = frame->id;
+    ledger_.ok();
+    return CapturedFrame{std::move(*frame), 1};
+  }
+}
+
 }  // namespace fvd

@@ -2,6 +2,7 @@
 
 /// One trustworthy frame per height: triggers, waits, judges, retries.
 
+#include <functional>
 #include <optional>
 #include <stop_token>
 
@@ -28,6 +29,14 @@ class SliceCapture {
   /// The first acceptable frame exposed at or after `settled`, within 1 + retries triggers; nothing if all were lost.
   /// Throws Error kAborted after a stop request, kCameraDisconnected.
   [[nodiscard]] std::optional<CapturedFrame> capture(HostTime settled, int retries, std::stop_token stop);
+
+  /// Judges whether the stage stood where it should while a frame was exposed.
+  using AtTarget = std::function<bool(const Frame& frame)>;
+
+  /// The frame that a trigger line made the camera expose in the move that has just ended: the first newer one that was
+  /// exposed at the target. Nothing by the camera's deadline; gaps in the ids are pulses whose frames were lost.
+  /// Throws as capture().
+  [[nodiscard]] std::optional<CapturedFrame> await_line(const AtTarget& at_target, std::stop_token stop);
 
  private:
   void drain();

@@ -13,6 +13,7 @@
 #include "core/focus/height_map.hpp"
 #include "core/metrology/stage_accuracy.hpp"
 #include "core/scan/frame_ledger.hpp"
+#include "core/scan/scan_plan.hpp"
 #include "core/scan/step_log.hpp"
 
 namespace fvd {
@@ -45,6 +46,9 @@ struct ResultData {
   HeightMap map;
   std::vector<std::pair<PeakMethod, HeightMap>> extra_maps;
 
+  ScanMode scan_mode = ScanMode::kStep;
+  double speed_um_per_s = 0.0;  ///< of a continuous scan
+  int ramp_frames = 0;          ///< likewise
   int slices_planned = 0;
   FrameCounts frames;
   StepLog steps;

@@ -83,7 +83,13 @@ Json frames(const FrameCounts& counts) {
 Json slices(const ResultData& data) {
   std::size_t measured = 0;
   for (const StepRecord& step : data.steps) measured += step.measured ? 1 : 0;
-  return {{"planned", data.slices_planned}, {"measured", measured}};
+  Json json{{"planned", data.slices_planned}, {"measured", measured}};
+  json["scan_mode"] = data.scan_mode == ScanMode::kContinuous ? "continuous" : "step";
+  if (data.scan_mode == ScanMode::kContinuous) {
+    json["speed_um_per_s"] = um(data.speed_um_per_s);
+    json["ramp_frames"] = data.ramp_frames;
+  }
+  return json;
 }
 
 Json steps(const StepSummary& summary) {

@@ -88,7 +88,7 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
   EXPECT_EQ(result["focus"]["state_bytes_per_pixel"], 24.0);
   EXPECT_EQ(result["frames"],
             json({{"expected", 4}, {"ok", 3}, {"incomplete", 1}, {"missing", 0}, {"stale", 0}, {"underrun", 0}}));
-  EXPECT_EQ(result["slices"], json({{"planned", 3}, {"measured", 2}}));
+  EXPECT_EQ(result["slices"], json({{"planned", 3}, {"measured", 2}, {"scan_mode", "step"}}));
   EXPECT_EQ(result["steps"]["error_max_um"], 0.0625);
   EXPECT_EQ(result["times"], json({{"prepare_ms", 100.0}, {"scan_ms", 2000.0}, {"finish_ms", 5.0}}));
   EXPECT_EQ(result["provenance"], json({{"recipe", "chapter"},

@@ -1,0 +1,34 @@
+#pragma once
+
+/// A scan in one motion: the stage passes the slices at constant speed, the camera runs free, and each frame's height
+/// is where the stage was in the middle of its exposure.
+
+#include <functional>
+#include <stop_token>
+
+#include "core/scan/scan_runner.hpp"
+
+namespace fvd {
+
+/// Frames are taken as they come; one whose position is not known yet waits for it while the next are taken. Slices are
+/// the frames exposed from half a step before the first target to half a step after the last; all others belong to
+/// the ramps. A gap in the frame ids between them is a lost slice.
+/// context: run() on one thread; stop requests from any. The stage is moved by a thread of its own meanwhile.
+class ContinuousScan {
+ public:
+  /// The camera is configured with `settings` already, but triggered by software.
+  ContinuousScan(const ScanDependencies& dependencies, const CameraSettings& settings)
+      : deps_(dependencies), settings_(settings) {}
+
+  /// As ScanRunner::run. On every way out the stage is at rest, or stopped, and the camera triggered by software again.
+  /// Throws Error kBadRecipe and kStageLimit before anything moves, kStageNotHomed, kCameraFramesLost, kSliceLost,
+  /// kAborted, and what camera and stage throw.
+  void run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
+           std::stop_token stop);
+
+ private:
+  ScanDependencies deps_;
+  CameraSettings settings_;
+};
+
+}  // namespace fvd

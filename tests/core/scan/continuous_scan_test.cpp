@@ -1,0 +1,375 @@
+/// Continuous scans on doubles whose time passes only when the camera is asked for a frame.
+
+#include "core/scan/continuous_scan.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+#include "tests/support/expect_error.hpp"
+
+namespace fvd {
+namespace {
+
+using std::chrono::duration_cast;
+using std::chrono::microseconds;
+
+/// context: thread-safe.
+class TestClock final : public Clock {
+ public:
+  [[nodiscard]] HostTime now() const override { return now_; }
+  void wait_until(HostTime deadline, std::stop_token /*stop*/) override { advance_to(deadline); }
+  void advance_to(HostTime time) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (time > now_.load()) now_ = time;
+    }
+    changed_.notify_all();
+  }
+  /// Blocks until somebody else has let so much time pass; false on a stop request.
+  bool await(HostTime time, std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait(lock, stop, [&] { return now_.load() >= time; });
+  }
+
+ private:
+  std::atomic<HostTime> now_{HostTime{std::chrono::hours(1)}};
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+};
+
+/// Trapezoidal motion with 20000 um/s^2.
+class SweepingStage final : public ZStage {
+ public:
+  explicit SweepingStage(TestClock& clock) : clock_(clock) {}
+
+  [[nodiscard]] StageInfo info() const override {
+    return {.name = "sweeping stage",
+            .address = "in process",
+            .feedback = feedback,
+            .step_quantum = Micrometers{0.01},
+            .feedback_resolution = Micrometers{0.01},
+            .min = Micrometers{-500.0},
+            .max = Micrometers{500.0},
+            .take_up = Micrometers{20.0},
+            .speed_um_per_s = 1000.0,
+            .acceleration_um_per_s2 = 20000.0,
+            .simulated = true};
+  }
+  [[nodiscard]] StageStatus status() override {
+    StageStatus status;
+    status.homed = true;
+    return status;
+  }
+  void home(std::stop_token /*stop*/) override {}
+  MoveRecord move_to(Micrometers target, const SettleCriterion& /*criterion*/, std::stop_token /*stop*/) override {
+    from_um = to_um = target.value;
+    return {};
+  }
+  MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override {
+    HostTime end;
+    {
+      const std::lock_guard lock(mutex_);
+      from_um = to_um;
+      to_um = target.value;
+      speed = speed_um_per_s;
+      started = clock_.now();
+      const double seconds = std::abs(to_um - from_um) / speed + speed / 20000.0;
+      end = started + duration_cast<HostClock::duration>(std::chrono::duration<double>(alarm ? 0.1 : seconds));
+    }
+    if (!clock_.await(end, stop)) throw Error(ErrorCode::kAborted, "the sweep was stopped");
+    if (alarm) throw Error(ErrorCode::kStageAlarm, "the drive reports an alarm");
+    return {};
+  }
+  [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
+    return {Micrometers{true_um(from + (to - from) / 2)}, Micrometers{0.0}, 3};
+  }
+  /// What the samples say: late by `lag`.
+  [[nodiscard]] PositionMean position_at(HostTime at, microseconds /*reach*/) override {
+    return {Micrometers{true_um(at - lag)}, Micrometers{0.0}, 9};
+  }
+  void stop() noexcept override { ++stops; }
+  [[nodiscard]] bool connected() const noexcept override { return true; }
+
+  [[nodiscard]] double true_um(HostTime at) const {
+    const std::lock_guard lock(mutex_);
+    if (speed <= 0.0) return to_um;
+    const double ramp_s = speed / 20000.0;
+    const double way = std::abs(to_um - from_um);
+    const double total_s = way / speed + ramp_s;
+    const double t = std::clamp(std::chrono::duration<double>(at - started).count(), 0.0, total_s);
+    double done = way;
+    if (t < ramp_s) {
+      done = 0.5 * 20000.0 * t * t;
+    } else if (t < total_s - ramp_s) {
+      done = speed * (t - ramp_s / 2);
+    } else {
+      const double left = total_s - t;
+      done = way - 0.5 * 20000.0 * left * left;
+    }
+    return from_um + (to_um > from_um ? done : -done);
+  }
+
+  FeedbackSource feedback = FeedbackSource::kMotorEncoder;
+  bool alarm = false;
+  microseconds lag{0};
+  std::atomic<int> stops{0};
+  double from_um = 0.0;
+  double to_um = 0.0;
+  double speed = 0.0;
+  HostTime started{};
+
+ private:
+  TestClock& clock_;
+  mutable std::mutex mutex_;
+};
+
+enum class Fate { kGood, kNothing, kUnderrun, kIncomplete, kGone };
+
+/// Free-running; the fate of a frame is told by the position it is exposed at. Pixels: none, only times and ids count.
+class FreeCamera final : public Camera, private FrameRecycler {
+ public:
+  FreeCamera(TestClock& clock, const SweepingStage& stage) : clock_(clock), stage_(stage) {}
+
+  [[nodiscard]] CameraInfo info() const override { return {}; }
+  CameraSettings configure(const CameraSettings& settings) override {
+    settings_ = settings;
+    next_ = clock_.now();
+    return settings;
+  }
+  void trigger() override { ADD_FAILURE() << "nobody triggers a camera that runs free"; }
+  [[nodiscard]] std::optional<Frame> next_frame(HostTime deadline) override {
+    if (settings_.trigger != TriggerMode::kFreeRun) {
+      clock_.advance_to(deadline);
+      return std::nullopt;
+    }
+    const auto period =
+        duration_cast<HostClock::duration>(std::chrono::duration<double>(1.0 / settings_.frame_rate_hz));
+    for (;;) {
+      const HostTime arrival = next_ + std::chrono::milliseconds(5);
+      if (arrival > deadline) {
+        clock_.advance_to(deadline);
+        return std::nullopt;
+      }
+      const HostTime start = next_;
+      next_ += period;
+      const std::uint64_t id = ++id_;
+      const Fate fate = fate_of(stage_.true_um(start + exposure() / 2));
+      if (fate == Fate::kGone) throw Error(ErrorCode::kCameraDisconnected, "the camera was unplugged");
+      clock_.advance_to(arrival);
+      if (fate == Fate::kUnderrun) ++health_.underruns;
+      if (fate == Fate::kNothing || fate == Fate::kUnderrun) continue;
+      Frame frame;
+      frame.lease = FrameLease(&slot_, FrameSlotDeleter{this});
+      if (fate == Fate::kIncomplete) return frame;
+      frame.status = FrameStatus::kOk;
+      frame.id = id;
+      frame.exposure_start = start;
+      frame.exposure_end = start + exposure();
+      return frame;
+    }
+  }
+  [[nodiscard]] microseconds frame_deadline() const override { return std::chrono::milliseconds(100); }
+  void interrupt() noexcept override {}
+  [[nodiscard]] bool connected() const noexcept override { return true; }
+  [[nodiscard]] CameraHealth health() const override { return health_; }
+  [[nodiscard]] TriggerMode trigger_mode() const { return settings_.trigger; }
+
+  /// Frames exposed within so many um of a position have that fate.
+  void plan(double from_um, double to_um, Fate fate) { fates_.push_back({from_um, to_um, fate}); }
+
+ private:
+  struct Planned {
+    double from_um;
+    double to_um;
+    Fate fate;
+  };
+  [[nodiscard]] HostClock::duration exposure() const {
+    return duration_cast<HostClock::duration>(std::chrono::duration<double, std::micro>(settings_.exposure_us));
+  }
+  [[nodiscard]] Fate fate_of(double z_um) const {
+    for (const Planned& planned : fates_) {
+      if (z_um >= planned.from_um && z_um < planned.to_um) return planned.fate;
+    }
+    return Fate::kGood;
+  }
+  void recycle(void* /*slot*/) noexcept override {}
+
+  TestClock& clock_;
+  const SweepingStage& stage_;
+  CameraSettings settings_;
+  HostTime next_{};
+  std::uint64_t id_ = 0;
+  CameraHealth health_;
+  std::vector<Planned> fates_;
+  int slot_ = 0;
+};
+
+class HeightSink final : public SliceSink {
+ public:
+  [[nodiscard]] bool push(Slice&& slice, HostTime /*deadline*/, std::stop_token /*stop*/) override {
+    const Slice taken = std::move(slice);
+    z_um.push_back(taken.z_um);
+    starts.push_back(taken.frame.exposure_start);
+    return true;
+  }
+  std::vector<double> z_um;
+  std::vector<HostTime> starts;
+};
+
+class AContinuousScan : public testing::Test {
+ protected:
+  AContinuousScan() {
+    plan_.mode = ScanMode::kContinuous;
+    plan_.start = Micrometers{0.0};
+    plan_.step = Micrometers{2.0};
+    plan_.slices = 51;
+    plan_.speed_um_per_s = 400.0;
+    settings_.exposure_us = 2000.0;
+  }
+  void run(std::stop_token stop = {}) {
+    ContinuousScan({camera_, stage_, clock_, sink_}, settings_).run(plan_, report_, on_slice_, stop);
+  }
+
+  TestClock clock_;
+  SweepingStage stage_{clock_};
+  FreeCamera camera_{clock_, stage_};
+  HeightSink sink_;
+  ScanPlan plan_;
+  CameraSettings settings_;
+  ScanReport report_;
+  std::function<void(const ScanReport&)> on_slice_;
+};
+
+TEST_F(AContinuousScan, TakesEverySliceAtTheHeightOfItsMidExposure) {
+  run();
+  ASSERT_GE(sink_.z_um.size(), 50U);
+  ASSERT_LE(sink_.z_um.size(), 51U);
+  for (std::size_t i = 0; i < sink_.z_um.size(); ++i) {
+    EXPECT_NEAR(sink_.z_um[i], stage_.true_um(sink_.starts[i] + std::chrono::milliseconds(1)), 1e-6) << i;
+    if (i > 0) {
+      EXPECT_NEAR(sink_.z_um[i] - sink_.z_um[i - 1], 2.0, 1e-3) << "constant speed: no ramp among the slices";
+    }
+  }
+  EXPECT_GE(sink_.z_um.front(), -1.0);
+  EXPECT_LE(sink_.z_um.back(), 101.0);
+  EXPECT_GT(report_.ramp_frames, 0);
+  EXPECT_TRUE(report_.frames.balanced());
+  EXPECT_EQ(report_.frames.ok, sink_.z_um.size());
+  EXPECT_EQ(report_.steps.size(), sink_.z_um.size());
+  EXPECT_EQ(camera_.trigger_mode(), TriggerMode::kSoftware) << "quiet between scans";
+}
+
+TEST_F(AContinuousScan, GoesDownwardsForTheCalibration) {
+  plan_.downwards = true;
+  run();
+  ASSERT_GE(sink_.z_um.size(), 50U);
+  EXPECT_GT(sink_.z_um.front(), sink_.z_um.back());
+}
+
+TEST_F(AContinuousScan, CorrectsTheOffsetOfTheClocks) {
+  stage_.lag = microseconds(1000);
+  plan_.time_offset = microseconds(1000);
+  run();
+  ASSERT_GE(sink_.z_um.size(), 50U);
+  for (std::size_t i = 0; i < sink_.z_um.size(); ++i) {
+    EXPECT_NEAR(sink_.z_um[i], stage_.true_um(sink_.starts[i] + std::chrono::milliseconds(1)), 1e-6) << i;
+  }
+}
+
+TEST_F(AContinuousScan, FailsForALostSliceUnlessTheRecipeAllowsIt) {
+  camera_.plan(49.0, 51.0, Fate::kNothing);
+  test::expect_error(ErrorCode::kCameraFramesLost, {"1 of 51 slices were lost"}, [this] { run(); });
+  EXPECT_TRUE(report_.frames.balanced());
+  EXPECT_EQ(report_.frames.missing, 1U);
+  EXPECT_EQ(stage_.stops, 1);
+  EXPECT_EQ(camera_.trigger_mode(), TriggerMode::kSoftware);
+}
+
+TEST_F(AContinuousScan, TellsMissingFromIncompleteFromUnderrun) {
+  camera_.plan(19.0, 21.0, Fate::kNothing);
+  camera_.plan(39.0, 41.0, Fate::kIncomplete);
+  camera_.plan(59.0, 61.0, Fate::kUnderrun);
+  plan_.allowed_lost_slices = 3;
+  run();
+  EXPECT_EQ(report_.frames.missing, 1U);
+  EXPECT_EQ(report_.frames.incomplete, 1U);
+  EXPECT_EQ(report_.frames.underrun, 1U);
+  EXPECT_TRUE(report_.frames.balanced());
+  EXPECT_EQ(report_.frames.ok, sink_.z_um.size());
+}
+
+TEST_F(AContinuousScan, CountsWhatIsLostAtTheEnds) {
+  camera_.plan(-3.0, 3.0, Fate::kNothing);    // one ramp frame and the first slices
+  camera_.plan(97.0, 105.0, Fate::kNothing);  // the last slices and ramp frames
+  plan_.allowed_lost_slices = 10;
+  run();
+  EXPECT_TRUE(report_.frames.balanced());
+  EXPECT_GE(report_.frames.missing, 3U);
+  EXPECT_LE(report_.frames.missing, 5U);
+}
+
+TEST_F(AContinuousScan, FailsWithoutAnyFrame) {
+  camera_.plan(-1000.0, 1000.0, Fate::kNothing);
+  test::expect_error(ErrorCode::kCameraFramesLost, {"51 of 51"}, [&] { run(); });
+}
+
+TEST_F(AContinuousScan, LosesNothingToRampsThatAreDamaged) {
+  camera_.plan(-500.0, -3.0, Fate::kIncomplete);
+  run();
+  EXPECT_EQ(report_.frames.incomplete, 0U);
+  EXPECT_TRUE(report_.frames.balanced());
+}
+
+TEST_F(AContinuousScan, EndsWithTheReasonOfStageOrCamera) {
+  stage_.alarm = true;
+  test::expect_error(ErrorCode::kStageAlarm, {"alarm"}, [&] { run(); });
+  EXPECT_EQ(camera_.trigger_mode(), TriggerMode::kSoftware);
+  stage_.alarm = false;
+  camera_.plan(40.0, 41.0, Fate::kGone);
+  camera_.plan(41.0, 44.0, Fate::kGone);
+  report_ = {};
+  test::expect_error(ErrorCode::kCameraDisconnected, {"unplugged"}, [&] { run(); });
+  EXPECT_TRUE(report_.frames.balanced());
+}
+
+TEST_F(AContinuousScan, CanBeAborted) {
+  std::stop_source stop;
+  on_slice_ = [&](const ScanReport& report) {
+    if (report.steps.size() == 10) stop.request_stop();
+  };
+  test::expect_error(ErrorCode::kAborted, {"stopped"}, [&] { run(stop.get_token()); });
+  EXPECT_EQ(report_.steps.size(), 10U);
+  EXPECT_GE(stage_.stops, 1);
+}
+
+TEST_F(AContinuousScan, IsRefusedBeforeAnythingMoves) {
+  const auto refused = [this](ErrorCode code, const char* text) {
+    test::expect_error(code, {text}, [&] { run(); });
+    EXPECT_EQ(stage_.to_um, 0.0);
+  };
+  settings_.exposure_us = 3000.0;
+  refused(ErrorCode::kBadRecipe, "333.3");
+  settings_.exposure_us = 2000.0;
+  plan_.max_blur_steps = 2.0;
+  settings_.exposure_us = 6000.0;
+  refused(ErrorCode::kBadRecipe, "frames a second");
+  settings_.exposure_us = 2000.0;
+  plan_.speed_um_per_s = 1001.0;
+  refused(ErrorCode::kBadRecipe, "speed");
+  plan_.speed_um_per_s = 400.0;
+  plan_.start = Micrometers{-490.0};
+  refused(ErrorCode::kStageLimit, "run-up");
+  plan_.start = Micrometers{0.0};
+  stage_.feedback = FeedbackSource::kNone;
+  refused(ErrorCode::kBadRecipe, "measures its position");
+}
+
+}  // namespace
+}  // namespace fvd
