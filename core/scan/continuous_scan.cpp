@@ -191,8 +191,9 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
   FrameLedger ledger;
   SliceSorter sorter(plan, ledger);
   const Micrometers before = run_up(plan, stage);
-  const Micrometers low = plan.start - before;
-  const Micrometers high = plan.last() + before;
+  const Micrometers after_last = run_out(plan, stage);
+  const Micrometers low = plan.start - (plan.downwards ? after_last : before);
+  const Micrometers high = plan.last() + (plan.downwards ? before : after_last);
   const std::stop_callback wake(stop, [this] { deps_.camera.interrupt(); });
   report.steps.reserve(static_cast<std::size_t>(plan.slices));
   struct Waiting {

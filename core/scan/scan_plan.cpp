@@ -13,12 +13,15 @@ namespace {
 
 }  // namespace
 
+Micrometers run_out(const ScanPlan& plan, const StageInfo& stage) {
+  const double speed = plan.speed_um_per_s;
+  const double ramp_um = stage.acceleration_um_per_s2 > 0.0 ? speed * speed / 2.0 / stage.acceleration_um_per_s2 : 0.0;
+  const double reach_s = std::chrono::duration<double>(kPositionReach).count();
+  return Micrometers{ramp_um + reach_s * speed} + plan.step;
+}
+
 Micrometers run_up(const ScanPlan& plan, const StageInfo& stage) {
-  const double ramp_um = stage.acceleration_um_per_s2 > 0.0
-                             ? plan.speed_um_per_s * plan.speed_um_per_s / 2.0 / stage.acceleration_um_per_s2
-                             : 0.0;
-  const double seconds = 2.0 * std::chrono::duration<double>(kPositionReach).count();
-  return std::max(Micrometers{ramp_um + seconds * plan.speed_um_per_s} + plan.step, stage.take_up);
+  return std::max(run_out(plan, stage), stage.take_up);
 }
 
 void check_continuous(const ScanPlan& plan, const CameraSettings& settings, const StageInfo& stage) {
@@ -53,12 +56,12 @@ void check_plan(const ScanPlan& plan, const StageInfo& stage) {
   const bool moving = plan.mode == ScanMode::kContinuous;
   const Micrometers before = moving ? run_up(plan, stage) : stage.take_up;
   const Micrometers lowest = plan.start - before;
-  const Micrometers highest = moving ? plan.last() + before : plan.last();
+  const Micrometers highest = moving ? plan.last() + (plan.downwards ? before : run_out(plan, stage)) : plan.last();
   if (lowest >= stage.min && highest <= stage.max) return;
   std::ostringstream message;
   message << "the scan from " << plan.start.value << " um to " << highest.value << " um with " << before.value
-          << (moving ? " um of run-up at both ends needs " : " um of take-up below needs ") << lowest.value << ".."
-          << highest.value << " um, the stage may travel " << stage.min.value << ".." << stage.max.value
+          << (moving ? " um of run-up needs " : " um of take-up below needs ") << lowest.value << ".." << highest.value
+          << " um, the stage may travel " << stage.min.value << ".." << stage.max.value
           << " um: change the recipe's range or the stage's limits";
   throw Error(ErrorCode::kStageLimit, message.str());
 }

@@ -38,9 +38,11 @@ struct ScanPlan {
   [[nodiscard]] Micrometers last() const { return target(slices - 1); }
 };
 
-/// Way the axis needs before a continuous scan's first slice and after its last to be at constant speed there, and to
-/// have its position known from samples on both sides.
+/// Way a continuous scan begins before its first slice: the axis is at constant speed there, the backlash loaded, and
+/// its position known from samples on both sides.
 [[nodiscard]] Micrometers run_up(const ScanPlan& plan, const StageInfo& stage);
+/// Way it goes on after its last slice, likewise.
+[[nodiscard]] Micrometers run_out(const ScanPlan& plan, const StageInfo& stage);
 
 /// How far around a moment positions are looked at to know where a moving axis was.
 inline constexpr std::chrono::microseconds kPositionReach{10000};
