@@ -14,7 +14,7 @@ namespace {
 using std::chrono::nanoseconds;
 
 /// Images the camera holds between sensor and line; one more is dropped at the sensor.
-constexpr std::size_t kHeld = 3;
+constexpr std::size_t kHeld = 8;
 constexpr std::size_t kTooManyBytes = 64;
 
 nanoseconds nanoseconds_of_us(double us) { return nanoseconds(static_cast<std::int64_t>(us * 1e3)); }
