@@ -12,6 +12,7 @@
 #include "config/strict_json.hpp"
 #include "core/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
+#include "core/pixels/unpack.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/recipe_book.hpp"

@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/error.hpp"
+#include "core/pixels/unpack.hpp"
 #include "drivers/aravis/camera_clock.hpp"
 #include "drivers/aravis/camera_features.hpp"
 #include "drivers/aravis/control_watch.hpp"
@@ -22,6 +23,7 @@
 #include "drivers/aravis/gige_transport.hpp"
 #include "drivers/aravis/gobject.hpp"
 #include "drivers/aravis/gvcp_probe.hpp"
+#include "drivers/aravis/slice_pool.hpp"
 
 namespace fvd {
 
@@ -61,6 +63,15 @@ bool same_shape(const CameraSettings& a, const CameraSettings& b) {
 }
 
 void check(const CameraSettings& settings) {
+  const int bits = settings.significant_bits;
+  if (bits != 0 && (settings.pixel_format != SensorFormat::kMono16 || (bits != 10 && bits != 12))) {
+    throw Error(ErrorCode::kCameraSettings, "significant_bits is " + std::to_string(bits) +
+                                                "; it is for Mono16 and must be 10 or 12, or 0 for all 16");
+  }
+  if (sensor_format_info(settings.pixel_format).bayer && (settings.offset_x % 2 != 0 || settings.offset_y % 2 != 0)) {
+    throw Error(ErrorCode::kCameraSettings,
+                "the region of a colour mosaic must begin at even offsets, or its colours change places");
+  }
   if (settings.pool_frames >= 3 && settings.exposure_us > 0.0 && settings.width >= 0 && settings.height >= 0) return;
   throw Error(
       ErrorCode::kCameraSettings,
@@ -156,7 +167,7 @@ class AravisCamera final : public Camera {
     guint64 failures = 0;
     guint64 underruns = 0;
     arv_stream_get_statistics(frames_->stream(), &completed, &failures, &underruns);
-    health.underruns = underruns;
+    health.underruns = underruns + underruns_;
     if (ARV_IS_GV_STREAM(frames_->stream())) {
       guint64 resent = 0;
       guint64 missing = 0;
@@ -383,6 +394,13 @@ class AravisCamera final : public Camera {
     error.check("the camera at " + config_.address + " opens no stream", ErrorCode::kCameraDisconnected);
     set_stream_options(stream.get(), stream_times());
     frames_.emplace(std::move(stream), effective_.pool_frames, payload);
+    slices_.reset();
+    if (needs_unpacking(effective_.pixel_format, effective_.significant_bits)) {
+      slices_ = std::make_unique<SlicePool>(effective_.pool_frames,
+                                            static_cast<std::size_t>(effective_.width) *
+                                                static_cast<std::size_t>(effective_.height) *
+                                                static_cast<std::size_t>(bytes_per_pixel(effective_.slice_format())));
+    }
     counter_.restart();
     ignored_packets_ = 0;
     arv_camera_start_acquisition(camera_.get(), error.out());
@@ -517,11 +535,25 @@ class AravisCamera final : public Camera {
     frame.exposure_end = frame.exposure_start + std::chrono::duration_cast<HostClock::duration>(
                                                     std::chrono::duration<double, std::micro>(effective_.exposure_us));
     if (frame.exposure_start < configured_ - kClockTolerance) return std::nullopt;
-    ++frames_complete_;
     ignored_packets_ = frames_->ignored_packets();
+    const std::byte* pixels = wire_image(buffer, effective_).data();
+    if (slices_) {
+      FrameLease slot = slices_->borrow();
+      if (!slot) {
+        ++underruns_;
+        ++frames_failed_;
+        frame.status = FrameStatus::kIncomplete;
+        return frame;
+      }
+      unpack({effective_.pixel_format, effective_.significant_bits, effective_.bayer, effective_.width,
+              effective_.height, wire_image(buffer, effective_)},
+             slices_->bytes(slot));
+      pixels = slices_->bytes(slot).data();
+      frame.lease = std::move(slot);  // gives the buffer back
+    }
+    ++frames_complete_;
     frame.image = {effective_.slice_format(), effective_.width, effective_.height,
-                   static_cast<std::ptrdiff_t>(effective_.width) * bytes_per_pixel(effective_.slice_format()),
-                   wire_image(buffer, effective_).data()};
+                   static_cast<std::ptrdiff_t>(effective_.width) * bytes_per_pixel(effective_.slice_format()), pixels};
     renew_clock_if_due();
     return frame;
   }
@@ -538,6 +570,7 @@ class AravisCamera final : public Camera {
   std::optional<CameraSettings> requested_;
   CameraSettings effective_;
   std::optional<FrameBuffers> frames_;
+  std::unique_ptr<SlicePool> slices_;  // nothing: slices are what comes over the wire
   FrameCounter counter_;
   HostTime configured_{};
   HostTime quiet_since_{};             // last thing heard or asked of the camera
@@ -549,6 +582,7 @@ class AravisCamera final : public Camera {
   std::uint64_t frames_failed_ = 0;
   std::uint64_t failed_since_good_ = 0;
   std::uint64_t ids_skipped_ = 0;
+  std::uint64_t underruns_ = 0;  // of slices
   std::atomic<bool> interrupted_{false};
   std::future<void> trigger_;
   std::future<void> renewal_;

@@ -157,6 +157,98 @@ TEST_F(AnAravisCamera, DeliversSixteenBitAndRegionsWithLargePackets) {
   }
 }
 
+TEST_F(AnAravisCamera, DeliversEveryPixelFormatAsSlices) {
+  serve();
+  const auto camera = open(8000);
+  for (const SensorFormat format : kAllSensorFormats) {
+    const SensorFormatInfo info = sensor_format_info(format);
+    SCOPED_TRACE(info.name);
+    CameraSettings wanted = settings();
+    wanted.pixel_format = format;
+    wanted.width = 101;
+    wanted.height = 51;
+    camera->configure(wanted);
+    const auto frame = shoot(*camera);
+    ASSERT_TRUE(frame && frame->status == FrameStatus::kOk);
+    EXPECT_EQ(frame->image.format, wanted.slice_format());
+    EXPECT_EQ(significant_bits(frame->image.format), info.bits);
+    if (info.bayer) {
+      // The scene grows by 3 a column: green sites show it as it is, others the mean of their neighbours.
+      const bool wide = info.bits > 8;
+      const auto pixel = [&](int x, int y) {
+        return wide ? int{frame->image.as<std::uint16_t>().at(x, y)} : int{frame->image.as<std::uint8_t>().at(x, y)};
+      };
+      const bool green_first = info.name[5] == 'G';
+      for (int x = 20; x < 24; ++x) {
+        const int y = 10 + ((x % 2 == 0) == green_first ? 0 : 1);
+        EXPECT_EQ(pixel(x + 2, y) - pixel(x, y), 6) << "green at " << x << ", " << y;
+      }
+      continue;
+    }
+    bool found = false;
+    for (std::uint64_t exposure = 0; exposure < 60; ++exposure) found = found || shows(*frame, exposure);
+    EXPECT_TRUE(found);
+  }
+}
+
+TEST_F(AnAravisCamera, BringsUpperBitsDown) {
+  serve();
+  const auto camera = open(8000);
+  CameraSettings wanted = settings();
+  wanted.pixel_format = SensorFormat::kMono16;
+  wanted.significant_bits = 12;
+  camera->configure(wanted);
+  const auto frame = shoot(*camera);
+  ASSERT_TRUE(frame && frame->status == FrameStatus::kOk);
+  EXPECT_EQ(frame->image.format, PixelFormat::kMono12);
+  EXPECT_EQ(frame->image.as<std::uint16_t>().at(160, 100), CountingSource::expected(1, 160, 100) >> 4U);
+  wanted.significant_bits = 11;
+  EXPECT_EQ(error_of([&] { camera->configure(wanted); }), ErrorCode::kCameraSettings);
+  wanted = settings();
+  wanted.pixel_format = SensorFormat::kBayerRG8;
+  wanted.width = 100;
+  wanted.height = 50;
+  wanted.offset_x = 1;
+  EXPECT_EQ(error_of([&] { camera->configure(wanted); }), ErrorCode::kCameraSettings) << "colours would change places";
+}
+
+TEST_F(AnAravisCamera, TakesBlockIdsOf64Bit) {
+  server_ = std::make_unique<sim::GigeCameraServer>(
+      source_, sim::GigeCameraOptions{.address = address_, .first_block_id = 0x1FFFFFFF0, .extended_ids = true});
+  const auto camera = open();
+  camera->configure(settings());
+  server_->set_packet_loss(0.02);
+  std::uint64_t last = 0;
+  for (int i = 0; i < 30; ++i) {
+    const auto frame = shoot(*camera);
+    ASSERT_TRUE(frame && frame->status == FrameStatus::kOk) << i;
+    EXPECT_TRUE(last == 0 || frame->id == last + 1) << frame->id << " after " << last;
+    last = frame->id;
+  }
+  EXPECT_GT(last, 0x1FFFFFFF0U);
+  EXPECT_GT(server_->packets_resent(), 0U);
+}
+
+TEST_F(AnAravisCamera, RunsFreeAtItsRateAndIsQuietAgain) {
+  serve();
+  const auto camera = open();
+  camera->configure(settings());
+  CameraSettings free = settings();
+  free.trigger = TriggerMode::kFreeRun;
+  free.frame_rate_hz = 100.0;
+  EXPECT_NEAR(camera->configure(free).frame_rate_hz, 100.0, 0.1);
+  std::vector<HostTime> starts;
+  while (starts.size() < 20) {
+    const auto frame = camera->next_frame(HostClock::now() + std::chrono::seconds(2));
+    ASSERT_TRUE(frame && frame->status == FrameStatus::kOk);
+    starts.push_back(frame->exposure_start);
+  }
+  EXPECT_NEAR(std::chrono::duration<double>(starts.back() - starts.front()).count(), 0.19, 0.02);
+  camera->configure(settings());
+  EXPECT_FALSE(camera->next_frame(HostClock::now() + milliseconds(60)).has_value());
+  EXPECT_TRUE(shoot(*camera).has_value());
+}
+
 TEST_F(AnAravisCamera, KeepsCountingAcrossTheWrapOfBlockIds) {
   serve(65530);
   const auto camera = open();

@@ -1,0 +1,35 @@
+#pragma once
+
+/// Memory for slices that are not what came over the wire.
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "core/frame.hpp"
+
+namespace fvd {
+
+/// A fixed number of slots of one size. context: thread-safe. Leases are given back before the pool goes.
+class SlicePool final : public FrameRecycler {
+ public:
+  SlicePool(int count, std::size_t slot_bytes);
+
+  /// An empty lease while all are lent.
+  [[nodiscard]] FrameLease borrow();
+  /// The memory of a lease of this pool.
+  [[nodiscard]] std::span<std::byte> bytes(const FrameLease& lease) const {
+    return {static_cast<std::byte*>(lease.get()), slot_bytes_};
+  }
+  void recycle(void* slot) noexcept override;
+
+ private:
+  std::size_t slot_bytes_;
+  std::unique_ptr<std::byte[]> memory_;
+  std::mutex mutex_;
+  std::vector<void*> free_;  // guarded by mutex_; never above the capacity it was made with
+};
+
+}  // namespace fvd
