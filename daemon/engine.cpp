@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/pixels/unpack.hpp"
+#include "daemon/device_commands.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/recipe_book.hpp"
@@ -60,6 +61,7 @@ void Engine::shut_down() {
     shutting_down_ = true;
     transition_locked(ScanEvent::kHalt);
     job_stop_.request_stop();
+    task_stop_.request_stop();
   }
   thread_.request_stop();
   notify();
@@ -87,6 +89,7 @@ JobService::Started Engine::start(const JobRequest& request) {
     current_ = job;
     job_stop_ = std::stop_source();
     pending_ = PendingJob{job, recipe};
+    task_stop_.request_stop();  // measuring comes first
     started.job = std::move(job);
   }
   changed_.notify_all();
@@ -210,6 +213,26 @@ MachineStatus Engine::machine() const {
   return status;
 }
 
+std::shared_ptr<DeviceTask> Engine::submit(DeviceTask::Work work) {
+  std::shared_ptr<DeviceTask> task;
+  {
+    const std::lock_guard lock(mutex_);
+    require_ready_locked();
+    if (task_) throw Error(ErrorCode::kBusy, "the devices are busy with another command; try again when it is done");
+    task = task_ = std::make_shared<DeviceTask>(std::move(work));
+    task_stop_ = std::stop_source();
+  }
+  changed_.notify_all();
+  return task;
+}
+
+std::shared_ptr<DeviceTask> Engine::preview(const CameraSettings& settings) {
+  if (machine().state != ScanState::kExecuting) return submit(preview_work(settings));
+  auto picture = preview_.newest();
+  if (!picture) throw Error(ErrorCode::kBusy, "the job has shown no slice yet; ask again");
+  return std::make_shared<DeviceTask>(DeviceTask::Outcome{std::move(*picture), std::nullopt, {}});
+}
+
 void Engine::on_change(std::function<void()> listener) {
   const std::lock_guard lock(listener_mutex_);
   listener_ = std::move(listener);
@@ -235,7 +258,14 @@ void Engine::run(std::stop_token stop) {
     check_devices();
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, failure_ ? kDeviceRetryPeriod : kDeviceCheckPeriod,
-                      [this] { return pending_.has_value(); });
+                      [this] { return pending_.has_value() || task_ != nullptr; });
+    if (task_) {
+      const auto task = task_;
+      const auto task_stop = task_stop_.get_token();
+      lock.unlock();
+      run_task(*task, task_stop);
+      continue;
+    }
     if (!pending_) continue;
     const PendingJob job = std::move(*pending_);
     pending_.reset();
@@ -245,6 +275,24 @@ void Engine::run(std::stop_token stop) {
   }
   camera_.drop();
   stage_.drop();
+}
+
+void Engine::run_task(DeviceTask& task, std::stop_token stop) {
+  if (stop.stop_requested()) {
+    task.fail(ErrorCode::kAborted, "a job was started before the command could begin");
+  } else if (!camera_.ensure() || !stage_.ensure()) {
+    task.fail(ErrorCode::kNotReady, "a device is missing");
+  } else {
+    const std::stop_callback wake(stop, [this] { camera_.get().interrupt(); });
+    task.run({camera_.get(), stage_.get(), clock_, config_.paths.state_dir}, stop);
+    const auto outcome = task.outcome();
+    if (outcome && outcome->error) drop_failed_devices(*outcome->error);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    task_.reset();
+  }
+  notify();
 }
 
 void Engine::check_devices() {
@@ -294,6 +342,7 @@ MeasurementObserver Engine::observer_of_current() {
 void Engine::run_job(const PendingJob& job, std::stop_token stop) {
   spdlog::info("job {} starts: seq {}, part '{}', recipe {}", job.status.job_id, job.status.request.seq,
                job.status.request.part_id, job.recipe.id);
+  preview_.clear();
   ResultData result;
   result.software_version = kVersion;
   result.created = std::chrono::system_clock::now();
@@ -313,10 +362,11 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
     AtomicDirectory directory(config_.paths.state_dir / "results" / job.status.job_id);
     MeasurementObserver observer = observer_of_current();
     std::optional<SliceRecorder> recorder;
-    if (job.recipe.record_slices) {
-      recorder.emplace(directory);
-      observer.tap = [&recorder](const ImageView& pixels, double z_um) { recorder->add(pixels, z_um); };
-    }
+    if (job.recipe.record_slices) recorder.emplace(directory);
+    observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
+      if (recorder) recorder->add(pixels, z_um);
+      preview_.offer(pixels, z_um);
+    };
     measure(job.recipe,
             {camera_.get(), stage_.get(), clock_, pool_, static_cast<std::size_t>(config_.compute.queue_slices),
              config_.camera.time_offset},

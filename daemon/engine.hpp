@@ -18,6 +18,7 @@
 #include "daemon/device_slot.hpp"
 #include "daemon/job_service.hpp"
 #include "daemon/measurement.hpp"
+#include "daemon/preview_hub.hpp"
 #include "daemon/recipe.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/store/stage_history.hpp"
@@ -52,6 +53,8 @@ class Engine final : public JobService {
   [[nodiscard]] std::string recipe_json(const std::string& recipe_id) const override;
   [[nodiscard]] MachineStatus machine() const override;
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override;
+  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work) override;
+  std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override;
   void on_change(std::function<void()> listener) override;
 
   /// Refuses new jobs from now on and aborts the running one; returns at once.
@@ -72,6 +75,7 @@ class Engine final : public JobService {
 
   void run(std::stop_token stop);
   void check_devices();
+  void run_task(DeviceTask& task, std::stop_token stop);
   void run_job(const PendingJob& job, std::stop_token stop);
   void drop_failed_devices(ErrorCode code);
   [[nodiscard]] ErrorCode abort_reason() const;
@@ -98,6 +102,8 @@ class Engine final : public JobService {
   std::optional<DeviceFacts> facts_;
   std::optional<DeviceFailure> failure_;
   std::optional<PendingJob> pending_;
+  std::shared_ptr<DeviceTask> task_;  // waiting or running
+  std::stop_source task_stop_;
   std::optional<JobStatus> current_;
   std::string prepared_recipe_;
   std::stop_source job_stop_;
@@ -106,6 +112,7 @@ class Engine final : public JobService {
   std::mutex listener_mutex_;       // held while the listener runs: once on_change({}) returned, it is not called again
   std::function<void()> listener_;  // guarded by listener_mutex_
 
+  PreviewHub preview_;
   Reaper reaper_;
   DeviceSlot<Camera> camera_;  // engine thread only
   DeviceSlot<ZStage> stage_;   // engine thread only

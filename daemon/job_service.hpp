@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "core/metrology/step_history.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_state.hpp"
+#include "daemon/device_task.hpp"
 
 namespace fvd {
 
@@ -98,6 +100,12 @@ class JobService {
 
   /// What all scans so far say of the stage; nothing before the first.
   [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
+
+  /// Has the engine do something with the devices as soon as it can; a job that is started meanwhile ends it. Throws
+  /// Error kBusy while a job runs or another task waits, kNotReady without the devices, kShuttingDown.
+  virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work) = 0;
+  /// As submit(preview_work(settings)); while a job runs, the newest of its slices instead, scaled down.
+  virtual std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) = 0;
 
   /// Called after every change of a job or the machine, from the engine's threads; must return at once. Set before use.
   virtual void on_change(std::function<void()> listener) = 0;

@@ -21,6 +21,12 @@ std::string png_bytes(const cv::Mat& image) {
   return {bytes.begin(), bytes.end()};
 }
 
+std::string encode_image_png(const ImageView& image) {
+  const bool narrow = bytes_per_pixel(image.format) == 1;
+  return png_bytes(cv::Mat(image.height, image.width, narrow ? CV_8U : CV_16U, const_cast<std::byte*>(image.data),
+                           static_cast<std::size_t>(image.row_stride_bytes)));
+}
+
 std::string encode_mask_png(const HeightMap& map) {
   cv::Mat image(map.mask.height(), map.mask.width(), CV_8U);
   std::transform(map.mask.pixels().begin(), map.mask.pixels().end(), image.begin<std::uint8_t>(),

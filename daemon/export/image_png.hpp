@@ -1,6 +1,6 @@
 #pragma once
 
-/// Mask and texture of a height map as PNG files.
+/// Images, and mask and texture of a height map, as PNG files.
 
 #include <string>
 
@@ -14,5 +14,8 @@ namespace fvd {
 /// The all-in-focus image: 8 bit for Mono8, else 16 bit with the camera's grey levels unchanged. Throws Error
 /// kInternal.
 [[nodiscard]] std::string encode_texture_png(const HeightMap& map);
+
+/// A camera's image: 8 bit for Mono8, else 16 bit with the grey levels unchanged. Throws Error kInternal.
+[[nodiscard]] std::string encode_image_png(const ImageView& image);
 
 }  // namespace fvd

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "config/strict_json.hpp"
+#include "daemon/device_commands.hpp"
+#include "daemon/recipe_book.hpp"
 #include "daemon/rpc/json_shapes.hpp"
 #include "daemon/rpc/rpc_errors.hpp"
 #include "daemon/version.hpp"
@@ -17,6 +20,8 @@ using nlohmann::ordered_json;
 
 constexpr std::int64_t kLargestExactInteger = (std::int64_t{1} << 53U) - 1;
 constexpr std::int64_t kLongestWait_ms = 30000;
+/// A command to the devices that takes longer hangs.
+constexpr std::chrono::minutes kLongestTask{5};
 
 /// An error of the protocol or the parameters, as against one of the machine.
 struct ProtocolError {
@@ -88,6 +93,7 @@ Dispatcher::Dispatcher(JobService& service) : service_(service) {
   add_recipe_methods();
   add_job_methods();
   add_result_methods();
+  add_device_methods();
 }
 
 void Dispatcher::add(const std::string& name, Method method) { methods_.emplace(name, std::move(method)); }
@@ -193,9 +199,72 @@ void Dispatcher::add_result_methods() {
                      }});
 }
 
+void Dispatcher::add_task(const std::string& name, const std::string& summary, std::vector<Param> params,
+                          std::function<std::shared_ptr<DeviceTask>(const Json& params)> begin) {
+  add(name,
+      {summary, std::move(params), [this, name, begin = std::move(begin)](const Json& given) {
+         if (!may_wait_) {
+           throw ProtocolError{json_rpc::kInvalidRequest, name + " takes time: not in a batch, and only with an id"};
+         }
+         begun_ = begin(given);
+         return OrderedJson::object();
+       }});
+}
+
+void Dispatcher::add_device_methods() {
+  const std::vector<Param> light{
+      {"recipe", ParamType::kText, false, "whose camera settings to use; absent = the defaults"},
+      {"exposure_us", ParamType::kNumber, false, "in place of the recipe's"},
+      {"gain_db", ParamType::kNumber, false, "in place of the recipe's"}};
+  const auto settings = [this](const Json& params) {
+    CameraSettings camera;
+    if (params.contains("recipe")) {
+      const auto id = params["recipe"].get<std::string>();
+      camera = parse_recipe(service_.recipe_json(id), id).camera;
+    }
+    camera.trigger = TriggerMode::kSoftware;
+    if (params.contains("exposure_us")) camera.exposure_us = params["exposure_us"].get<double>();
+    if (params.contains("gain_db")) camera.gain_db = params["gain_db"].get<double>();
+    return camera;
+  };
+  add_task("camera.snap", "Takes one image, writes it as PNG, and tells its grey levels", light,
+           [this, settings](const Json& params) { return service_.submit(snap_work(settings(params))); });
+  add_task("camera.preview", "A picture for the eye: one taken now, or the newest slice of the job that runs", light,
+           [this, settings](const Json& params) { return service_.preview(settings(params)); });
+  auto exposure = light;
+  exposure.push_back(
+      {"target", ParamType::kNumber, false, "brightness of the brightest 0.1 %, 0.1..0.95; default 0.8"});
+  add_task("camera.suggest_exposure", "Seeks the exposure; leaves the camera as it was", exposure,
+           [this, settings](const Json& params) {
+             const double target = params.value("target", 0.8);
+             if (!(target >= 0.1 && target <= 0.95)) {
+               throw ProtocolError{json_rpc::kInvalidParams, "target must lie within 0.1..0.95"};
+             }
+             return service_.submit(exposure_work(settings(params), target));
+           });
+  auto range = light;
+  range.push_back({"from_um", ParamType::kNumber, true, "lower end of the range"});
+  range.push_back({"to_um", ParamType::kNumber, true, "upper end"});
+  range.push_back({"step_um", ParamType::kNumber, false, "of the coarse scan; default a tenth of the range"});
+  add_task("stage.autofocus", "Moves the stage to where the middle of the image is sharpest", range,
+           [this, settings](const Json& params) {
+             AutofocusPlan plan;
+             plan.from = Micrometers{params["from_um"].get<double>()};
+             plan.to = Micrometers{params["to_um"].get<double>()};
+             plan.step = Micrometers{params.value("step_um", (plan.to - plan.from).value / 10.0)};
+             return service_.submit(autofocus_work(settings(params), plan));
+           });
+  add_task("stage.home", "Finds the stage's reference; the stage MOVES", {},
+           [this](const Json&) { return service_.submit(home_work()); });
+  add_task(
+      "stage.move", "Moves the stage; its limits hold", {{"z_um", ParamType::kNumber, true, "where to"}},
+      [this](const Json& params) { return service_.submit(move_work(Micrometers{params["z_um"].get<double>()})); });
+}
+
 nlohmann::ordered_json Dispatcher::describe_methods() const {
   static const std::map<ParamType, OrderedJson> kSchemas{{ParamType::kText, {{"type", "string"}}},
                                                          {ParamType::kInteger, {{"type", "integer"}}},
+                                                         {ParamType::kNumber, {{"type", "number"}}},
                                                          {ParamType::kAny, OrderedJson::object()}};
   OrderedJson methods = OrderedJson::array();
   for (const auto& [name, method] : methods_) {
@@ -268,7 +337,13 @@ std::optional<ordered_json> Dispatcher::handle_request(const json& request, bool
         return std::nullopt;
       }
     } else {
+      may_wait_ = !in_batch && !notification;
+      begun_.reset();
       reply = run_method(name, params, id);
+      if (begun_ && !reply->contains("error")) {
+        handled.waiting = WaitingRequest{id, {}, false, kLongestTask, std::exchange(begun_, nullptr)};
+        return std::nullopt;
+      }
     }
   } catch (const ProtocolError& error) {
     reply = failure(id, error.code, error.message);
@@ -297,10 +372,13 @@ ordered_json Dispatcher::run_method(const std::string& name, const json& given, 
     const auto param = std::find_if(known.begin(), known.end(), [&key = key](const Param& p) { return p.name == key; });
     if (param == known.end()) throw ProtocolError{json_rpc::kInvalidParams, name + " has no parameter " + quoted(key)};
     const bool fits = param->type == ParamType::kAny || (param->type == ParamType::kText && value.is_string()) ||
-                      (param->type == ParamType::kInteger && value.is_number_integer());
+                      (param->type == ParamType::kInteger && value.is_number_integer()) ||
+                      (param->type == ParamType::kNumber && value.is_number());
     if (!fits) {
-      throw ProtocolError{json_rpc::kInvalidParams,
-                          quoted(key) + " must be " + (param->type == ParamType::kText ? "a text" : "an integer")};
+      throw ProtocolError{json_rpc::kInvalidParams, quoted(key) + " must be " +
+                                                        (param->type == ParamType::kText     ? "a text"
+                                                         : param->type == ParamType::kNumber ? "a number"
+                                                                                             : "an integer")};
     }
   }
   for (const Param& param : known) {
@@ -339,7 +417,18 @@ std::optional<WaitingRequest> Dispatcher::as_waiting(const std::string& name, co
   return WaitingRequest{id, key_from(params), until == "acquired", std::chrono::milliseconds(timeout_ms)};
 }
 
+std::optional<std::string> Dispatcher::resume_task(const WaitingRequest& waiting, bool timed_out) {
+  const auto outcome = waiting.task->outcome();
+  if (outcome && !outcome->error) return to_line(success(waiting.id, OrderedJson::parse(outcome->json)));
+  if (!outcome && !timed_out) return std::nullopt;
+  const ErrorCode code = outcome ? *outcome->error : ErrorCode::kTimeout;
+  const RpcError wire = rpc_error(code);
+  return to_line(failure(waiting.id, wire.code, outcome ? outcome->message : "the command is not done in 5 minutes",
+                         {{"error", error_name(code)}, {"retry", wire.retry}}));
+}
+
 std::optional<std::string> Dispatcher::resume(const WaitingRequest& waiting, bool timed_out) {
+  if (waiting.task) return resume_task(waiting, timed_out);
   try {
     const JobStatus job = service_.job(waiting.key);
     if (!timed_out && !has_come(job, waiting.until_acquired)) return std::nullopt;

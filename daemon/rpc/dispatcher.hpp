@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,12 +18,13 @@
 
 namespace fvd {
 
-/// A request whose answer has to wait for a job (job.wait).
+/// A request whose answer has to wait for a job (job.wait) or for the devices.
 struct WaitingRequest {
   nlohmann::json id;
   JobKey key;
   bool until_acquired = false;  ///< else until the job has ended
   std::chrono::milliseconds timeout{0};
+  std::shared_ptr<DeviceTask> task{};  ///< if given, it is waited for, and key means nothing
 };
 
 /// What became of a line.
@@ -54,7 +56,7 @@ class Dispatcher {
   using Json = nlohmann::json;
   using OrderedJson = nlohmann::ordered_json;
 
-  enum class ParamType { kText, kInteger, kAny };
+  enum class ParamType { kText, kInteger, kNumber, kAny };
   struct Param {
     std::string name;
     ParamType type = ParamType::kText;
@@ -72,6 +74,11 @@ class Dispatcher {
   void add_recipe_methods();
   void add_job_methods();
   void add_result_methods();
+  void add_device_methods();
+  /// A method whose answer comes when its task is done.
+  void add_task(const std::string& name, const std::string& summary, std::vector<Param> params,
+                std::function<std::shared_ptr<DeviceTask>(const Json& params)> begin);
+  [[nodiscard]] std::optional<std::string> resume_task(const WaitingRequest& waiting, bool timed_out);
   [[nodiscard]] OrderedJson describe_methods() const;
   [[nodiscard]] std::optional<OrderedJson> handle_request(const Json& request, bool in_batch, Handled& handled);
   [[nodiscard]] std::optional<OrderedJson> handle_batch(const Json& batch);
@@ -82,6 +89,8 @@ class Dispatcher {
 
   JobService& service_;
   std::map<std::string, Method> methods_;
+  bool may_wait_ = false;              // the request at hand can be answered later
+  std::shared_ptr<DeviceTask> begun_;  // by the method that runs
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 

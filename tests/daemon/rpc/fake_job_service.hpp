@@ -65,6 +65,20 @@ class FakeJobService final : public JobService {
     status.epoch = 17;
     return status;
   }
+  /// Done only when a test runs it.
+  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work) override {
+    if (refuse_tasks) throw Error(ErrorCode::kBusy, "a job is running");
+    task = std::make_shared<DeviceTask>(std::move(work));
+    return task;
+  }
+  std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override {
+    previewed = settings;
+    return submit([](const Devices&, std::stop_token) { return std::string(R"({"seq": 1})"); });
+  }
+  std::shared_ptr<DeviceTask> task;
+  std::optional<CameraSettings> previewed;
+  bool refuse_tasks = false;
+
   void on_change(std::function<void()> listener) override {
     const std::lock_guard lock(mutex_);
     listener_ = std::move(listener);
