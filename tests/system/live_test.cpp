@@ -41,7 +41,7 @@ TEST_F(AMicroscope, FindsTheFocusOfTheMiddleAndStopsThere) {
   EXPECT_GT(sharp["focus"].get<double>(), 1.2 * blurred["focus"].get<double>());
   EXPECT_NEAR(blurred["z_um"].get<double>(), 190.0, 0.6);
   EXPECT_EQ(ask("stage.move", {{"z_um", 5000}})["code"], 1112) << "limits hold";
-  EXPECT_EQ(ask("stage.autofocus", {{"from_um", 200}, {"to_um", 320}})["data"]["error"], "focus_range");
+  EXPECT_EQ(ask("stage.autofocus", {{"from_um", 200}, {"to_um", 320}})["data"]["error"], "focus_range_insufficient");
 }
 
 TEST_F(AMicroscope, ShowsSlicesOfAJobWithoutDisturbingIt) {
