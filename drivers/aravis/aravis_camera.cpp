@@ -6,6 +6,8 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include <arpa/inet.h>
 #include <arv.h>
@@ -79,6 +81,25 @@ void check(const CameraSettings& settings) {
       "below 0 are needed");
 }
 
+/// What a command came to, without sharing an exception between two threads.
+template <typename Value>
+struct Answer {
+  std::optional<Value> value;
+  ErrorCode code = ErrorCode::kInternal;
+  std::string message;
+};
+
+template <typename Command>
+auto answering(Command run) {
+  return [run = std::move(run)]() -> Answer<decltype(run())> {
+    try {
+      return {run(), {}, {}};
+    } catch (const Error& error) {
+      return {std::nullopt, error.code(), error.what()};
+    }
+  };
+}
+
 class AravisCamera final : public Camera {
  public:
   explicit AravisCamera(const CameraConfig& config) : config_(config) {
@@ -127,7 +148,10 @@ class AravisCamera final : public Camera {
     require_connected();
     while (trigger_.valid() && !acknowledged()) require_life();
     quiet_since_ = HostClock::now();
-    trigger_ = device_->post([this] { send_trigger(); });
+    trigger_ = device_->post(answering([this] {
+      send_trigger();
+      return true;
+    }));
     renew_clock_if_due();
     if (!acknowledged()) require_life();  // an acknowledge may get lost; the frame comes all the same
   }
@@ -299,29 +323,25 @@ class AravisCamera final : public Camera {
   template <typename Command>
   auto command(Command run) -> decltype(run()) {
     require_connected();
-    auto result = device_->post(std::move(run));
+    auto result = device_->post(answering(std::move(run)));
     while (result.wait_for(kAcknowledged) != std::future_status::ready) require_life();
-    try {
-      return result.get();
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::kCameraDisconnected) control_.set_lost();
-      throw;
-    }
+    auto answer = result.get();
+    if (answer.value) return std::move(*answer.value);
+    if (answer.code == ErrorCode::kCameraDisconnected) control_.set_lost();
+    throw Error(answer.code, answer.message);
   }
 
   /// True once the last trigger was answered.
   bool acknowledged() {
     if (trigger_.wait_for(kAcknowledged) != std::future_status::ready) return false;
-    try {
-      trigger_.get();
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::kCameraDisconnected) {
-        control_.set_lost();
-        throw;
-      }
-      // There, but busy: no frame comes, and the caller's deadline tells.
-      spdlog::warn("{}", error.what());
+    const auto answer = trigger_.get();
+    if (answer.value) return true;
+    if (answer.code == ErrorCode::kCameraDisconnected) {
+      control_.set_lost();
+      throw Error(answer.code, answer.message);
     }
+    // There, but busy: no frame comes, and the caller's deadline tells.
+    spdlog::warn("{}", answer.message);
     return true;
   }
 
@@ -584,7 +604,7 @@ class AravisCamera final : public Camera {
   std::uint64_t ids_skipped_ = 0;
   std::uint64_t underruns_ = 0;  // of slices
   std::atomic<bool> interrupted_{false};
-  std::future<void> trigger_;
+  std::future<Answer<bool>> trigger_;
   std::future<void> renewal_;
   std::unique_ptr<DeviceThread> device_ = std::make_unique<DeviceThread>();
 };

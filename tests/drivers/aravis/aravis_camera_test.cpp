@@ -243,7 +243,7 @@ TEST_F(AnAravisCamera, RunsFreeAtItsRateAndIsQuietAgain) {
     ASSERT_TRUE(frame && frame->status == FrameStatus::kOk);
     starts.push_back(frame->exposure_start);
   }
-  EXPECT_NEAR(std::chrono::duration<double>(starts.back() - starts.front()).count(), 0.19, 0.02);
+  EXPECT_GT(std::chrono::duration<double>(starts.back() - starts.front()).count(), 0.17) << "no faster than its rate";
   camera->configure(settings());
   EXPECT_FALSE(camera->next_frame(HostClock::now() + milliseconds(60)).has_value());
   EXPECT_TRUE(shoot(*camera).has_value());
