@@ -6,9 +6,10 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <utility>
+
+#include "core/large_array.hpp"
 
 namespace fvd {
 
@@ -33,13 +34,13 @@ template <typename T>
 class Plane {
  public:
   Plane() = default;
-  Plane(int width, int height, T fill = T{}) : Plane(unset(width, height)) { std::fill_n(data_.get(), size(), fill); }
-  /// Contents are whatever the memory held: for who writes all of it, from several threads.
+  Plane(int width, int height, T fill = T{}) : Plane(unset(width, height)) { std::fill_n(data_.data(), size(), fill); }
+  /// All zero, without a first pass over the memory: for who writes all of it, from several threads.
   [[nodiscard]] static Plane unset(int width, int height) {
     Plane plane;
     plane.width_ = width;
     plane.height_ = height;
-    plane.data_ = std::make_unique_for_overwrite<T[]>(plane.size());
+    plane.data_ = LargeArray<T>(plane.size());
     return plane;
   }
   Plane(Plane&& other) noexcept
@@ -58,21 +59,21 @@ class Plane {
 
   [[nodiscard]] Plane clone() const {
     Plane copy = unset(width_, height_);
-    std::copy_n(data_.get(), size(), copy.data_.get());
+    std::copy_n(data_.data(), size(), copy.data_.data());
     return copy;
   }
 
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] int height() const noexcept { return height_; }
   [[nodiscard]] bool empty() const noexcept { return size() == 0; }
-  [[nodiscard]] T* row(int y) { return data_.get() + static_cast<std::ptrdiff_t>(y) * width_; }
-  [[nodiscard]] const T* row(int y) const { return data_.get() + static_cast<std::ptrdiff_t>(y) * width_; }
+  [[nodiscard]] T* row(int y) { return data_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
+  [[nodiscard]] const T* row(int y) const { return data_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
   [[nodiscard]] T& at(int x, int y) { return row(y)[x]; }
   [[nodiscard]] const T& at(int x, int y) const { return row(y)[x]; }
-  [[nodiscard]] std::span<T> pixels() { return {data_.get(), size()}; }
-  [[nodiscard]] std::span<const T> pixels() const { return {data_.get(), size()}; }
-  [[nodiscard]] PlaneView<T> view() { return {data_.get(), width_, height_, width_}; }
-  [[nodiscard]] PlaneView<const T> view() const { return {data_.get(), width_, height_, width_}; }
+  [[nodiscard]] std::span<T> pixels() { return {data_.data(), size()}; }
+  [[nodiscard]] std::span<const T> pixels() const { return {data_.data(), size()}; }
+  [[nodiscard]] PlaneView<T> view() { return {data_.data(), width_, height_, width_}; }
+  [[nodiscard]] PlaneView<const T> view() const { return {data_.data(), width_, height_, width_}; }
 
  private:
   [[nodiscard]] std::size_t size() const noexcept {
@@ -81,7 +82,7 @@ class Plane {
 
   int width_ = 0;
   int height_ = 0;
-  std::unique_ptr<T[]> data_;
+  LargeArray<T> data_;
 };
 
 /// GenICam PFNC names of the formats fvd measures with. More than 8 bits means 16-bit little-endian, LSB aligned.

@@ -33,9 +33,14 @@ std::size_t PeakAccumulator<Texture>::memory_bytes(int width, int height, bool b
 }
 
 template <typename Texture>
+void PeakAccumulator<Texture>::touch_rows(int first, int end) noexcept {
+  std::fill(storage_.data() + static_cast<std::size_t>(first) * blocks_per_row_,
+            storage_.data() + static_cast<std::size_t>(end) * blocks_per_row_, Block{});
+}
+
+template <typename Texture>
 void PeakAccumulator<Texture>::copy_row(const PeakAccumulator& from, int y) noexcept {
-  const auto first = from.storage_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * blocks_per_row_);
-  std::copy_n(first, blocks_per_row_, storage_.begin());
+  std::copy_n(from.storage_.data() + static_cast<std::size_t>(y) * blocks_per_row_, blocks_per_row_, storage_.data());
 }
 
 template <typename Texture>

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/focus/focus_kernels.hpp"
+#include "core/large_array.hpp"
 
 namespace fvd {
 
@@ -35,6 +35,8 @@ class PeakAccumulator {
   PeakAccumulator(int width, int height, bool binned);
 
   [[nodiscard]] StateRow<Texture> row(int y) noexcept;
+  /// Writes rows first to end - 1: the memory is there when the first slice comes, and near to the thread that calls.
+  void touch_rows(int first, int end) noexcept;
   /// Row 0 becomes a copy of row y of another accumulator of the same width and kind.
   void copy_row(const PeakAccumulator& from, int y) noexcept;
   [[nodiscard]] std::size_t memory_bytes() const noexcept { return storage_.size() * sizeof(Block); }
@@ -49,7 +51,7 @@ class PeakAccumulator {
   std::size_t padded_width_;
   std::size_t blocks_per_row_;
   bool binned_;
-  std::vector<Block> storage_;
+  LargeArray<Block> storage_;
 };
 
 /// By how many bits the codes of a bin's slices are shifted so that their sum fits 16 bits: 0 for 1 slice, 6 for 64.

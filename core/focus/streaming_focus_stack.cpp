@@ -27,15 +27,17 @@ namespace {
 template <typename Pixel>
 class TypedStack {
  public:
-  TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, int bands, bool colour)
+  TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool, bool colour)
       : height_(height),
         peaks_(width, height, settings.bin_slices > 1),
         colour_(colour ? width : 0, colour ? height : 0, settings.bin_slices),
         settings_(settings) {
+    const int bands = pool.threads();
     for (int band = 0; band < bands; ++band) {
       auto& lanes = bands_.emplace_back(SliceBinner<Pixel>(width, settings.bin_slices));
       for (int k = 0; k < StreamingFocusStack::kMaxBatch; ++k) lanes.scanners.emplace_back(width, settings, format);
     }
+    pool.run(bands, [&](int band) { peaks_.touch_rows(height * band / bands, height * (band + 1) / bands); });
   }
 
   void push(std::span<const ZSlice> slices, int index, WorkerPool& pool) {
@@ -129,9 +131,10 @@ constexpr std::size_t kMapBytesPerPixel =
 struct StreamingFocusStack::Impl {
   using Typed = std::variant<TypedStack<std::uint8_t>, TypedStack<std::uint16_t>>;
 
-  static Typed make(int width, int height, PixelFormat format, const FocusSettings& settings, int bands, bool colour) {
-    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, format, settings, bands, colour);
-    return TypedStack<std::uint16_t>(width, height, format, settings, bands, colour);
+  static Typed make(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool,
+                    bool colour) {
+    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, format, settings, pool, colour);
+    return TypedStack<std::uint16_t>(width, height, format, settings, pool, colour);
   }
 
   Impl(int w, int h, PixelFormat f, const FocusSettings& s, WorkerPool& p, bool colour)
@@ -140,7 +143,7 @@ struct StreamingFocusStack::Impl {
         format(f),
         settings(s),
         pool(&p),
-        stack(make(w, h, f, s, p.threads(), colour)),
+        stack(make(w, h, f, s, p, colour)),
         heights(s.bin_slices, kMaxSlices),
         noise(w, h) {}
 

@@ -67,7 +67,7 @@ void push_slices(StreamingFocusStack& focus, WorkerPool& pool, const RecordedSta
     const int end = std::min(first + StreamingFocusStack::kMaxBatch, stack.slices());
     batch.clear();
     images.resize(static_cast<std::size_t>(end - first));
-    const auto read = [&](int i) { images[static_cast<std::size_t>(i)] = stack.read(first + i); };
+    const auto read = [&](int i) { stack.read(first + i, images[static_cast<std::size_t>(i)]); };
     pool.run(end - first, std::ref(read));  // decoding takes as long as computing
     for (int index = first; index < end; ++index) {
       const double z = z_um[static_cast<std::size_t>(index)];
@@ -92,18 +92,13 @@ void compute_maps(const StreamingFocusStack& focus, const ProcessOptions& option
   }
 }
 
-}  // namespace
-
-ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice) {
-  const auto start = SteadyClock::now();
-  check_options(options);
-  const RecordedStack stack(options.source);
+/// From the slices to the maps. The memory of curves and slices is free again when the result is written.
+void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyClock::time_point start,
+             const std::function<void(int, int)>& on_slice, ResultData& data) {
   const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
   StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), options.focus, pool, stack.colour());
-  ResultData data;
-  describe(data, options, stack);
   data.state_bytes_per_pixel = focus.state_bytes_per_pixel();
   data.times.prepare_ms = milliseconds_since(start);
 
@@ -114,8 +109,18 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   const auto finish_start = SteadyClock::now();
   compute_maps(focus, options, data);
   data.times.finish_ms = milliseconds_since(finish_start);
-  data.step_summary = summarize_steps(data.steps);
+}
 
+}  // namespace
+
+ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice) {
+  const auto start = SteadyClock::now();
+  check_options(options);
+  const RecordedStack stack(options.source);
+  ResultData data;
+  describe(data, options, stack);
+  measure(options, stack, start, on_slice, data);
+  data.step_summary = summarize_steps(data.steps);
   const HeightSummary summary = write_result(options.out, data);
   return {stack.list().description, stack.slices(), stack.width(), stack.height(), data.state_bytes_per_pixel, summary};
 }

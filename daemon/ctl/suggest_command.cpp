@@ -10,7 +10,8 @@
 namespace fvd::ctl {
 
 int run_suggest(const std::string& image, const Terminal& terminal) {
-  const SliceImage slice = read_slice({image, std::nullopt});
+  SliceImage slice;
+  read_slice({image, std::nullopt}, slice);
   const FocusSuggestion suggestion = suggest_focus(slice.view());
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << "\"focus\": { \"distance_px\": " << suggestion.distance_px

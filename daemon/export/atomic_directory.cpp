@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "daemon/export/durable_file.hpp"
 #include "daemon/export/storage_error.hpp"
 
 namespace fvd {
@@ -20,6 +19,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kTemporarySuffix = ".tmp";
+
+/// Open files on their way to the disk. While one waits for it the next is encoded; a few are enough to keep it busy.
+constexpr std::size_t kMaxUnsynced = 8;
 
 fs::path checked_final_dir(const fs::path& given) {
   fs::path path = fs::absolute(given).lexically_normal();
@@ -75,11 +77,18 @@ void AtomicDirectory::add_file(const fs::path& name, std::string_view bytes) {
     }
     folders_.push_back(folder);
   }
-  write_new_file(temporary_ / name, bytes);
+  unsynced_.emplace_back(temporary_ / name, bytes);
+  if (unsynced_.size() > kMaxUnsynced) finish_oldest();
   files_.push_back({name.string(), bytes.size()});
 }
 
+void AtomicDirectory::finish_oldest() {
+  unsynced_.front().finish();
+  unsynced_.pop_front();
+}
+
 void AtomicDirectory::commit() {
+  while (!unsynced_.empty()) finish_oldest();
   for (const auto& folder : folders_) sync_directory(temporary_ / folder);
   sync_directory(temporary_);
   rename_to_new(temporary_, final_dir_);

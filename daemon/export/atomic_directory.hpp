@@ -3,10 +3,13 @@
 /// A directory that appears whole or not at all.
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "daemon/export/durable_file.hpp"
 
 namespace fvd {
 
@@ -26,8 +29,8 @@ class AtomicDirectory {
   AtomicDirectory(const AtomicDirectory&) = delete;
   AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
-  /// Writes one new file and brings it to the disk. name: "file" or "folder/file"; the folder is made on first use.
-  /// Throws Error kStorageFull, kStorageWrite, kBadInput for any other name.
+  /// Writes one new file; it is brought to the disk by commit() at the latest. name: "file" or "folder/file"; the
+  /// folder is made on first use. Throws Error kStorageFull, kStorageWrite, kBadInput for any other name.
   void add_file(const std::filesystem::path& name, std::string_view bytes);
 
   /// Files added so far, in that order.
@@ -35,15 +38,18 @@ class AtomicDirectory {
 
   [[nodiscard]] const std::filesystem::path& final_dir() const noexcept { return final_dir_; }
 
-  /// Brings the directory to the disk under its final name. Nothing may be added after it. On an error nothing is left.
-  /// Throws Error kStorageWrite, also if final_dir has come into being meanwhile.
+  /// Brings the files and the directory to the disk under its final name. Nothing may be added after it. On an error
+  /// nothing is left. Throws Error kStorageFull, kStorageWrite, also if final_dir has come into being meanwhile.
   void commit();
 
  private:
+  void finish_oldest();
+
   std::filesystem::path final_dir_;
   std::filesystem::path temporary_;  // empty once committed
   std::vector<std::filesystem::path> folders_;
   std::vector<File> files_;
+  std::deque<UnsyncedFile> unsynced_;
 };
 
 /// Deletes the temporary directories that a killed process left in `parent`; returns how many.

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "daemon/export/storage_error.hpp"
-#include "daemon/unique_fd.hpp"
 
 namespace fvd {
 
@@ -21,19 +20,31 @@ void write_all(int fd, std::string_view bytes, const std::filesystem::path& path
   }
 }
 
-void write_new_file(const std::filesystem::path& path, std::string_view bytes) {
-  UniqueFd file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
-  if (!file.valid()) throw storage_error(errno, "create", path);
+UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, std::string_view bytes)
+    : path_(path), file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644)) {
+  if (!file_.valid()) throw storage_error(errno, "create", path_);
   try {
-    write_all(file.get(), bytes, path);
-    // After a failed fsync the state of the cached pages is unknown: report, never retry.
-    if (::fsync(file.get()) != 0) throw storage_error(errno, "bring to disk", path);
-    if (::close(file.release()) != 0) throw storage_error(errno, "close", path);
+    write_all(file_.get(), bytes, path_);
   } catch (...) {
-    ::unlink(path.c_str());
+    ::unlink(path_.c_str());
+    throw;
+  }
+  // Only a head start: finish() sees every error, and a file system without it loses nothing but time.
+  ::sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE);
+}
+
+void UnsyncedFile::finish() {
+  try {
+    // After a failed fsync the state of the cached pages is unknown: report, never retry.
+    if (::fsync(file_.get()) != 0) throw storage_error(errno, "bring to disk", path_);
+    if (::close(file_.release()) != 0) throw storage_error(errno, "close", path_);
+  } catch (...) {
+    ::unlink(path_.c_str());
     throw;
   }
 }
+
+void write_new_file(const std::filesystem::path& path, std::string_view bytes) { UnsyncedFile(path, bytes).finish(); }
 
 void sync_directory(const std::filesystem::path& directory) {
   const UniqueFd fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

@@ -1,6 +1,7 @@
 #include "daemon/export/height_summary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -15,28 +16,38 @@ namespace {
 
 double um(float metres) { return static_cast<double>(metres) / kMetresPerMicrometer; }
 
-/// The value below which the fraction of the others lies (nearest rank). Reorders.
-float quantile(std::vector<float>& values, double fraction) {
-  const auto rank = static_cast<std::ptrdiff_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
+using Values = std::vector<float>;
+
+/// The value of this rank in the part of values from first to end. Reorders that part.
+float ranked(Values& values, std::size_t first, std::size_t rank, std::size_t end) {
+  const auto at = [&values](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(first), at(rank), at(end));
+  return values[rank];
 }
 
-double median_um(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return um(*middle);
-  return (um(*std::max_element(values.begin(), middle)) + um(*middle)) / 2;
+/// Reorders: below the middle come the smaller ones.
+double median_um(Values& values) {
+  const std::size_t middle = values.size() / 2;
+  const float upper = ranked(values, 0, middle, values.size());
+  if (values.size() % 2 == 1) return um(upper);
+  return (um(*std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle))) + um(upper)) / 2;
 }
 
-void count_reasons(std::uint8_t mask, HoleCounts& holes) {
-  if ((mask & mask_reason::kLowProminence) != 0) ++holes.low_prominence;
-  if ((mask & mask_reason::kFirstSlice) != 0) ++holes.first_slice;
-  if ((mask & mask_reason::kLastSlice) != 0) ++holes.last_slice;
-  if ((mask & mask_reason::kNotBracketed) != 0) ++holes.not_bracketed;
-  if ((mask & mask_reason::kSaturated) != 0) ++holes.saturated;
-  if ((mask & mask_reason::kInsignificant) != 0) ++holes.insignificant;
-  if ((mask & mask_reason::kEdgeBleeding) != 0) ++holes.edge_bleeding;
+/// The value below which the fraction of the others lies (nearest rank), where median_um() has been before.
+float quantile(Values& values, double fraction) {
+  const auto rank = static_cast<std::size_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
+  const std::size_t middle = values.size() / 2;
+  return rank < middle ? ranked(values, 0, rank, middle) : ranked(values, middle, rank, values.size());
+}
+
+void count_reasons(std::uint8_t mask, std::size_t points, HoleCounts& holes) {
+  if ((mask & mask_reason::kLowProminence) != 0) holes.low_prominence += points;
+  if ((mask & mask_reason::kFirstSlice) != 0) holes.first_slice += points;
+  if ((mask & mask_reason::kLastSlice) != 0) holes.last_slice += points;
+  if ((mask & mask_reason::kNotBracketed) != 0) holes.not_bracketed += points;
+  if ((mask & mask_reason::kSaturated) != 0) holes.saturated += points;
+  if ((mask & mask_reason::kInsignificant) != 0) holes.insignificant += points;
+  if ((mask & mask_reason::kEdgeBleeding) != 0) holes.edge_bleeding += points;
 }
 
 }  // namespace
@@ -44,8 +55,12 @@ void count_reasons(std::uint8_t mask, HoleCounts& holes) {
 HeightSummary summarize_heights(const HeightMap& map) {
   HeightSummary summary;
   summary.points = map.mask.pixels().size();
-  for (const std::uint8_t mask : map.mask.pixels()) count_reasons(mask, summary.holes);
-  std::vector<float> valid;
+  std::array<std::size_t, 256> points_of{};
+  for (const std::uint8_t mask : map.mask.pixels()) ++points_of[mask];
+  for (std::size_t mask = 0; mask < points_of.size(); ++mask) {
+    count_reasons(static_cast<std::uint8_t>(mask), points_of[mask], summary.holes);
+  }
+  Values valid;
   valid.reserve(summary.points);
   std::copy_if(map.height_m.pixels().begin(), map.height_m.pixels().end(), std::back_inserter(valid),
                [](float height) { return std::isfinite(height); });
@@ -54,8 +69,8 @@ HeightSummary summarize_heights(const HeightMap& map) {
   HeightValues values;
   values.min_um = um(*std::min_element(valid.begin(), valid.end()));
   values.max_um = um(*std::max_element(valid.begin(), valid.end()));
-  values.mean_um = std::accumulate(valid.begin(), valid.end(), 0.0, [](double sum, float z) { return sum + um(z); }) /
-                   static_cast<double>(valid.size());
+  values.mean_um =
+      std::accumulate(valid.begin(), valid.end(), 0.0) / static_cast<double>(valid.size()) / kMetresPerMicrometer;
   values.median_um = median_um(valid);
   values.low_um = um(quantile(valid, 0.005));
   values.high_um = um(quantile(valid, 0.995));

@@ -1,11 +1,12 @@
 #include "daemon/export/height_tiff.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstring>
 #include <memory>
-#include <sstream>
+#include <string>
 
 #include <tiffio.h>
-#include <tiffio.hxx>
 
 #include "core/error.hpp"
 
@@ -13,11 +14,48 @@ namespace fvd {
 
 namespace {
 
+/// A file in memory that libtiff writes to.
+struct MemoryFile {
+  std::string bytes;
+  std::size_t position = 0;
+};
+
+MemoryFile& memory_file(thandle_t handle) { return *static_cast<MemoryFile*>(handle); }
+
+tmsize_t read_bytes(thandle_t handle, void* to, tmsize_t size) {
+  MemoryFile& file = memory_file(handle);
+  const std::size_t there = file.bytes.size() - std::min(file.position, file.bytes.size());
+  const std::size_t count = std::min(static_cast<std::size_t>(size), there);
+  std::memcpy(to, file.bytes.data() + file.position, count);
+  file.position += count;
+  return static_cast<tmsize_t>(count);
+}
+
+tmsize_t write_bytes(thandle_t handle, void* from, tmsize_t size) {
+  MemoryFile& file = memory_file(handle);
+  const auto count = static_cast<std::size_t>(size);
+  if (file.position + count > file.bytes.size()) file.bytes.resize(file.position + count);
+  std::memcpy(file.bytes.data() + file.position, from, count);
+  file.position += count;
+  return size;
+}
+
+toff_t seek(thandle_t handle, toff_t offset, int from) {
+  MemoryFile& file = memory_file(handle);
+  const toff_t base = from == SEEK_CUR ? file.position : from == SEEK_END ? file.bytes.size() : 0;
+  file.position = static_cast<std::size_t>(base + offset);
+  return file.position;
+}
+
+int close_nothing(thandle_t /*handle*/) { return 0; }
+toff_t file_size(thandle_t handle) { return memory_file(handle).bytes.size(); }
+
 struct TiffCloser {
   void operator()(TIFF* tiff) const noexcept { TIFFClose(tiff); }
 };
 
 constexpr double kMicrometresPerCentimetre = 1e4;
+constexpr std::size_t kHeaderRoom = std::size_t{64} << 10;  // tags and the places of the strips
 
 void set_tags(TIFF* tiff, const Plane<float>& height_m, const TiffTags& tags) {
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(height_m.width()));
@@ -42,8 +80,10 @@ void set_tags(TIFF* tiff, const Plane<float>& height_m, const TiffTags& tags) {
 }  // namespace
 
 std::string encode_height_tiff(const Plane<float>& height_m, const TiffTags& tags) {
-  std::ostringstream bytes;
-  const std::unique_ptr<TIFF, TiffCloser> tiff(TIFFStreamOpen("height map", &bytes));
+  MemoryFile file;
+  file.bytes.reserve(height_m.pixels().size_bytes() + kHeaderRoom);
+  const std::unique_ptr<TIFF, TiffCloser> tiff(TIFFClientOpen("height map", "wm", &file, read_bytes, write_bytes, seek,
+                                                              close_nothing, file_size, nullptr, nullptr));
   if (!tiff) throw Error(ErrorCode::kInternal, "libtiff cannot write to memory");
   set_tags(tiff.get(), height_m, tags);
   Plane<float> row(height_m.width(), 1);  // libtiff wants a row it may change
@@ -54,7 +94,7 @@ std::string encode_height_tiff(const Plane<float>& height_m, const TiffTags& tag
     }
   }
   if (TIFFFlush(tiff.get()) != 1) throw Error(ErrorCode::kInternal, "libtiff could not finish the height map");
-  return std::move(bytes).str();
+  return std::move(file.bytes);
 }
 
 }  // namespace fvd

@@ -1,25 +1,12 @@
 #include "daemon/export/image_png.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
-#include "core/error.hpp"
 #include "daemon/export/png_bytes.hpp"
 
 namespace fvd {
-
-std::string png_bytes(const cv::Mat& image) {
-  std::vector<unsigned char> bytes;
-  try {
-    if (!cv::imencode(".png", image, bytes)) throw Error(ErrorCode::kInternal, "OpenCV could not encode a PNG");
-  } catch (const cv::Exception& failure) {
-    throw Error(ErrorCode::kInternal, std::string("OpenCV could not encode a PNG: ") + failure.what());
-  }
-  return {bytes.begin(), bytes.end()};
-}
 
 std::string encode_image_png(const ImageView& image) {
   const bool narrow = bytes_per_pixel(image.format) == 1;

@@ -69,12 +69,15 @@ DrawnMap resample(const HeightMap& map) {
   const int height = map.height_m.height();
   cv::Mat weighted(height, width, CV_32F);
   cv::Mat valid(height, width, CV_32F);
+  constexpr auto kMicrometresPerMetre = static_cast<float>(1.0 / kMetresPerMicrometer);
   for (int y = 0; y < height; ++y) {
+    const float* heights = map.height_m.row(y);
+    auto* weighted_row = weighted.ptr<float>(y);
+    auto* valid_row = valid.ptr<float>(y);
     for (int x = 0; x < width; ++x) {
-      const float z = map.height_m.at(x, y);
-      const bool good = std::isfinite(z);
-      valid.at<float>(y, x) = good ? 1.0F : 0.0F;
-      weighted.at<float>(y, x) = good ? static_cast<float>(static_cast<double>(z) / kMetresPerMicrometer) : 0.0F;
+      const bool good = std::isfinite(heights[x]);
+      valid_row[x] = good ? 1.0F : 0.0F;
+      weighted_row[x] = good ? heights[x] * kMicrometresPerMetre : 0.0F;
     }
   }
   const cv::Size size = drawn_size(width, height);

@@ -57,25 +57,20 @@ PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
   return text;
 }
 
-struct Images {
+struct Preview {
   HeightSummary summary;
-  std::string mask;
-  std::string texture;
-  std::string preview;
+  std::string png;
 };
 
 }  // namespace
 
 HeightSummary write_result(AtomicDirectory& directory, const ResultData& data) {
   const auto start = std::chrono::steady_clock::now();
-  // Compressing the images takes longer than all the rest; it runs beside it, on one thread.
-  auto encoding = std::async(std::launch::async, [&data] {
-    Images images;
-    images.summary = summarize_heights(data.map);
-    images.mask = encode_mask_png(data.map);
-    images.texture = encode_texture_png(data.map);
-    images.preview = encode_preview_png(data.map, images.summary, preview_text(data, images.summary));
-    return images;
+  // What takes longest runs beside the rest, on one thread.
+  auto drawing = std::async(std::launch::async, [&data] {
+    Preview preview{summarize_heights(data.map), {}};
+    preview.png = encode_preview_png(data.map, preview.summary, preview_text(data, preview.summary));
+    return preview;
   });
   directory.add_file("height.tiff", encode_height_tiff(data.map.height_m, tiff_tags(data, data.peak)));
   for (const auto& [method, map] : data.extra_maps) {
@@ -84,14 +79,14 @@ HeightSummary write_result(AtomicDirectory& directory, const ResultData& data) {
   }
   directory.add_file("sigma.tiff", encode_height_tiff(data.map.sigma_m, tiff_tags(data, data.peak, "standard error")));
   directory.add_file("height.gsf", encode_gsf(data.map.height_m, gsf_header(data)));
-  const Images images = encoding.get();
-  directory.add_file("mask.png", images.mask);
-  directory.add_file("texture.png", images.texture);
-  directory.add_file("preview.png", images.preview);
+  directory.add_file("mask.png", encode_mask_png(data.map));
+  directory.add_file("texture.png", encode_texture_png(data.map));
+  const Preview preview = drawing.get();
+  directory.add_file("preview.png", preview.png);
   directory.add_file("step_log.csv", step_csv(data.steps));
   const double write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  directory.add_file("result.json", result_json_text(data, images.summary, WriteReport{directory.files(), write_ms}));
-  return images.summary;
+  directory.add_file("result.json", result_json_text(data, preview.summary, WriteReport{directory.files(), write_ms}));
+  return preview.summary;
 }
 
 HeightSummary write_result(const std::filesystem::path& final_dir, const ResultData& data) {

@@ -16,23 +16,23 @@ std::string shape_text(int width, int height, PixelFormat format) {
 }  // namespace
 
 RecordedStack::RecordedStack(const std::filesystem::path& source) : list_(find_slices(source)) {
-  const SliceImage first = read_slice(list_.slices.front());
+  SliceImage first;
+  read_slice(list_.slices.front(), first);
   width_ = first.width;
   height_ = first.height;
   format_ = first.format;
   colour_ = !first.colour.empty();
 }
 
-SliceImage RecordedStack::read(int index) const {
+void RecordedStack::read(int index, SliceImage& slice) const {
   const SliceLocation& location = list_.slices.at(static_cast<std::size_t>(index));
-  SliceImage slice = read_slice(location);
+  read_slice(location, slice);
   if (slice.width != width_ || slice.height != height_ || slice.format != format_) {
     throw Error(ErrorCode::kBadInput, "slice " + location.name() + " in " + location.file.parent_path().string() +
                                           " has " + shape_text(slice.width, slice.height, slice.format) +
                                           ", the first slice " + list_.slices.front().name() + " has " +
                                           shape_text(width_, height_, format_) + ": all must be equal");
   }
-  return slice;
 }
 
 }  // namespace fvd

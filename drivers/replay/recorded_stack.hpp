@@ -26,9 +26,15 @@ class RecordedStack {
   /// Whether the first slice has colours; others are not held to it.
   [[nodiscard]] bool colour() const noexcept { return colour_; }
 
-  /// Decodes one slice, 0 <= index < slices(). Throws Error kBadInput naming the file: see read_slice(); also for
-  /// another size or format than the first slice's.
-  [[nodiscard]] SliceImage read(int index) const;
+  /// Decodes one slice, 0 <= index < slices(), into slice, whose memory it uses again. Throws Error kBadInput naming
+  /// the file: see read_slice(); also for another size or format than the first slice's.
+  void read(int index, SliceImage& slice) const;
+
+  [[nodiscard]] SliceImage read(int index) const {
+    SliceImage slice;
+    read(index, slice);
+    return slice;
+  }
 
  private:
   SliceList list_;

@@ -88,7 +88,7 @@ class ReplayCamera final : public Camera {
     Frame frame;
     frame.lease = FrameLease(slot, FrameSlotDeleter{pool_.get()});
     frame.exposure_start = HostClock::now();
-    *slot = stack_.read(bench_->slice.load());
+    stack_.read(bench_->slice.load(), *slot);
     frame.status = FrameStatus::kOk;
     frame.image = slot->view();
     frame.id = ++last_id_;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "drivers/replay/slice_image.hpp"
+#include "drivers/replay/image_file.hpp"
 
 namespace fvd {
 
@@ -94,7 +94,7 @@ std::vector<Candidate> candidates_in(const fs::path& folder) {
     if (!entry.is_regular_file() || file.filename().string().starts_with('.') || !is_image(file)) continue;
     if (const auto name = split_name(file)) families[{name->before, name->after}].push_back({name->number, file});
     if (is_tiff(file)) {
-      if (const int count = count_pages(file); count > 1) candidates.push_back(pages(file, count));
+      if (const int count = count_tiff_pages(file); count > 1) candidates.push_back(pages(file, count));
     }
   }
   if (error) refuse("cannot read folder " + folder.string() + ": " + error.message());
@@ -163,7 +163,7 @@ SliceList find_slices(const fs::path& source) {
   const auto status = fs::status(source, error);
   if (!fs::exists(status)) refuse("there is no folder " + source.string());
   if (fs::is_regular_file(status)) {
-    const int count = is_tiff(source) ? count_pages(source) : 0;
+    const int count = is_tiff(source) ? count_tiff_pages(source) : 0;
     if (count < 2) refuse(source.string() + " is a file but not a TIFF with several pages" + kExpected);
     return list(pages(source, count));
   }

@@ -24,13 +24,11 @@ struct SliceImage {
   }
 };
 
-/// Reads 8 or 16 bit, grey or colour. Sharpness is that of the luminance: colour becomes Y = 0.299 R + 0.587 G + 0.114
-/// B (ITU-R BT.601), an alpha channel is ignored. 16-bit files are Mono16, except a PGM, whose largest grey level may
-/// say Mono10 or Mono12. Throws Error kBadInput, naming the file: unreadable, corrupt or truncated, another kind of
-/// pixel, a multi-page file where one slice was expected.
-[[nodiscard]] SliceImage read_slice(const SliceLocation& location);
-
-/// Pages of a TIFF file; 0 if it cannot be read.
-[[nodiscard]] int count_pages(const std::filesystem::path& tiff);
+/// Reads 8 or 16 bit, grey or colour, into slice, whose memory it uses again. Sharpness is that of the luminance:
+/// colour becomes Y = 0.299 R + 0.587 G + 0.114 B (ITU-R BT.601), an alpha channel is ignored. 16-bit files are Mono16,
+/// except a PGM, whose largest grey level may say Mono10 or Mono12. Throws Error kBadInput, naming the file:
+/// unreadable, corrupt or truncated, another kind of pixel, a multi-page file where one slice was expected; slice is
+/// not defined then.
+void read_slice(const SliceLocation& location, SliceImage& slice);
 
 }  // namespace fvd

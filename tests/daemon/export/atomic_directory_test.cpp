@@ -43,6 +43,16 @@ TEST(AtomicDirectory, IsHiddenUntilItIsCommitted) {
   EXPECT_EQ(test::read_text(scratch / "job/more/b.txt"), "two");
 }
 
+TEST(AtomicDirectory, HoldsMoreFilesThanMayBeOpenAtOnce) {
+  const ScratchDir scratch;
+  AtomicDirectory directory(scratch / "job");
+  for (int i = 0; i < 40; ++i) directory.add_file("slices/" + std::to_string(i), std::to_string(i));
+  EXPECT_LT(std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}), 30);
+  directory.commit();
+  for (int i = 0; i < 40; ++i)
+    EXPECT_EQ(test::read_text(scratch / "job/slices" / std::to_string(i)), std::to_string(i));
+}
+
 TEST(AtomicDirectory, LeavesNothingWithoutCommit) {
   const ScratchDir scratch;
   {

@@ -1,0 +1,59 @@
+#pragma once
+
+/// Decoding of the image files that slices are recorded in, as they are: no gamma, no scaling of grey levels.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+namespace fvd {
+
+/// The pixels of a file. Samples of 16 bit are in the machine's byte order.
+struct ImageFile {
+  int width = 0;
+  int height = 0;
+  int channels = 1;                ///< 1 grey, 3 blue, green, red; transparency is dropped
+  int bytes_per_sample = 1;        ///< 1 or 2
+  int max_level = 0;               ///< largest grey level that the file declares; 0: it declares none
+  std::vector<std::byte> samples;  ///< shape [height][width][channels], rows contiguous; memory is used again
+
+  /// Makes room for the samples. Throws ImageFileError where no camera makes such an image: below 1 or above 65 535
+  /// pixels a side, above 2^28 pixels.
+  void resize(std::int64_t new_width, std::int64_t new_height, int new_channels, int new_bytes_per_sample);
+
+  [[nodiscard]] std::size_t row_bytes() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels) *
+           static_cast<std::size_t>(bytes_per_sample);
+  }
+  [[nodiscard]] std::byte* row(int y) { return samples.data() + row_bytes() * static_cast<std::size_t>(y); }
+};
+
+/// Why a file could not be read, without its name.
+class ImageFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// All read into image, whose memory they use again, and throw ImageFileError: missing, truncated, damaged, of another
+// kind. What image holds after an error is not defined.
+
+/// Portable graymap, binary or in decimal numbers, 8 or 16 bit (netpbm's pgm(5), of 2013). Of several images in one
+/// file the first.
+void read_pgm(const std::filesystem::path& file, ImageFile& image);
+
+/// PNG of any depth and colour type (ISO/IEC 15948:2004); below 8 bit and palettes become 8 bit.
+void read_png(const std::filesystem::path& file, ImageFile& image);
+
+/// JPEG, grey or colour. What libjpeg would fill up or guess is an error.
+void read_jpeg(const std::filesystem::path& file, ImageFile& image);
+
+/// One page of a TIFF (TIFF 6.0), 0-based: 8 or 16 bit unsigned grey or colour, strips or tiles; other encodings of 8
+/// bits and below (palette, YCbCr, bilevel) become 8-bit colour.
+void read_tiff(const std::filesystem::path& file, int page, ImageFile& image);
+
+/// Pages of a TIFF file; 0 if it cannot be read.
+[[nodiscard]] int count_tiff_pages(const std::filesystem::path& file);
+
+}  // namespace fvd
