@@ -84,11 +84,9 @@ struct FocusKernels {
                              std::uint16_t* scaled) noexcept;
   /// columns += entering - leaving; leaving = entering.
   void (*slide_u32)(std::uint32_t* columns, const std::uint32_t* entering, std::uint32_t* leaving, int width) noexcept;
-  /// out[x] = values[x] + .. + values[x + window - 1] for x = 0 .. width - window. scratch: shape [3][width].
-  void (*window_sums_u16)(const std::uint16_t* values, int window, int width, std::uint16_t* scratch,
-                          std::uint16_t* out) noexcept;
-  void (*window_sums_u32)(const std::uint32_t* values, int window, int width, std::uint32_t* scratch,
-                          std::uint32_t* out) noexcept;
+  /// out[x] = values[x] + .. + values[x + window - 1] for x = 0 .. width - window. window: 3 .. 63.
+  void (*window_sums_u16)(const std::uint16_t* values, int window, int width, std::uint16_t* out) noexcept;
+  void (*window_sums_u32)(const std::uint32_t* values, int window, int width, std::uint32_t* out) noexcept;
   /// out = round(gain * sqrt(sums)); sums < 2^31.
   void (*root_code)(const std::uint32_t* sums, float gain, int width, std::uint16_t* out) noexcept;
 

@@ -25,31 +25,39 @@ NoiseProbe::NoiseProbe(int width, int height)
       columns_(std::max(1, width / kTile_px)),
       rows_(std::max(1, height / kTile_px)),
       least_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
-             std::numeric_limits<double>::infinity()) {}
+             std::numeric_limits<double>::infinity()),
+      sums_(least_.size()) {}
 
 template <typename Pixel>
 void NoiseProbe::add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept {
   const int first = std::max(1, height_ * tile_row / rows_);
   const int end = std::min(height_ - 1, height_ * (tile_row + 1) / rows_);
-  for (int column = 0; column < columns_; ++column) {
-    const int left = std::max(0, width_ * column / columns_ - 1);
-    const int right = std::min(width_, width_ * (column + 1) / columns_ + 1);
-    std::uint64_t sum = 0;
-    std::uint64_t count = 0;
-    for (int y = first; y < end; y += kEveryRow) {
-      if (right - left < 3) break;
+  std::uint64_t* const sums = sums_.data() + static_cast<std::ptrdiff_t>(tile_row) * columns_;
+  std::fill_n(sums, columns_, std::uint64_t{0});
+  // Row by row, as the memory lies: the slice comes from far away.
+  int rows = 0;
+  for (int y = first; y < end; y += kEveryRow, ++rows) {
+    for (int column = 0; column < columns_; ++column) {
+      const int left = tile_left(column);
+      const int size = tile_right(column) - left;
+      if (size < 3) continue;
       if constexpr (sizeof(Pixel) == 1) {
-        sum += kernels_.noise_u8(slice.row(y - 1) + left, slice.row(y) + left, slice.row(y + 1) + left, right - left);
+        sums[column] += kernels_.noise_u8(slice.row(y - 1) + left, slice.row(y) + left, slice.row(y + 1) + left, size);
       } else {
-        sum += kernels_.noise_u16(slice.row(y - 1) + left, slice.row(y) + left, slice.row(y + 1) + left, right - left);
+        sums[column] += kernels_.noise_u16(slice.row(y - 1) + left, slice.row(y) + left, slice.row(y + 1) + left, size);
       }
-      count += static_cast<std::uint64_t>(right - left - 2);
     }
-    if (count == 0) continue;
+  }
+  for (int column = 0; column < columns_; ++column) {
+    const int values = rows * (tile_right(column) - tile_left(column) - 2);
+    if (values <= 0) continue;
     double& least = least_[static_cast<std::size_t>(tile_row * columns_ + column)];
-    least = std::min(least, static_cast<double>(sum) / static_cast<double>(count));
+    least = std::min(least, static_cast<double>(sums[column]) / static_cast<double>(values));
   }
 }
+
+int NoiseProbe::tile_left(int column) const noexcept { return std::max(0, width_ * column / columns_ - 1); }
+int NoiseProbe::tile_right(int column) const noexcept { return std::min(width_, width_ * (column + 1) / columns_ + 1); }
 
 void NoiseProbe::add(const ImageView& slice, WorkerPool& pool) noexcept {
   const auto look = [&](int tile_row) {

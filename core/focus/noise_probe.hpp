@@ -7,6 +7,7 @@
 /// smooth images; of white noise it makes sigma = sqrt(pi / 2) / 6 * mean |response|. Here the mean is taken over tiles
 /// of about 128 x 128 pixels, every sixteenth row of them, and each tile keeps its least.
 
+#include <cstdint>
 #include <vector>
 
 #include "core/focus/focus_kernels.hpp"
@@ -36,6 +37,8 @@ class NoiseProbe {
  private:
   template <typename Pixel>
   void add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept;
+  [[nodiscard]] int tile_left(int column) const noexcept;  // with the neighbours that the mask needs
+  [[nodiscard]] int tile_right(int column) const noexcept;
   [[nodiscard]] float sigma(int column, int tile_row) const noexcept;
   [[nodiscard]] std::vector<float> sigmas() const;
 
@@ -44,7 +47,8 @@ class NoiseProbe {
   int height_;
   int columns_;  // of tiles
   int rows_;
-  std::vector<double> least_;  // [rows][columns], mean |response|
+  std::vector<double> least_;        // [rows][columns], mean |response|
+  std::vector<std::uint64_t> sums_;  // [rows][columns], of the slice that is looked at
 };
 
 }  // namespace fvd

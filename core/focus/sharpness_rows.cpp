@@ -114,7 +114,7 @@ SharpnessRows<Pixel>::SharpnessRows(int width, const FocusSettings& settings, Pi
       narrow_(!code_.root),
       codes_(static_cast<std::size_t>(width)),
       saturated_columns_(static_cast<std::size_t>(width)),
-      saturated_counts_(4 * static_cast<std::size_t>(width)),
+      saturated_counts_(static_cast<std::size_t>(width)),
       saturated_(static_cast<std::size_t>(width)) {
   if (narrow_) {
     resize(narrow_columns_);
@@ -129,13 +129,12 @@ void SharpnessRows<Pixel>::resize(Columns<Sum>& columns) {
   const auto width = static_cast<std::size_t>(width_);
   columns.ring.resize(width * static_cast<std::size_t>(window_));
   for (auto* row : {&columns.fresh, &columns.sums, &columns.scaled, &columns.windows}) row->resize(width);
-  columns.scratch.resize(3 * width);
 }
 
 template <typename Pixel>
 std::size_t SharpnessRows<Pixel>::memory_bytes(int width, int window) {
   return static_cast<std::size_t>(width) *
-         ((static_cast<std::size_t>(window) + 7) * sizeof(std::uint32_t) + 6 * sizeof(std::uint16_t) + 1);
+         ((static_cast<std::size_t>(window) + 4) * sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t) + 1);
 }
 
 template <typename Pixel>
@@ -196,6 +195,16 @@ void SharpnessRows<Pixel>::for_ends(At at) noexcept {
   for (int x = std::max(left_end, width_ - distance_); x < width_; ++x) at(x);
 }
 
+/// Several slices are read row by row in turn; the processor's own prefetcher gives each of their rows up at its end.
+template <typename Pixel>
+void SharpnessRows<Pixel>::prefetch_row(int y) const noexcept {
+  if (y >= image_.height) return;
+  constexpr std::size_t kCacheLine = 64;
+  const auto* bytes = reinterpret_cast<const std::byte*>(image_.row(y));
+  const std::size_t size = sizeof(Pixel) * static_cast<std::size_t>(width_);
+  for (std::size_t i = 0; i < size; i += kCacheLine) __builtin_prefetch(bytes + i, 0, 2);
+}
+
 template <typename Pixel>
 void SharpnessRows<Pixel>::enter(Narrow& columns, int y) noexcept {
   if constexpr (sizeof(Pixel) == 1) {
@@ -204,6 +213,7 @@ void SharpnessRows<Pixel>::enter(Narrow& columns, int y) noexcept {
     const Pixel* above = image_.row(std::max(y - distance_, 0));
     const Pixel* row = image_.row(y);
     const Pixel* below = image_.row(std::min(y + distance_, image_.height - 1));
+    prefetch_row(y + 1 + distance_);
     kernels_.enter_laplacian_u8(above, row, below, width_, distance_, code_.shift, columns.sums.data(), slot,
                                 columns.scaled.data());
     for_ends([&](int x) {
@@ -295,7 +305,7 @@ template <typename Pixel>
 void SharpnessRows<Pixel>::emit_narrow() noexcept {
   Narrow& columns = narrow_columns_;
   if (width_ >= window_) {
-    kernels_.window_sums_u16(columns.scaled.data(), window_, width_, columns.scratch.data(), codes_.data() + radius_);
+    kernels_.window_sums_u16(columns.scaled.data(), window_, width_, codes_.data() + radius_);
   }
   sum_ends(columns.scaled.data(), width_, radius_, codes_.data());
 }
@@ -304,8 +314,7 @@ template <typename Pixel>
 void SharpnessRows<Pixel>::emit_wide() noexcept {
   Wide& columns = wide_columns_;
   if (width_ >= window_) {
-    kernels_.window_sums_u32(columns.sums.data(), window_, width_, columns.scratch.data(),
-                             columns.windows.data() + radius_);
+    kernels_.window_sums_u32(columns.sums.data(), window_, width_, columns.windows.data() + radius_);
   }
   sum_ends(columns.sums.data(), width_, radius_, columns.windows.data());
   kernels_.root_code(columns.windows.data(), root_gain(code_, gradient_shift<Pixel>(operator_)), width_, codes_.data());
@@ -319,9 +328,9 @@ void SharpnessRows<Pixel>::find_saturated() noexcept {
     return;
   }
   saturated_clear_ = false;
-  std::uint16_t* counts = saturated_counts_.data() + 3 * static_cast<std::ptrdiff_t>(width_);
+  std::uint16_t* counts = saturated_counts_.data();
   if (width_ >= window_) {
-    kernels_.window_sums_u16(saturated_columns_.data(), window_, width_, saturated_counts_.data(), counts + radius_);
+    kernels_.window_sums_u16(saturated_columns_.data(), window_, width_, counts + radius_);
   }
   sum_ends(saturated_columns_.data(), width_, radius_, counts);
   for (int x = 0; x < width_; ++x) saturated_[static_cast<std::size_t>(x)] = counts[x] > 0 ? 1 : 0;

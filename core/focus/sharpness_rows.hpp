@@ -66,7 +66,6 @@ class SharpnessRows {
     std::vector<Sum> fresh;    // [width], the row that enters
     std::vector<Sum> sums;     // [width], over the window's rows
     std::vector<Sum> scaled;   // [width], what is summed along the row
-    std::vector<Sum> scratch;  // [3][width]
     std::vector<Sum> windows;  // [width]
   };
   using Narrow = Columns<std::uint16_t>;
@@ -82,6 +81,7 @@ class SharpnessRows {
   void leave(Wide& columns, int y) noexcept;
   void enter(int y) noexcept;
   void leave(int y) noexcept;
+  void prefetch_row(int y) const noexcept;
   void compute_row(int y, std::uint32_t* out) noexcept;
   template <typename At>
   void for_ends(At at) noexcept;
@@ -109,7 +109,7 @@ class SharpnessRows {
   Wide wide_columns_;
   std::vector<std::uint16_t> codes_;
   std::vector<std::uint16_t> saturated_columns_;  // [width], saturated pixels in the window's rows, <= 63
-  std::vector<std::uint16_t> saturated_counts_;   // [4][width], scratch and sums over the window
+  std::vector<std::uint16_t> saturated_counts_;   // [width], over the window
   std::vector<std::uint8_t> saturated_;
   bool saturated_clear_ = true;
 };
