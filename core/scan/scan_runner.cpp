@@ -117,8 +117,11 @@ void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::functi
         step.measured = false;
         step.triggers = 1 + plan.frame_retries;
       } else {
-        record_exposure(step, *captured,
-                        deps_.stage.mean_position(captured->frame.exposure_start, captured->frame.exposure_end));
+        // The trigger came after the stage had settled; an exposure that seems to begin before is the clock map's
+        // error.
+        const Frame& frame = captured->frame;
+        const HostTime from = plan.line_trigger ? frame.exposure_start : std::max(frame.exposure_start, move.settled);
+        record_exposure(step, *captured, deps_.stage.mean_position(from, std::max(from, frame.exposure_end)));
         const double z_um = measured_z ? step.measured_um : step.quantised_um;
         hand_over({std::move(captured->frame), z_um}, index, stop);
       }

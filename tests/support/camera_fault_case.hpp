@@ -30,6 +30,9 @@ class CheckingSink final : public SliceSink {
     ++slices;
     if (!mark || std::abs(mark->z_um - taken.z_um) > tolerance_um || !exposures_.insert(mark->exposure_index).second) {
       ++wrong;
+      what << "slice " << slices - 1 << " of z " << taken.z_um << " um, frame " << taken.frame.id;
+      if (mark) what << ", was exposure " << mark->exposure_index << " at " << mark->z_um << " um";
+      what << "; ";
     }
     return true;
   }
@@ -37,6 +40,7 @@ class CheckingSink final : public SliceSink {
   double tolerance_um = 0.002;
   int slices = 0;
   int wrong = 0;
+  std::ostringstream what;  ///< of the wrong ones
 
  private:
   std::set<std::uint64_t> exposures_;
@@ -210,7 +214,7 @@ inline CameraFaultOutcome run_camera_fault_case(const CameraFaultCase& fault) {
     if (!report.frames.balanced() || report.frames.ok != static_cast<std::uint64_t>(sink.slices)) ++outcome.unbalanced;
     story << sink.slices << " slices, expected " << report.frames.expected << " ok " << report.frames.ok
           << " incomplete " << report.frames.incomplete << " missing " << report.frames.missing << " stale "
-          << report.frames.stale << " underrun " << report.frames.underrun << "; ";
+          << report.frames.stale << " underrun " << report.frames.underrun << "; " << sink.what.str();
     if (round == 1) break;
     struck = last_slice;
     if (outcome.end == ErrorCode::kCameraDisconnected) {
