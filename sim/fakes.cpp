@@ -98,8 +98,8 @@ Frame FakeCamera::lend(const Pending& pending) {
   frame.status = pending.status;
   frame.image = {PixelFormat::kMono8, width_, height_, width_, pixels.get()};
   frame.id = pending.id;
-  frame.exposure_start = pending.exposure_start;
-  frame.exposure_end = pending.exposure_start + milliseconds(5);
+  frame.exposure_start = pending.exposure_start + clock_error;
+  frame.exposure_end = frame.exposure_start + milliseconds(5);
   frame.lease = FrameLease(pixels.release(), FrameSlotDeleter{this});
   ++lent_;
   return frame;
@@ -136,7 +136,7 @@ MoveRecord FakeZStage::move_to(Micrometers target, const SettleCriterion& /*crit
   move.position = Micrometers{position_um_};
   move.started = clock_.now();
   clock_.advance_to(clock_.now() + milliseconds(50));
-  move.settled = clock_.now();
+  move.settled = settled = clock_.now();
   move.halted = move.settled;
   move.polls = 3;
   return move;
@@ -150,7 +150,8 @@ PositionMean FakeZStage::position_at(HostTime /*at*/, std::chrono::microseconds 
   return {Micrometers{position_um_}, Micrometers{0.0}, 3};
 }
 
-PositionMean FakeZStage::mean_position(HostTime /*from*/, HostTime /*to*/) {
+PositionMean FakeZStage::mean_position(HostTime from, HostTime /*to*/) {
+  mean_moved = mean_moved || from < settled;
   return {Micrometers{position_um_}, Micrometers{0.0}, 3};
 }
 

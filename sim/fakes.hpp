@@ -56,6 +56,8 @@ class FakeCamera final : public Camera, private FrameRecycler {
   [[nodiscard]] CameraHealth health() const override { return health_; }
 
   [[nodiscard]] int triggers() const { return triggers_; }
+
+  std::chrono::microseconds clock_error{0};  ///< of the times that frames say they were exposed at
   [[nodiscard]] int frames_lent() const { return lent_; }
 
  private:
@@ -110,6 +112,8 @@ class FakeZStage final : public ZStage {
   bool is_homed = true;
   double error_um = 0.0;
   int stops = 0;
+  HostTime settled{};       ///< of the last move
+  bool mean_moved = false;  ///< whether a mean was asked for from before the last move had settled
   std::vector<double> targets_um;
   std::optional<double> fail_at_um;  ///< kStagePosition at this target
   std::function<void()> on_move;

@@ -24,6 +24,7 @@ class AScan : public testing::Test {
 
   void run(std::deque<TriggerOutcome> script = {}, std::stop_token stop = {}) {
     FakeCamera camera(clock_, 4, 3, std::move(script));
+    camera.clock_error = camera_clock_error_;
     ScanRunner runner({camera, stage_, clock_, sink_});
     runner.run(
         plan_, report_, [this](const ScanReport& report) { progress_.push_back(report.steps.size()); }, stop);
@@ -43,6 +44,7 @@ class AScan : public testing::Test {
   FakeClock clock_;
   FakeZStage stage_{clock_};
   SpySink sink_;
+  std::chrono::microseconds camera_clock_error_{0};
   ScanPlan plan_;
   ScanReport report_;
   std::vector<std::size_t> progress_;
@@ -68,6 +70,13 @@ TEST_F(AScan, UsesTheCommandedHeightWhereNothingMeasuresIt) {
   stage_.error_um = 0.25;
   run();
   EXPECT_EQ(sink_.z_um.front(), -7.0);
+}
+
+TEST_F(AScan, TakesNoHeightFromBeforeTheStageHadSettled) {
+  camera_clock_error_ = std::chrono::microseconds(-150);
+  run();
+  EXPECT_EQ(report_.frames.ok, 5U);
+  EXPECT_FALSE(stage_.mean_moved) << "the trigger came after the stage had settled, whatever the camera's clock says";
 }
 
 TEST_F(AScan, AccountsForEveryFrameAndReportsProgress) {
