@@ -108,13 +108,14 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
   // In the units of the codes: the noise of a pixel that gives this noise of a sample.
   const double pixel =
       kNoise * kPeakCode / sample_noise(settings, 1.0, 0.0) / sharpness_code(settings, PixelFormat::kMono8).gain;
-  std::vector<float> noise(kCurves, static_cast<float>(pixel));
+  const std::vector<float> noise_grey(kCurves, static_cast<float>(pixel));
+  std::vector<float> noise(kCurves);
   std::vector<float> height_m(kCurves);
   std::vector<float> sigma_m(kCurves);
   std::vector<float> prominence(kCurves);
   std::vector<std::uint8_t> mask(kCurves);
   const std::vector<float> least(kCurves);
-  fit.fit(row.curve, noise.data(), least.data(), kCurves,
+  fit.fit(row.curve, noise_grey.data(), least.data(), kCurves, noise.data(),
           {height_m.data(), sigma_m.data(), prominence.data(), mask.data()});
   ErrorSum errors;
   for (std::size_t x = 0; x < truth.size(); ++x) {
