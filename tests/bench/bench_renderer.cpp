@@ -18,7 +18,8 @@ void render_slices(benchmark::State& state) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) heights.at(x, y) = 160.0F * static_cast<float>(x) / static_cast<float>(width);
   }
-  DefocusRenderer renderer(make_texture(rich, 28.0, 1.0, 1), heights, {.threads = static_cast<int>(state.range(1))});
+  DefocusRenderer renderer(make_texture(TextureKind::kGranite, rich, 28.0, 1.0, 1), heights,
+                           {.threads = static_cast<int>(state.range(1))});
   ExposureRequest request;
   request.width = width;
   request.height = height;
