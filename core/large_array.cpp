@@ -1,8 +1,11 @@
 #include "core/large_array.hpp"
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
+#include <iterator>
+#include <mutex>
 #include <new>
+#include <vector>
 
 #include <sys/mman.h>
 
@@ -13,7 +16,7 @@ namespace {
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::align_val_t kCacheLine{64};
 
-/// Fresh pages are zero. The start is moved to where a huge page may begin; what lies before it is given back.
+/// The start is moved to where a huge page may begin; what lies before it is given back.
 void* map_pages(std::size_t bytes) {
   void* const mapped = ::mmap(nullptr, bytes + kHugePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (mapped == MAP_FAILED) throw std::bad_alloc();
@@ -31,17 +34,67 @@ std::size_t whole_pages(std::size_t bytes) {
   return (bytes + kPage - 1) / kPage * kPage;
 }
 
-}  // namespace
+/// Released memory, for whoever asks for as much again.
+class KeptMemory {
+ public:
+  /// nullptr if there is none of that size.
+  void* take(std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    const auto same = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const Block& b) { return b.bytes == bytes; });
+    if (same == blocks_.rend()) return nullptr;
+    void* const memory = same->memory;
+    kept_bytes_ -= bytes;
+    blocks_.erase(std::next(same).base());
+    return memory;
+  }
 
-void* allocate_zeros(std::size_t bytes) {
-  if (bytes == 0) return nullptr;
-  if (bytes >= kHugePage) return map_pages(whole_pages(bytes));
-  return std::memset(::operator new(bytes, kCacheLine), 0, bytes);
+  void keep(void* memory, std::size_t bytes) noexcept {
+    ::madvise(memory, bytes, MADV_FREE);  // without it the memory is kept under pressure too, as long as it is here
+    const std::lock_guard lock(mutex_);
+    blocks_.push_back({memory, bytes});
+    kept_bytes_ += bytes;
+    while (kept_bytes_ > kMostKeptBytes || blocks_.size() == blocks_.capacity()) {  // the oldest go
+      ::munmap(blocks_.front().memory, blocks_.front().bytes);
+      kept_bytes_ -= blocks_.front().bytes;
+      blocks_.erase(blocks_.begin());
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostBlocks = 64;
+  struct Block {
+    void* memory;
+    std::size_t bytes;
+  };
+  static std::vector<Block> no_blocks() {
+    std::vector<Block> blocks;
+    blocks.reserve(kMostBlocks);  // keep() may not throw
+    return blocks;
+  }
+
+  std::mutex mutex_;
+  std::vector<Block> blocks_ = no_blocks();  // oldest first
+  std::size_t kept_bytes_ = 0;
+};
+
+/// Never destroyed: arrays with static storage may outlive what is.
+KeptMemory& kept_memory() {
+  static KeptMemory& kept = *new KeptMemory;
+  return kept;
 }
 
-void release_zeros(void* memory, std::size_t bytes) noexcept {
+}  // namespace
+
+void* allocate_large(std::size_t bytes) {
+  if (bytes == 0) return nullptr;
+  if (bytes < kHugePage) return ::operator new(bytes, kCacheLine);
+  void* const kept = kept_memory().take(whole_pages(bytes));
+  return kept != nullptr ? kept : map_pages(whole_pages(bytes));
+}
+
+void release_large(void* memory, std::size_t bytes) noexcept {
   if (bytes >= kHugePage) {
-    ::munmap(memory, whole_pages(bytes));
+    kept_memory().keep(memory, whole_pages(bytes));
   } else {
     ::operator delete(memory, kCacheLine);
   }

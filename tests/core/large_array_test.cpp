@@ -4,22 +4,26 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 namespace fvd {
 namespace {
 
+bool is_mapped(const std::uint8_t* memory) {
+  unsigned char resident = 0;
+  return ::mincore(const_cast<std::uint8_t*>(memory), 1, &resident) == 0;
+}
+
 class ALargeArray : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(ALargeArray, IsZeroAlignedAndWritableToItsEnd) {
+TEST_P(ALargeArray, IsAlignedAndWritableToItsEnd) {
   const std::size_t size = GetParam();
   for (int round = 0; round < 2; ++round) {  // the second time from memory that was given back
     LargeArray<std::uint8_t> array(size);
     ASSERT_EQ(array.size(), size);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % 64, 0U);
-    for (std::size_t i = 0; i < size; ++i) {
-      ASSERT_EQ(array[i], 0) << i;
-      array[i] = 0xAB;
-    }
+    for (std::size_t i = 0; i < size; ++i) array[i] = static_cast<std::uint8_t>(i % 251);
+    for (std::size_t i = 0; i < size; ++i) ASSERT_EQ(array[i], i % 251) << i;
   }
 }
 
@@ -30,6 +34,33 @@ INSTANTIATE_TEST_SUITE_P(AroundAHugePage, ALargeArray,
 TEST(LargeArray, OfNothingIsEmpty) {
   EXPECT_EQ(LargeArray<int>().data(), nullptr);
   EXPECT_EQ(LargeArray<int>(0).size(), 0U);
+}
+
+TEST(LargeArray, TakesMemoryThatOneOfItsSizeReleased) {
+  constexpr std::size_t kSize = 2 * kHugePage + 12345;
+  const std::uint8_t* memory = nullptr;
+  {
+    LargeArray<std::uint8_t> first(kSize);
+    memory = first.data();
+    const LargeArray<std::uint8_t> other(kSize + 4096);
+  }
+  const LargeArray<std::uint8_t> second(kSize);
+  EXPECT_EQ(second.data(), memory);
+  const LargeArray<std::uint8_t> third(kSize);
+  EXPECT_NE(third.data(), memory);
+}
+
+TEST(LargeArray, KeepsOnlySoMuchOfWhatWasReleased) {
+  // Never written to: it takes no memory.
+  constexpr std::size_t kSize = detail::kMostKeptBytes / 2 + kHugePage;
+  const std::uint8_t* oldest = nullptr;
+  {
+    const LargeArray<std::uint8_t> first(kSize);
+    oldest = first.data();
+  }
+  ASSERT_TRUE(is_mapped(oldest));
+  { const LargeArray<std::uint8_t> second(kSize + 4096); }
+  EXPECT_FALSE(is_mapped(oldest));
 }
 
 TEST(LargeArray, Moves) {
