@@ -17,8 +17,8 @@ namespace {
 /// windows beside the middle, standard deviation. Measured on the chapter's ramp.
 constexpr float kWeightOffset = 0.038F;
 
-/// Every so many rows and columns a curve's width is looked at.
-constexpr int kWidthEvery = 8;
+/// About how many points are looked at more closely: how wide the curves are, and where the stage was off.
+constexpr double kSpotChecks = 10000.0;
 
 /// The share of the full window that is left about a pixel near the border: its sums are smaller by as much, their
 /// noise by its root.
@@ -39,16 +39,17 @@ class Limits {
         noise_grey_(static_cast<std::size_t>(width)),
         least_(static_cast<std::size_t>(width)) {}
 
-  /// For row y; whatever row came before.
-  void move_to(int y) {
+  /// For row y; whatever row came before. Returns whether that changes anything.
+  bool move_to(int y) {
     const Key key{noise_.tile_row(y), tiles_.tile_row(y), window_share(y, window_, height_)};
-    if (key == key_) return;
+    if (key == key_) return false;
     key_ = key;
     noise_.noise_row(key.noise_row, noise_grey_.data());
     tiles_.least_amplitude(key.peak_row, least_.data());
     const int inner = key.share < 1.0 ? width_ : std::min(window_ / 2, width_);  // all columns, or those at the ends
     for (int x = 0; x < inner; ++x) shrink(x);
     for (int x = std::max(inner, width_ - window_ / 2); x < width_; ++x) shrink(x);
+    return true;
   }
   /// Standard deviation of a pixel, and the least amplitude that is no bleeding. Shape [width] each.
   [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
@@ -78,31 +79,12 @@ class Limits {
   std::vector<float> least_;
 };
 
-void add_slope_errors(const FocusSettings& settings, WorkerPool& pool, HeightMap& map) {
-  const int reach = settings.window_px / 2;
-  const int width = map.height_m.width();
-  const int height = map.height_m.height();
-  if (reach == 0) return;
-  const float factor = kWeightOffset * static_cast<float>(settings.window_px);
-  const int bands = pool.threads();
-  pool.run(bands, [&](int band) {
-    for (int y = height * band / bands; y < height * (band + 1) / bands; ++y) {
-      if (y < reach || y >= height - reach) continue;
-      focus_kernels().add_slope_error(map.height_m.row(y), map.height_m.row(y - reach), map.height_m.row(y + reach),
-                                      reach, factor, width, map.sigma_m.row(y));
-    }
-  });
-}
-
 double median(std::vector<float>& values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return static_cast<double>(*middle);
 }
-
-/// About how many points the stage's errors are sought in.
-constexpr double kTuples = 10000.0;
 
 /// What a band of rows gives beside its part of the map.
 struct BandFigures {
@@ -138,7 +120,7 @@ class Pass {
         height_(map.height_m.height()),
         root_code_(sharpness_code(settings, map.texture_format).root),
         tiles_(width_, height_, settings.window_px + settings.distance_px, root_code_),
-        tuple_every_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kTuples)))) {
+        check_every_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)))) {
     const int bands = pool.threads();
     pool.run(bands, [&](int band) {
       std::vector<std::uint32_t> highest(static_cast<std::size_t>(width_));
@@ -154,37 +136,55 @@ class Pass {
     tiles_.spread();
   }
 
-  /// All planes but what slopes add to sigma. One entry a band, in the order of rows.
+  /// All planes. One entry a band, in the order of rows.
   std::vector<BandFigures> fit(const RowFit& fit, bool with_tuples) {
     const int bands = pool_.threads();
+    const int reach = settings_.window_px / 2;
     std::vector<BandFigures> figures(static_cast<std::size_t>(bands));
     pool_.run(bands, [&](int band) {
+      const int first = height_ * band / bands;
+      const int end = height_ * (band + 1) / bands;
       Limits limits(noise_, tiles_, width_, height_, settings_.window_px);
       std::vector<float> noise_row(static_cast<std::size_t>(width_));  // of a sample, as shares
-      for (int y = height_ * band / bands; y < height_ * (band + 1) / bands; ++y) {
+      for (int y = first; y < end; ++y) {
         const CurveRow row = curves_(band, y, map_.texture.row(y));
-        limits.move_to(y);
-        fit.fit(row, limits.noise_grey(), limits.least(), width_, noise_row.data(),
+        if (limits.move_to(y) || fit.noise_follows_sharpness()) {
+          fit.find_noise(row, limits.noise_grey(), width_, noise_row.data());
+        }
+        fit.fit(row, noise_row.data(), limits.least(), width_,
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
-        look_at(fit, row, y, noise_row, with_tuples, figures[static_cast<std::size_t>(band)]);
+        if (y % check_every_ == 0)
+          spot_check(fit, row, y, noise_row, with_tuples, figures[static_cast<std::size_t>(band)]);
+        if (y - 2 * reach >= first) add_slope_error(y - reach);  // while the rows are in the cache
+      }
+    });
+    pool_.run(bands, [&](int band) {  // where the slope reaches into the next band
+      const int first = height_ * band / bands;
+      const int end = height_ * (band + 1) / bands;
+      for (int y = first; y < end; ++y) {
+        if (y - reach < first || y + reach >= end) add_slope_error(y);
       }
     });
     return figures;
   }
 
  private:
-  void look_at(const RowFit& fit, const CurveRow& row, int y, const std::vector<float>& noise, bool with_tuples,
-               BandFigures& figures) const {
-    if (y % kWidthEvery == 0) {
-      for (int x = 0; x < width_; x += kWidthEvery) {
-        if (map_.mask.at(x, y) != 0) continue;
-        const auto curve_width = fit.curve_width_um(row, x);
-        if (curve_width) figures.widths_um.push_back(static_cast<float>(*curve_width));
-      }
-    }
-    if (!with_tuples || y % tuple_every_ != 0) return;
-    for (int x = 0; x < width_; x += tuple_every_) {
+  /// Of row y, from the heights of the rows a window's half above and below.
+  void add_slope_error(int y) {
+    const int reach = settings_.window_px / 2;
+    if (reach == 0 || y < reach || y >= height_ - reach) return;
+    focus_kernels().add_slope_error(map_.height_m.row(y), map_.height_m.row(y - reach), map_.height_m.row(y + reach),
+                                    reach, kWeightOffset * static_cast<float>(settings_.window_px), width_,
+                                    map_.sigma_m.row(y));
+  }
+
+  void spot_check(const RowFit& fit, const CurveRow& row, int y, const std::vector<float>& noise, bool with_tuples,
+                  BandFigures& figures) const {
+    for (int x = 0; x < width_; x += check_every_) {
       if (map_.mask.at(x, y) != 0) continue;
+      const auto curve_width = fit.curve_width_um(row, x);
+      if (curve_width) figures.widths_um.push_back(static_cast<float>(*curve_width));
+      if (!with_tuples) continue;
       figures.tuples.push_back(tuple_of(fit, row, x, noise[static_cast<std::size_t>(x)], map_.height_m.at(x, y)));
     }
   }
@@ -198,7 +198,7 @@ class Pass {
   int height_;
   bool root_code_;
   PeakTiles tiles_;
-  int tuple_every_;
+  int check_every_;  // row and column
 };
 
 template <typename Values>
@@ -225,7 +225,6 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
     for (std::size_t k = 0; k < corrected.size(); ++k) corrected[k] += map.stage.offsets_um[k];
     figures = pass.fit(RowFit(corrected, settings, map.texture_format, method), false);
   }
-  add_slope_errors(settings, pool, map);
   map.noise_grey = noise.median();
   auto widths = joined(figures, &BandFigures::widths_um);
   map.curve_width_um = median(widths);

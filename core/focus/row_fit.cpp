@@ -42,13 +42,12 @@ RowFit::RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFor
       heights_(height_table(z_um_)),
       bin_gain_(settings.bin_slices / std::ldexp(1.0, bin_shift(settings.bin_slices))) {}
 
-void RowFit::fit(const CurveRow& row, const float* noise_grey, const float* least_amplitude, int width, float* noise,
-                 const FitRow& out) const noexcept {
+void RowFit::find_noise(const CurveRow& row, const float* noise_grey, int width, float* noise) const noexcept {
   // A bin's sample is the sum of `slices` codes: the signal grows with their number, the noise with its root.
   const double slices = settings_.bin_slices;
   const double scale = code_.gain * bin_gain_ * SharpnessCode::kUnit;
   const double to_share = (code_.root ? scale * scale : scale) / std::sqrt(slices);
-  if (settings_.focus_operator != FocusOperator::kTenengrad) {
+  if (!noise_follows_sharpness()) {
     const auto at_one = static_cast<float>(sample_noise(settings_, 1.0, 0.0) * to_share);
     for (int x = 0; x < width; ++x) noise[x] = noise_grey[x] * at_one;
   } else {
@@ -57,6 +56,10 @@ void RowFit::fit(const CurveRow& row, const float* noise_grey, const float* leas
       noise[x] = static_cast<float>(sample_noise(settings_, static_cast<double>(noise_grey[x]), sharpness) * to_share);
     }
   }
+}
+
+void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
+                 const FitRow& out) const noexcept {
   if (method_ == PeakMethod::kFiveSample) {
     const FitParameters parameters{static_cast<float>(settings_.min_prominence),
                                    static_cast<float>(settings_.min_significance),

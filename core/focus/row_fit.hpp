@@ -25,10 +25,16 @@ class RowFit {
   /// z of the samples; bins of how many slices.
   RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method);
 
-  /// noise_grey: standard deviation of each pixel, shape [width]. least_amplitude: of peak less minimum as shares,
-  /// below which a point is edge bleeding, shape [width]. noise: filled with that of a sample as shares, shape [width].
-  /// out: shape [width] each.
-  void fit(const CurveRow& row, const float* noise_grey, const float* least_amplitude, int width, float* noise,
+  /// Standard deviation of a sample at the peak, as shares, from that of each pixel. Shape [width] each.
+  void find_noise(const CurveRow& row, const float* noise_grey, int width, float* noise) const noexcept;
+  /// Whether it depends on the row's sharpness, and not on noise_grey alone.
+  [[nodiscard]] bool noise_follows_sharpness() const noexcept {
+    return settings_.focus_operator == FocusOperator::kTenengrad;
+  }
+
+  /// noise: of find_noise(). least_amplitude: of peak less minimum as shares, below which a point is edge bleeding.
+  /// Shape [width] each.
+  void fit(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
            const FitRow& out) const noexcept;
 
   /// Full width at half maximum of one curve, from the peak and its neighbours; nothing where they enclose no maximum.

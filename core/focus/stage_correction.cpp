@@ -1,8 +1,11 @@
 #include "core/focus/stage_correction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <sstream>
+#include <tuple>
 
 #include <Eigen/Dense>
 
@@ -20,7 +23,8 @@ constexpr double kPrior = 0.2;        // of a step: what a stage's error is thou
 constexpr double kMinErrors = 3.0;    // standard errors that the offsets must exceed
 constexpr int kIterations = 3;
 constexpr double kMostLeftOver = 0.6;  // of the curves' departure from a parabola: the stage must be to blame for more
-constexpr double kHopeless = 0.85;     // left over after the first iteration: no further one brings it below that
+constexpr double kHopeless =
+    0.85;  // foreseen to be left over after the first iteration: no further one brings it below that
 constexpr double kMinInformation = 50.0;  // over that of the prior, for a sample to count as seen
 constexpr double kLeastOffset = 0.015;    // of a step: below it the shape of the curves is to blame
 
@@ -46,9 +50,13 @@ Coverage coverage(std::span<const CurveTuple> tuples, const std::vector<double>&
     const double towards = (z_um[i + 1] - z_um[i]) * off_um > 0.0 ? z_um[i + 1] - z_um[i] : z_um[i] - z_um[i - 1];
     places.push_back(static_cast<double>(i) + off_um / towards);
   }
-  std::sort(places.begin(), places.end());
-  const double low = places[places.size() / 50];
-  const double high = places[places.size() - 1 - places.size() / 50];
+  const auto ordered = [&](std::size_t rank) {
+    const auto place = places.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(places.begin(), place, places.end());
+    return *place;
+  };
+  const double low = ordered(places.size() / 50);
+  const double high = ordered(places.size() - 1 - places.size() / 50);
   Coverage result;
   result.steps = high - low;
   const int bins = std::max(1, static_cast<int>(result.steps * kFractions));
@@ -62,49 +70,90 @@ Coverage coverage(std::span<const CurveTuple> tuples, const std::vector<double>&
   return result;
 }
 
-/// Adds what one curve says about its samples' offsets, in units of `step`. Returns what its parabola leaves over, in
-/// squares of its noise.
-double add_tuple(const CurveTuple& tuple, const std::vector<double>& z_um, double step, Eigen::MatrixXd& normal,
-                 Eigen::VectorXd& right) {
-  using Vector5 = Eigen::Matrix<double, 5, 1>;
-  Eigen::Matrix<double, 5, 3> powers;
-  Vector5 g;
-  Vector5 root_weight;
-  const double origin = z_um[static_cast<std::size_t>(tuple.index)];
-  for (int j = 0; j < 5; ++j) {
-    const int k = tuple.index + j - 2;
-    const auto share = static_cast<double>(tuple.share[static_cast<std::size_t>(j)]);
-    const bool present = share > 0.0 && k >= 0 && k < static_cast<int>(z_um.size());
-    const double u = present ? (z_um[static_cast<std::size_t>(k)] - origin) / step : 0.0;
-    root_weight(j) = present ? share * share : 0.0;
-    g(j) = present ? -1.0 / std::sqrt(share) : 0.0;
-    powers.row(j) << 1.0, u, u * u;
+constexpr std::size_t kSamples = std::tuple_size_v<decltype(CurveTuple::share)>;
+using Samples = std::array<double, kSamples>;
+
+double dot(const Samples& a, const Samples& b) noexcept {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// The parabola of least squares through one curve's samples of G, each with its weight, by orthonormal columns:
+/// weighted powers of u = w, w u, w u^2 = Q R (Gram and Schmidt; u is within some samples of 0, so it loses nothing).
+struct Parabola {
+  std::array<Samples, 3> q{};
+  Samples residual{};      // weighted
+  double slope0 = 0.0;     // of the parabola at u = 0
+  double curvature = 0.0;  // its second derivative
+
+  /// weighted: w G. False where the samples determine none.
+  bool fit(const Samples& u, const Samples& weights, const Samples& weighted) noexcept {
+    std::array<double, 3> along{};  // of `weighted`, on the columns
+    std::array<double, 3> r{};      // the diagonal of R
+    double r12 = 0.0;
+    Samples column = weights;
+    residual = weighted;
+    for (std::size_t n = 0; n < q.size(); ++n) {
+      q[n] = column;
+      for (std::size_t m = 0; m < n; ++m) {
+        const double part = dot(q[m], q[n]);
+        for (std::size_t j = 0; j < kSamples; ++j) q[n][j] -= part * q[m][j];
+        if (m == 1) r12 = part;
+      }
+      r[n] = std::sqrt(dot(q[n], q[n]));
+      if (!(r[n] > kLeastIndependent)) return false;
+      const double to_unit = 1.0 / r[n];
+      for (double& value : q[n]) value *= to_unit;
+      along[n] = dot(q[n], residual);
+      for (std::size_t j = 0; j < kSamples; ++j) {
+        residual[j] -= along[n] * q[n][j];
+        column[j] *= u[j];
+      }
+    }
+    curvature = 2.0 * along[2] / r[2];
+    slope0 = (along[1] - 0.5 * r12 * curvature) / r[1];
+    return true;
   }
-  const Eigen::Matrix<double, 5, 3> weighted = root_weight.asDiagonal() * powers;
-  // Three by three and well conditioned: u is within some samples of 0.
-  const Eigen::Matrix3d inverse = (weighted.transpose() * weighted).eval().inverse();
-  const Eigen::Matrix<double, 3, 5> solve = inverse * weighted.transpose();
-  const Vector5 target = root_weight.cwiseProduct(g);
-  const Eigen::Vector3d fit = solve * target;
-  if (!(fit(2) < 0.0)) return 0.0;
+
+ private:
+  static constexpr double kLeastIndependent = 1e-6;
+};
+
+/// Adds what one curve says about its samples' offsets, in units of `step`; of the normal matrix, which is symmetric,
+/// to the lower half. Returns what its parabola leaves over, in squares of its noise.
+double add_tuple(const CurveTuple& tuple, const std::vector<double>& z_um, double step, Eigen::MatrixXd& lower,
+                 Eigen::VectorXd& right) {
+  Samples u{};
+  Samples weights{};
+  Samples weighted{};
+  const int first = tuple.index - 2;  // may lie before the first sample, as the last behind the end
+  for (std::size_t j = 0; j < kSamples; ++j) {
+    const int k = first + static_cast<int>(j);
+    const auto share = static_cast<double>(tuple.share[j]);
+    if (!(share > 0.0) || k < 0 || k >= static_cast<int>(z_um.size())) continue;
+    u[j] = (z_um[static_cast<std::size_t>(k)] - z_um[static_cast<std::size_t>(tuple.index)]) / step;
+    weights[j] = share * share;
+    weighted[j] = -share * std::sqrt(share);  // of G = -share^-1/2
+  }
+  Parabola parabola;
+  if (!parabola.fit(u, weights, weighted) || !(parabola.curvature < 0.0)) return 0.0;
   // What an offset of each sample moves, less what the parabola takes up of it: a projection, its own square.
-  const Eigen::Matrix<double, 5, 5> rest = Eigen::Matrix<double, 5, 5>::Identity() - weighted * solve;
-  const Vector5 slope = root_weight.cwiseProduct((fit(1) + 2.0 * fit(2) * powers.col(1).array()).matrix());
-  const Vector5 residual = rest * target;
-  const double noise = static_cast<double>(tuple.noise);
-  const double variance = 0.25 * noise * noise + 1e-6;
-  const Eigen::Matrix<double, 5, 5> information = slope.asDiagonal() * rest * slope.asDiagonal() / variance;
-  const Vector5 pull = slope.cwiseProduct(residual) / variance;
-  if (!information.allFinite() || !pull.allFinite()) return 0.0;
-  for (int j = 0; j < 5; ++j) {
-    const int k = tuple.index + j - 2;
-    if (root_weight(j) == 0.0) continue;
-    right(k) += pull(j);
-    for (int i = 0; i < 5; ++i) {
-      if (root_weight(i) != 0.0) normal(k, tuple.index + i - 2) += information(j, i);
+  const auto noise = static_cast<double>(tuple.noise);
+  const double information = 1.0 / (0.25 * noise * noise + 1e-6);
+  Samples slope{};
+  for (std::size_t j = 0; j < kSamples; ++j) slope[j] = weights[j] * (parabola.slope0 + parabola.curvature * u[j]);
+  const auto& [q0, q1, q2] = parabola.q;
+  for (std::size_t j = 0; j < kSamples; ++j) {
+    if (weights[j] == 0.0) continue;
+    const int row = first + static_cast<int>(j);
+    const double pull = slope[j] * information;
+    right(row) += pull * parabola.residual[j];
+    for (std::size_t i = 0; i <= j; ++i) {
+      if (weights[i] == 0.0) continue;
+      const double taken_up = q0[i] * q0[j] + q1[i] * q1[j] + q2[i] * q2[j];
+      lower(row, first + static_cast<int>(i)) += pull * slope[i] * ((i == j ? 1.0 : 0.0) - taken_up);
     }
   }
-  return residual.squaredNorm() / variance;
+  return dot(parabola.residual, parabola.residual) * information;
 }
 
 /// What no scan can tell: a shift and a stretch leave no trace, and curves that lean to one side, for reasons of
@@ -163,7 +212,7 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   const double step = std::abs(z_um.back() - z_um.front()) / static_cast<double>(z_um.size() - 1);
   constexpr double kPriorWeight = 1.0 / (kPrior * kPrior);
   std::vector<double> corrected = z_um;
-  Eigen::MatrixXd normal;
+  Eigen::MatrixXd normal;  // its lower half
   double left_over_before = 0.0;
   double left_over = 0.0;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
@@ -177,9 +226,12 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
     for (const CurveTuple& tuple : tuples) left_over += add_tuple(tuple, corrected, step, normal, right);
     if (iteration == 0) left_over_before = left_over;
     if (iteration == kIterations) break;  // only to see what is left over now
-    if (iteration == 1 && left_over > kHopeless * left_over_before) break;
     const Eigen::VectorXd change = normal.ldlt().solve(right);
     for (Eigen::Index k = 0; k < count; ++k) corrected[static_cast<std::size_t>(k)] += step * change(k);
+    if (iteration == 0 && left_over - right.dot(change) > kHopeless * left_over_before) {
+      left_over -= right.dot(change);
+      break;
+    }
   }
 
   std::vector<std::size_t> samples;  // that the curves say something about

@@ -85,7 +85,11 @@ class TypedStack {
         lane.binner.close(row, heights.samples(), heights.pending());
       }
       if (texture != nullptr) {
-        std::copy_n(row.texture, width, texture);
+        if constexpr (sizeof(Pixel) == 1) {
+          focus_kernels().widen_u8(row.texture, width, texture);
+        } else {
+          std::copy_n(row.texture, width, texture);
+        }
         const int pending = lanes.empty() ? -1 : heights.samples() - 1;
         if (!colour_.empty()) colour_.copy_row(y, row.curve.peak_index, pending, map.colour.row(y));
       }

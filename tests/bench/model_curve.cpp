@@ -115,7 +115,8 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
   std::vector<float> prominence(kCurves);
   std::vector<std::uint8_t> mask(kCurves);
   const std::vector<float> least(kCurves);
-  fit.fit(row.curve, noise_grey.data(), least.data(), kCurves, noise.data(),
+  fit.find_noise(row.curve, noise_grey.data(), kCurves, noise.data());
+  fit.fit(row.curve, noise.data(), least.data(), kCurves,
           {height_m.data(), sigma_m.data(), prominence.data(), mask.data()});
   ErrorSum errors;
   for (std::size_t x = 0; x < truth.size(); ++x) {
