@@ -216,7 +216,7 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
   const bool correct = settings.stage_correction && method == PeakMethod::kFiveSample;
   auto figures = pass.fit(RowFit(z_um, settings, map.texture_format, method), correct);
   if (correct) {
-    map.stage = solve_stage_correction(joined(figures, &BandFigures::tuples), z_um);
+    map.stage = solve_stage_correction(joined(figures, &BandFigures::tuples), z_um, pool);
   } else {
     map.stage.reason = "not asked for";
   }

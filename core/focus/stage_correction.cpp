@@ -8,12 +8,13 @@
 #include <tuple>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
 
 namespace fvd {
 
 namespace {
 
-constexpr int kMaxSamples = 512;  // the system is solved densely
+constexpr int kMaxSamples = 512;  // the offsets' covariance is a full matrix
 constexpr std::size_t kMinTuples = 1000;
 constexpr int kFractions = 4;         // of a step, each to be seen
 constexpr int kMinInFraction = 10;    // tuples
@@ -118,42 +119,89 @@ struct Parabola {
   static constexpr double kLeastIndependent = 1e-6;
 };
 
-/// Adds what one curve says about its samples' offsets, in units of `step`; of the normal matrix, which is symmetric,
-/// to the lower half. Returns what its parabola leaves over, in squares of its noise.
-double add_tuple(const CurveTuple& tuple, const std::vector<double>& z_um, double step, Eigen::MatrixXd& lower,
-                 Eigen::VectorXd& right) {
-  Samples u{};
-  Samples weights{};
-  Samples weighted{};
-  const int first = tuple.index - 2;  // may lie before the first sample, as the last behind the end
-  for (std::size_t j = 0; j < kSamples; ++j) {
-    const int k = first + static_cast<int>(j);
-    const auto share = static_cast<double>(tuple.share[j]);
-    if (!(share > 0.0) || k < 0 || k >= static_cast<int>(z_um.size())) continue;
-    u[j] = (z_um[static_cast<std::size_t>(k)] - z_um[static_cast<std::size_t>(tuple.index)]) / step;
-    weights[j] = share * share;
-    weighted[j] = -share * std::sqrt(share);  // of G = -share^-1/2
+/// The least-squares system for the offsets, in steps, as far as curves have been added. A curve ties samples that are
+/// up to four apart: the normal matrix, which is symmetric, has five diagonals.
+struct Equations {
+  Eigen::Matrix<double, kSamples, Eigen::Dynamic> diagonals;  // (d, k): row k + d, column k
+  Eigen::VectorXd right;
+  double left_over = 0.0;  // by the curves' parabolas, in squares of their noise
+
+  explicit Equations(std::size_t samples)
+      : diagonals(decltype(diagonals)::Zero(kSamples, static_cast<Eigen::Index>(samples))),
+        right(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(samples))) {}
+
+  Equations& operator+=(const Equations& other) {
+    diagonals += other.diagonals;
+    right += other.right;
+    left_over += other.left_over;
+    return *this;
   }
-  Parabola parabola;
-  if (!parabola.fit(u, weights, weighted) || !(parabola.curvature < 0.0)) return 0.0;
-  // What an offset of each sample moves, less what the parabola takes up of it: a projection, its own square.
-  const auto noise = static_cast<double>(tuple.noise);
-  const double information = 1.0 / (0.25 * noise * noise + 1e-6);
-  Samples slope{};
-  for (std::size_t j = 0; j < kSamples; ++j) slope[j] = weights[j] * (parabola.slope0 + parabola.curvature * u[j]);
-  const auto& [q0, q1, q2] = parabola.q;
-  for (std::size_t j = 0; j < kSamples; ++j) {
-    if (weights[j] == 0.0) continue;
-    const int row = first + static_cast<int>(j);
-    const double pull = slope[j] * information;
-    right(row) += pull * parabola.residual[j];
-    for (std::size_t i = 0; i <= j; ++i) {
-      if (weights[i] == 0.0) continue;
-      const double taken_up = q0[i] * q0[j] + q1[i] * q1[j] + q2[i] * q2[j];
-      lower(row, first + static_cast<int>(i)) += pull * slope[i] * ((i == j ? 1.0 : 0.0) - taken_up);
+
+  void add(const CurveTuple& tuple, const std::vector<double>& z_um, double step) {
+    Samples u{};
+    Samples weights{};
+    Samples weighted{};
+    const int first = tuple.index - 2;  // may lie before the first sample, as the last behind the end
+    for (std::size_t j = 0; j < kSamples; ++j) {
+      const int k = first + static_cast<int>(j);
+      const auto share = static_cast<double>(tuple.share[j]);
+      if (!(share > 0.0) || k < 0 || k >= static_cast<int>(z_um.size())) continue;
+      u[j] = (z_um[static_cast<std::size_t>(k)] - z_um[static_cast<std::size_t>(tuple.index)]) / step;
+      weights[j] = share * share;
+      weighted[j] = -share * std::sqrt(share);  // of G = -share^-1/2
     }
+    Parabola parabola;
+    if (!parabola.fit(u, weights, weighted) || !(parabola.curvature < 0.0)) return;
+    // What an offset of each sample moves, less what the parabola takes up of it: a projection, its own square.
+    const auto noise = static_cast<double>(tuple.noise);
+    const double information = 1.0 / (0.25 * noise * noise + 1e-6);
+    Samples slope{};
+    for (std::size_t j = 0; j < kSamples; ++j) slope[j] = weights[j] * (parabola.slope0 + parabola.curvature * u[j]);
+    const auto& [q0, q1, q2] = parabola.q;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      if (weights[i] == 0.0) continue;
+      const int column = first + static_cast<int>(i);
+      const double pull = slope[i] * information;
+      right(column) += pull * parabola.residual[i];
+      for (std::size_t j = i; j < kSamples; ++j) {
+        if (weights[j] == 0.0) continue;
+        const double taken_up = q0[i] * q0[j] + q1[i] * q1[j] + q2[i] * q2[j];
+        diagonals(static_cast<Eigen::Index>(j - i), column) += pull * slope[j] * ((i == j ? 1.0 : 0.0) - taken_up);
+      }
+    }
+    left_over += dot(parabola.residual, parabola.residual) * information;
   }
-  return dot(parabola.residual, parabola.residual) * information;
+
+  /// The lower half.
+  [[nodiscard]] Eigen::SparseMatrix<double> normal_matrix() const {
+    std::vector<Eigen::Triplet<double>> elements;
+    for (Eigen::Index k = 0; k < diagonals.cols(); ++k) {
+      for (Eigen::Index d = 0; d < diagonals.rows() && k + d < diagonals.cols(); ++d) {
+        elements.emplace_back(static_cast<int>(k + d), static_cast<int>(k), diagonals(d, k));
+      }
+    }
+    Eigen::SparseMatrix<double> lower(diagonals.cols(), diagonals.cols());
+    lower.setFromTriplets(elements.begin(), elements.end());
+    return lower;
+  }
+};
+
+using BandSolver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
+
+/// What all curves say. Always in as many pieces, so that the sum does not depend on the number of threads.
+Equations equations_of(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, double step,
+                       WorkerPool& pool) {
+  constexpr std::size_t kPieces = 8;
+  std::vector<Equations> pieces(kPieces, Equations(z_um.size()));
+  pool.run(kPieces, [&](int piece) {
+    const auto number = static_cast<std::size_t>(piece);
+    const auto end = static_cast<std::ptrdiff_t>(tuples.size() * (number + 1) / kPieces);
+    for (auto i = static_cast<std::ptrdiff_t>(tuples.size() * number / kPieces); i < end; ++i) {
+      pieces[number].add(tuples[static_cast<std::size_t>(i)], z_um, step);
+    }
+  });
+  for (std::size_t piece = 1; piece < kPieces; ++piece) pieces[0] += pieces[piece];
+  return pieces[0];
 }
 
 /// What no scan can tell: a shift and a stretch leave no trace, and curves that lean to one side, for reasons of
@@ -183,7 +231,8 @@ class SlowPart {
 
 }  // namespace
 
-StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const std::vector<double>& z_um) {
+StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const std::vector<double>& z_um,
+                                       WorkerPool& pool) {
   std::ostringstream why;
   if (z_um.size() > static_cast<std::size_t>(kMaxSamples)) {
     why << z_um.size() << " samples, at most " << kMaxSamples << " are solved for: sum slices to bins";
@@ -212,36 +261,38 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   const double step = std::abs(z_um.back() - z_um.front()) / static_cast<double>(z_um.size() - 1);
   constexpr double kPriorWeight = 1.0 / (kPrior * kPrior);
   std::vector<double> corrected = z_um;
-  Eigen::MatrixXd normal;  // its lower half
+  Equations equations(z_um.size());
+  BandSolver solver;
   double left_over_before = 0.0;
   double left_over = 0.0;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
-    normal = Eigen::MatrixXd::Identity(count, count) * kPriorWeight;
-    Eigen::VectorXd right(count);
+    equations = equations_of(tuples, corrected, step, pool);
+    equations.diagonals.row(0).array() += kPriorWeight;
     for (Eigen::Index k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      right(k) = -(corrected[i] - z_um[i]) / step * kPriorWeight;
+      equations.right(k) -= (corrected[i] - z_um[i]) / step * kPriorWeight;
     }
-    left_over = 0.0;
-    for (const CurveTuple& tuple : tuples) left_over += add_tuple(tuple, corrected, step, normal, right);
+    solver.compute(equations.normal_matrix());
+    left_over = equations.left_over;
     if (iteration == 0) left_over_before = left_over;
     if (iteration == kIterations) break;  // only to see what is left over now
-    const Eigen::VectorXd change = normal.ldlt().solve(right);
+    const Eigen::VectorXd change = solver.solve(equations.right);
     for (Eigen::Index k = 0; k < count; ++k) corrected[static_cast<std::size_t>(k)] += step * change(k);
-    if (iteration == 0 && left_over - right.dot(change) > kHopeless * left_over_before) {
-      left_over -= right.dot(change);
+    const double foreseen = left_over - equations.right.dot(change);
+    if (iteration == 0 && foreseen > kHopeless * left_over_before) {
+      left_over = foreseen;
       break;
     }
   }
 
   std::vector<std::size_t> samples;  // that the curves say something about
   for (Eigen::Index k = 0; k < count; ++k) {
-    if (normal(k, k) > kMinInformation * kPriorWeight) samples.push_back(static_cast<std::size_t>(k));
+    if (equations.diagonals(0, k) > kMinInformation * kPriorWeight) samples.push_back(static_cast<std::size_t>(k));
   }
   if (samples.size() < static_cast<std::size_t>(kMinSteps)) return off("too few samples lie near a peak");
   const SlowPart slow(z_um, samples);
   const auto rows = static_cast<Eigen::Index>(samples.size());
-  const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::MatrixXd covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
   Eigen::MatrixXd seen_covariance(rows, rows);
   Eigen::MatrixXd offsets(rows, 1);
   for (Eigen::Index row = 0; row < rows; ++row) {

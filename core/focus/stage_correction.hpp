@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "core/pipeline/worker_pool.hpp"
+
 namespace fvd {
 
 /// Five samples about one pixel's peak.
@@ -38,6 +40,6 @@ struct StageCorrection {
 
 /// z_um: measured z of the samples, at least one. Tuples: some thousand valid points spread over the image.
 [[nodiscard]] StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples,
-                                                     const std::vector<double>& z_um);
+                                                     const std::vector<double>& z_um, WorkerPool& pool);
 
 }  // namespace fvd

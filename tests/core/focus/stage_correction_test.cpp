@@ -36,6 +36,11 @@ std::vector<double> reported() {
   return z_um;
 }
 
+WorkerPool& pool() {
+  static WorkerPool two(2);
+  return two;
+}
+
 std::vector<CurveTuple> tuples_of(const Scene& scene) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -64,15 +69,28 @@ std::vector<CurveTuple> tuples_of(const Scene& scene) {
 TEST(StageCorrection, FindsWhatThePositionsWereOffBy) {
   Scene scene;
   for (int k = 0; k < kSamples; ++k) scene.errors_um[static_cast<std::size_t>(k)] = 0.8 * std::sin(1.3 * k);
-  const StageCorrection found = solve_stage_correction(tuples_of(scene), reported());
+  const StageCorrection found = solve_stage_correction(tuples_of(scene), reported(), pool());
   ASSERT_TRUE(found.applied) << found.reason;
   EXPECT_NEAR(found.rms_um, 0.8 / std::sqrt(2.0), 0.06);
   EXPECT_LT(found.standard_error_um, 0.1);
   for (std::size_t k = 8; k < 30; ++k) EXPECT_NEAR(found.offsets_um[k], scene.errors_um[k], 0.15) << k;
 }
 
+TEST(StageCorrection, DoesNotDependOnTheNumberOfThreads) {
+  Scene scene;
+  for (int k = 0; k < kSamples; ++k) scene.errors_um[static_cast<std::size_t>(k)] = 0.8 * std::sin(1.3 * k);
+  const auto tuples = tuples_of(scene);
+  WorkerPool one(1);
+  WorkerPool five(5);
+  const StageCorrection alone = solve_stage_correction(tuples, reported(), one);
+  const StageCorrection together = solve_stage_correction(tuples, reported(), five);
+  ASSERT_TRUE(alone.applied) << alone.reason;
+  EXPECT_EQ(alone.offsets_um, together.offsets_um);
+  EXPECT_EQ(alone.standard_error_um, together.standard_error_um);
+}
+
 TEST(StageCorrection, LeavesAGoodStageAlone) {
-  const StageCorrection found = solve_stage_correction(tuples_of({}), reported());
+  const StageCorrection found = solve_stage_correction(tuples_of({}), reported(), pool());
   EXPECT_FALSE(found.applied);
   EXPECT_NE(found.reason.find("noise"), std::string::npos) << found.reason;
   EXPECT_TRUE(found.offsets_um.empty());
@@ -83,27 +101,28 @@ TEST(StageCorrection, SaysWhyTheSurfaceTellsTooLittle) {
   Scene level;
   level.low_um = 100.0;
   level.high_um = 101.0;
-  EXPECT_NE(solve_stage_correction(tuples_of(level), reported()).reason.find("spans"), std::string::npos);
+  EXPECT_NE(solve_stage_correction(tuples_of(level), reported(), pool()).reason.find("spans"), std::string::npos);
   Scene good;
   auto few = tuples_of(good);
   few.resize(999);
-  EXPECT_NE(solve_stage_correction(few, reported()).reason.find("999"), std::string::npos);
+  EXPECT_NE(solve_stage_correction(few, reported(), pool()).reason.find("999"), std::string::npos);
   auto steps = tuples_of(good);
   std::erase_if(steps, [](const CurveTuple& t) { return t.height_um > 80.0F && t.height_um < 220.0F; });
-  EXPECT_NE(solve_stage_correction(steps, reported()).reason.find("covers"), std::string::npos);
-  EXPECT_NE(solve_stage_correction(tuples_of(good), std::vector<double>(600)).reason.find("600"), std::string::npos);
+  EXPECT_NE(solve_stage_correction(steps, reported(), pool()).reason.find("covers"), std::string::npos);
+  EXPECT_NE(solve_stage_correction(tuples_of(good), std::vector<double>(600), pool()).reason.find("600"),
+            std::string::npos);
 }
 
 TEST(StageCorrection, RefusesHeightsThatDoNotRunOneWay) {
   const auto tuples = tuples_of({});
   auto turned = reported();
   std::swap(turned[20], turned[21]);
-  EXPECT_NE(solve_stage_correction(tuples, turned).reason.find("one way"), std::string::npos);
+  EXPECT_NE(solve_stage_correction(tuples, turned, pool()).reason.find("one way"), std::string::npos);
   std::vector<double> there_and_back = reported();
   there_and_back.back() = there_and_back.front();
-  EXPECT_NE(solve_stage_correction(tuples, there_and_back).reason.find("one way"), std::string::npos);
+  EXPECT_NE(solve_stage_correction(tuples, there_and_back, pool()).reason.find("one way"), std::string::npos);
   const std::vector<double> equal(kSamples, 5.0);
-  EXPECT_NE(solve_stage_correction(tuples, equal).reason.find("one way"), std::string::npos);
+  EXPECT_NE(solve_stage_correction(tuples, equal, pool()).reason.find("one way"), std::string::npos);
 }
 
 }  // namespace
