@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/focus/five_sample_fit.hpp"
@@ -30,16 +31,16 @@ double window_share(int centre, int window, int size) {
 /// What a row's points are judged by: the same for all rows of a tile, but near the upper and the lower border.
 class Limits {
  public:
-  Limits(const NoiseProbe& noise, const PeakTiles& tiles, int width, int height, int window)
+  Limits(const NoiseProbe& noise, PeakTiles tiles, int width, int height, int window)
       : noise_(noise),
-        tiles_(tiles),
+        tiles_(std::move(tiles)),
         width_(width),
         height_(height),
         window_(window),
         noise_grey_(static_cast<std::size_t>(width)),
         least_(static_cast<std::size_t>(width)) {}
 
-  /// For row y; whatever row came before. Returns whether that changes anything.
+  /// For row y; cheapest from top to bottom. Returns whether that changes anything.
   bool move_to(int y) {
     const Key key{noise_.tile_row(y), tiles_.tile_row(y), window_share(y, window_, height_)};
     if (key == key_) return false;
@@ -70,7 +71,7 @@ class Limits {
   }
 
   const NoiseProbe& noise_;
-  const PeakTiles& tiles_;
+  PeakTiles tiles_;
   int width_;
   int height_;
   int window_;
@@ -118,23 +119,7 @@ class Pass {
         map_(map),
         width_(map.height_m.width()),
         height_(map.height_m.height()),
-        root_code_(sharpness_code(settings, map.texture_format).root),
-        tiles_(width_, height_, settings.window_px + settings.distance_px, root_code_),
-        check_every_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)))) {
-    const int bands = pool.threads();
-    pool.run(bands, [&](int band) {
-      std::vector<std::uint32_t> highest(static_cast<std::size_t>(width_));
-      for (int row = tiles_.rows() * band / bands; row < tiles_.rows() * (band + 1) / bands; ++row) {
-        std::fill(highest.begin(), highest.end(), 0U);
-        for (int y = tiles_.first(row); y < tiles_.end(row); ++y) {
-          const CurveRow curve = curves_(band, y, nullptr);
-          focus_kernels().raise_amplitudes(curve.peak, curve.minimum, root_code_, width_, highest.data());
-        }
-        tiles_.set_row(row, highest.data());
-      }
-    });
-    tiles_.spread();
-  }
+        check_every_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)))) {}
 
   /// All planes. One entry a band, in the order of rows.
   std::vector<BandFigures> fit(const RowFit& fit, bool with_tuples) {
@@ -144,11 +129,12 @@ class Pass {
     pool_.run(bands, [&](int band) {
       const int first = height_ * band / bands;
       const int end = height_ * (band + 1) / bands;
-      Limits limits(noise_, tiles_, width_, height_, settings_.window_px);
+      Limits limits(noise_, peak_tiles(band), width_, height_, settings_.window_px);
       std::vector<float> noise_row(static_cast<std::size_t>(width_));  // of a sample, as shares
       for (int y = first; y < end; ++y) {
+        const bool other_limits = limits.move_to(y);
         const CurveRow row = curves_(band, y, map_.texture.row(y));
-        if (limits.move_to(y) || fit.noise_follows_sharpness()) {
+        if (other_limits || fit.noise_follows_sharpness()) {
           fit.find_noise(row, limits.noise_grey(), width_, noise_row.data());
         }
         fit.fit(row, noise_row.data(), limits.least(), width_,
@@ -169,6 +155,12 @@ class Pass {
   }
 
  private:
+  [[nodiscard]] PeakTiles peak_tiles(int band) const {
+    return {width_, height_, settings_.window_px + settings_.distance_px,
+            sharpness_code(settings_, map_.texture_format).root,
+            [this, band](int y) { return curves_(band, y, nullptr); }};
+  }
+
   /// Of row y, from the heights of the rows a window's half above and below.
   void add_slope_error(int y) {
     const int reach = settings_.window_px / 2;
@@ -196,8 +188,6 @@ class Pass {
   HeightMap& map_;
   int width_;
   int height_;
-  bool root_code_;
-  PeakTiles tiles_;
   int check_every_;  // row and column
 };
 

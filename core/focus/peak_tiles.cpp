@@ -11,46 +11,54 @@ constexpr float kLeastShare = 0.1F;
 
 }  // namespace
 
-PeakTiles::PeakTiles(int width, int height, int reach_px, bool root_code)
+PeakTiles::PeakTiles(int width, int height, int reach_px, bool root_code, CurveOfRow curves)
     : width_(width),
       height_(height),
       reach_px_(reach_px),
-      unit_(static_cast<float>(root_code ? SharpnessCode::kUnit * SharpnessCode::kUnit : SharpnessCode::kUnit)),
+      root_code_(root_code),
+      curves_(std::move(curves)),
       columns_((width + reach_px - 1) / reach_px),
       rows_((height + reach_px - 1) / reach_px),
-      values_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+      highest_(static_cast<std::size_t>(width)) {
+  for (auto& tiles : tiles_) tiles.resize(static_cast<std::size_t>(columns_));
+}
 
-int PeakTiles::end(int tile_row) const noexcept { return std::min(height_, (tile_row + 1) * reach_px_); }
-
-void PeakTiles::set_row(int tile_row, const std::uint32_t* highest) noexcept {
-  float* tiles = values_.data() + static_cast<std::ptrdiff_t>(tile_row) * columns_;
+void PeakTiles::look_at(int tile_row) {
+  constexpr auto kUnit = static_cast<float>(SharpnessCode::kUnit);
+  const float unit = root_code_ ? kUnit * kUnit : kUnit;  // a code's amplitude times this is a share
+  std::fill(highest_.begin(), highest_.end(), 0U);
+  const int end = std::min(height_, (tile_row + 1) * reach_px_);
+  for (int y = tile_row * reach_px_; y < end; ++y) {
+    const CurveRow curve = curves_(y);
+    focus_kernels().raise_amplitudes(curve.peak, curve.minimum, root_code_, width_, highest_.data());
+  }
+  std::vector<float>& row = tiles(tile_row);
   for (int column = 0; column < columns_; ++column) {
-    const std::uint32_t* first = highest + column * reach_px_;
-    const std::uint32_t* end = highest + std::min(width_, (column + 1) * reach_px_);
-    tiles[column] = static_cast<float>(*std::max_element(first, end)) * unit_;
+    const auto first = highest_.begin() + column * reach_px_;
+    const auto last = highest_.begin() + std::min(width_, (column + 1) * reach_px_);
+    row[static_cast<std::size_t>(column)] = static_cast<float>(*std::max_element(first, last)) * unit;
   }
 }
 
-void PeakTiles::spread() {
-  std::vector<float> least(values_.size());
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      float highest = 0.0F;
-      for (int v = std::max(0, row - 1); v <= std::min(rows_ - 1, row + 1); ++v) {
-        for (int u = std::max(0, column - 1); u <= std::min(columns_ - 1, column + 1); ++u) {
-          highest = std::max(highest, values_[static_cast<std::size_t>(v * columns_ + u)]);
-        }
-      }
-      least[static_cast<std::size_t>(row * columns_ + column)] = kLeastShare * highest;
+void PeakTiles::least_amplitude(int tile_row, float* out) {
+  const int first = std::max(0, tile_row - 1);
+  const int last = std::min(rows_ - 1, tile_row + 1);
+  for (int row = first; row <= last; ++row) {
+    if (row < first_seen_ || row > last_seen_) look_at(row);
+  }
+  first_seen_ = first;
+  last_seen_ = last;
+  std::vector<float> highest(static_cast<std::size_t>(columns_));
+  for (int row = first; row <= last; ++row) {
+    for (std::size_t column = 0; column < highest.size(); ++column) {
+      highest[column] = std::max(highest[column], tiles(row)[column]);
     }
   }
-  values_ = std::move(least);
-}
-
-void PeakTiles::least_amplitude(int tile_row, float* out) const noexcept {
-  const float* tiles = values_.data() + static_cast<std::ptrdiff_t>(tile_row) * columns_;
   for (int column = 0; column < columns_; ++column) {
-    std::fill(out + column * reach_px_, out + std::min(width_, (column + 1) * reach_px_), tiles[column]);
+    const auto from = highest.begin() + std::max(0, column - 1);
+    const auto end = highest.begin() + std::min(columns_, column + 2);
+    std::fill(out + column * reach_px_, out + std::min(width_, (column + 1) * reach_px_),
+              kLeastShare * *std::max_element(from, end));
   }
 }
 

@@ -6,7 +6,9 @@
 /// a peak then, at a height where there is nothing. It is low beside the edge's own: a point whose curve rises less
 /// than a tenth of the highest within about a window from it is no surface.
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/focus/focus_kernels.hpp"
@@ -14,36 +16,39 @@
 
 namespace fvd {
 
-/// context: set_row() for different tile rows from many threads; spread() after all of them; then least_amplitude()
-/// from many threads.
+/// Goes down the image, so that what it has looked at is still in a cache when the fit comes by. context: one thread;
+/// each has one of its own.
 class PeakTiles {
  public:
-  /// reach_px: side of a tile; a point is compared with its own tile and the eight about it.
-  PeakTiles(int width, int height, int reach_px, bool root_code);
+  /// The condensed curves of row y; good until the next call.
+  using CurveOfRow = std::function<CurveRow(int y)>;
 
-  [[nodiscard]] int rows() const noexcept { return rows_; }
-  /// Rows of pixels [first, end) of a row of tiles.
-  [[nodiscard]] int first(int tile_row) const noexcept { return tile_row * reach_px_; }
-  [[nodiscard]] int end(int tile_row) const noexcept;
+  /// reach_px: side of a tile; a point is compared with its own tile and the eight about it.
+  PeakTiles(int width, int height, int reach_px, bool root_code, CurveOfRow curves);
+
   [[nodiscard]] int tile_row(int y) const noexcept { return y / reach_px_; }
 
-  /// highest: amplitude of codes in each column of pixels, see FocusKernels::raise_amplitudes. Shape [width].
-  void set_row(int tile_row, const std::uint32_t* highest) noexcept;
-
-  /// Makes of each tile's highest amplitude a tenth of its neighbourhood's.
-  void spread();
-
   /// A tenth of the neighbourhood's highest amplitude at each pixel of a row of tiles, in shares. Shape [width].
-  void least_amplitude(int tile_row, float* out) const noexcept;
+  /// Looks at the curves of that row and its neighbours, of those that the last call looked at not again.
+  void least_amplitude(int tile_row, float* out);
 
  private:
+  void look_at(int tile_row);
+  [[nodiscard]] std::vector<float>& tiles(int tile_row) noexcept {
+    return tiles_[static_cast<std::size_t>(tile_row) % tiles_.size()];
+  }
+
   int width_;
   int height_;
   int reach_px_;
-  float unit_;  // a code's amplitude times this is a share
+  bool root_code_;
+  CurveOfRow curves_;
   int columns_;
   int rows_;
-  std::vector<float> values_;  // [rows][columns]: highest amplitude; after spread() the least that counts
+  int first_seen_ = 0;  // rows of tiles that are in tiles_
+  int last_seen_ = -1;
+  std::array<std::vector<float>, 3> tiles_;  // highest amplitude in shares
+  std::vector<std::uint32_t> highest_;       // [width] of a row of tiles, in codes
 };
 
 }  // namespace fvd
