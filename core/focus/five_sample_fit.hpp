@@ -7,15 +7,18 @@
 /// weight of least variance; F^4 trusts the tails a little less, where real curves leave the shape. From every sample
 /// comes off kFloorShare of the curve's minimum, which is mostly the focus measure's response to noise.
 ///
-/// sigma: the noise of each sample carried through the fit to first order, and what curves of another shape do: an
-/// error that follows the fraction of a step. As a share of the step it grows with b, the curvature of G in steps, as
-/// b / (1 + 0.9 b), measured on four textures; summing slices to bins smooths most of it away.
+/// What the curves of the scan have in common against that shape is taken off the vertex, see curve_shape.hpp.
+///
+/// sigma: the noise of each sample carried through the fit to first order, and what is left of the shape: curves differ
+/// from place to place, which makes an error that follows the fraction of a step. As a share of the step it grows with
+/// b, the curvature of G in steps, as b / (1 + 0.9 b), measured on four textures; summing slices to bins smooths most of
+/// it away.
 
 namespace fvd {
 
 inline constexpr float kFloorShare = 0.9F;
 inline constexpr float kSmallestShare = 1e-3F;      ///< of the peak: what a sample at the floor counts as
-inline constexpr float kShapeError = 0.0385F;       ///< standard deviation over b / (1 + 0.9 b), in sample distances
-inline constexpr float kBinnedShapeError = 0.016F;  ///< the same where samples are bins
+inline constexpr float kShapeError = 0.0335F;       ///< standard deviation over b / (1 + 0.9 b), in sample distances
+inline constexpr float kBinnedShapeError = 0.0175F;  ///< the same where samples are bins
 
 }  // namespace fvd

@@ -48,6 +48,13 @@ struct alignas(32) HeightEntry {
 };
 using HeightTable = std::span<const HeightEntry>;
 
+/// What the vertex of a fit is off by, see curve_shape.hpp: (linear u + cubic u^3) b / (1 + 0.9 b) sample distances; u
+/// is where it lies, b the fit's curvature.
+struct VertexBias {
+  float linear = 0.0F;
+  float cubic = 0.0F;
+};
+
 /// What a fit needs beside the curve.
 struct FitParameters {
   float min_prominence;
@@ -55,12 +62,13 @@ struct FitParameters {
   float shape_error;  ///< see five_sample_fit.hpp
   float code_unit;    ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
   bool root_code;
+  VertexBias bias;  ///< to be taken off
 };
 
-/// Where fits go; NaN in height and sigma exactly where mask is not 0.
+/// Where fits go; NaN in height and variance exactly where mask is not 0.
 struct FitRow {
   float* height_m;
-  float* sigma_m;
+  float* variance_m2;  ///< of the height
   float* prominence;
   std::uint8_t* mask;
 };
@@ -118,10 +126,11 @@ struct FocusKernels {
   /// highest = max(highest, peak less minimum), both codes squared first where they are roots. 0 <= minimum <= peak.
   void (*raise_amplitudes)(const std::uint16_t* peak, const std::uint16_t* minimum, bool root_code, int width,
                            std::uint32_t* highest) noexcept;
-  /// sigma = sqrt(sigma^2 + (factor * gradient)^2), gradient from heights `reach` to either side; a missing one is 0.
-  /// upper, lower: rows of heights `reach` above and below. Columns within `reach` of an end are left alone.
-  void (*add_slope_error)(const float* height, const float* upper, const float* lower, int reach, float factor,
-                          int width, float* sigma) noexcept;
+  /// In place, sigma = sqrt(variance + (factor * gradient)^2), gradient from heights `reach` to either side; a missing
+  /// one is 0. upper, lower: rows of heights `reach` above and below; nullptr: there are none, as for the columns
+  /// within `reach` of an end: the root alone.
+  void (*finish_sigma)(const float* height, const float* upper, const float* lower, int reach, float factor, int width,
+                       float* sigma) noexcept;
 };
 
 /// The fastest this processor runs, or the one FVD_FORCE_KERNEL names. Throws Error kBadInput (once, at the first call)

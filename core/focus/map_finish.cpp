@@ -1,11 +1,16 @@
 #include "core/focus/map_finish.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/focus/curve_shape.hpp"
+#include "core/focus/curve_tuple.hpp"
 #include "core/focus/five_sample_fit.hpp"
 #include "core/focus/peak_tiles.hpp"
 #include "core/focus/sharpness_rows.hpp"
@@ -18,7 +23,7 @@ namespace {
 /// windows beside the middle, standard deviation. Measured on the chapter's ramp.
 constexpr float kWeightOffset = 0.038F;
 
-/// About how many points are looked at more closely: how wide the curves are, and where the stage was off.
+/// About how many points are looked at first: what the curves are like, and where the stage was off.
 constexpr double kSpotChecks = 10000.0;
 
 /// The share of the full window that is left about a pixel near the border: its sums are smaller by as much, their
@@ -31,7 +36,8 @@ double window_share(int centre, int window, int size) {
 /// What a row's points are judged by: the same for all rows of a tile, but near the upper and the lower border.
 class Limits {
  public:
-  Limits(const NoiseProbe& noise, PeakTiles tiles, int width, int height, int window)
+  /// Without tiles no point is taken for bleeding.
+  Limits(const NoiseProbe& noise, std::optional<PeakTiles> tiles, int width, int height, int window)
       : noise_(noise),
         tiles_(std::move(tiles)),
         width_(width),
@@ -42,11 +48,11 @@ class Limits {
 
   /// For row y; cheapest from top to bottom. Returns whether that changes anything.
   bool move_to(int y) {
-    const Key key{noise_.tile_row(y), tiles_.tile_row(y), window_share(y, window_, height_)};
+    const Key key{noise_.tile_row(y), tiles_ ? tiles_->tile_row(y) : 0, window_share(y, window_, height_)};
     if (key == key_) return false;
     key_ = key;
     noise_.noise_row(key.noise_row, noise_grey_.data());
-    tiles_.least_amplitude(key.peak_row, least_.data());
+    if (tiles_) tiles_->least_amplitude(key.peak_row, least_.data());
     const int inner = key.share < 1.0 ? width_ : std::min(window_ / 2, width_);  // all columns, or those at the ends
     for (int x = 0; x < inner; ++x) shrink(x);
     for (int x = std::max(inner, width_ - window_ / 2); x < width_; ++x) shrink(x);
@@ -71,26 +77,13 @@ class Limits {
   }
 
   const NoiseProbe& noise_;
-  PeakTiles tiles_;
+  std::optional<PeakTiles> tiles_;
   int width_;
   int height_;
   int window_;
   Key key_;
   std::vector<float> noise_grey_;
   std::vector<float> least_;
-};
-
-double median(std::vector<float>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
-}
-
-/// What a band of rows gives beside its part of the map.
-struct BandFigures {
-  std::vector<float> widths_um;
-  std::vector<CurveTuple> tuples;
 };
 
 CurveTuple tuple_of(const RowFit& fit, const CurveRow& row, int x, float noise, float height_m) {
@@ -107,25 +100,95 @@ CurveTuple tuple_of(const RowFit& fit, const CurveRow& row, int x, float noise, 
   return tuple;
 }
 
-/// One pass over the image.
-class Pass {
+/// Points here and there in a row, as a row of their own.
+class SpotRow {
  public:
-  Pass(const CurveSource& curves, const FocusSettings& settings, const NoiseProbe& noise, WorkerPool& pool,
-       HeightMap& map)
+  SpotRow(int row_width, int every) : every_(every), width_((row_width - every / 2 + every - 1) / every) {
+    for (auto& field : fields_) field.resize(static_cast<std::size_t>(width_));
+    saturated_.resize(static_cast<std::size_t>(width_));
+    noise_grey.resize(static_cast<std::size_t>(width_));
+  }
+
+  [[nodiscard]] int width() const noexcept { return width_; }
+
+  /// noise_grey: of every pixel of the row.
+  void gather(const CurveRow& row, const float* noise_grey_row) noexcept {
+    const std::array from{row.peak, row.left, row.left2, row.right, row.right2, row.minimum, row.peak_index};
+    for (int i = 0; i < width_; ++i) {
+      const int x = every_ / 2 + i * every_;
+      for (std::size_t field = 0; field < from.size(); ++field) {
+        fields_[field][static_cast<std::size_t>(i)] = from[field][x];
+      }
+      saturated_[static_cast<std::size_t>(i)] = row.saturated[x];
+      noise_grey[static_cast<std::size_t>(i)] = noise_grey_row[x];
+    }
+  }
+  [[nodiscard]] CurveRow curves() noexcept {
+    auto& [peak, left, left2, right, right2, minimum, peak_index] = fields_;
+    return {nullptr,      nullptr,       peak.data(),    left.data(),       left2.data(),
+            right.data(), right2.data(), minimum.data(), peak_index.data(), saturated_.data()};
+  }
+  std::vector<float> noise_grey;
+
+ private:
+  int every_;
+  int width_;
+  std::array<std::vector<std::uint16_t>, 7> fields_;
+  std::vector<std::uint8_t> saturated_;
+};
+
+/// What goes over the image of one map.
+class MapFinish {
+ public:
+  MapFinish(const CurveSource& curves, const FocusSettings& settings, const NoiseProbe& noise, WorkerPool& pool,
+            HeightMap& map)
       : curves_(curves),
         settings_(settings),
         noise_(noise),
         pool_(pool),
         map_(map),
         width_(map.height_m.width()),
-        height_(map.height_m.height()),
-        check_every_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)))) {}
+        height_(map.height_m.height()) {}
 
-  /// All planes. One entry a band, in the order of rows.
-  std::vector<BandFigures> fit(const RowFit& fit, bool with_tuples) {
+  /// Valid points spread over the image, in the order of rows.
+  std::vector<CurveTuple> look_around(const RowFit& fit) {
+    const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)));
+    const int rows = (height_ - every / 2 + every - 1) / every;
+    const int bands = pool_.threads();
+    std::vector<std::vector<CurveTuple>> found(static_cast<std::size_t>(bands));
+    pool_.run(bands, [&](int band) {
+      auto& tuples = found[static_cast<std::size_t>(band)];
+      Limits limits(noise_, std::nullopt, width_, height_, settings_.window_px);
+      SpotRow spots(width_, every);
+      const auto count = static_cast<std::size_t>(spots.width());
+      std::vector<float> noise(count);
+      std::vector<float> height_m(count);
+      std::vector<float> variance_m2(count);
+      std::vector<float> prominence(count);
+      std::vector<std::uint8_t> mask(count);
+      const std::vector<float> least(count);
+      for (int row = rows * band / bands; row < rows * (band + 1) / bands; ++row) {
+        const int y = every / 2 + row * every;
+        limits.move_to(y);
+        spots.gather(curves_(band, y, nullptr), limits.noise_grey());
+        fit.find_noise(spots.curves(), spots.noise_grey.data(), spots.width(), noise.data());
+        fit.fit(spots.curves(), noise.data(), least.data(), spots.width(),
+                {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
+        for (int i = 0; i < spots.width(); ++i) {
+          const auto n = static_cast<std::size_t>(i);
+          if (mask[n] == 0) tuples.push_back(tuple_of(fit, spots.curves(), i, noise[n], height_m[n]));
+        }
+      }
+    });
+    std::vector<CurveTuple> all;
+    for (const auto& tuples : found) all.insert(all.end(), tuples.begin(), tuples.end());
+    return all;
+  }
+
+  /// All planes.
+  void fit(const RowFit& fit) {
     const int bands = pool_.threads();
     const int reach = settings_.window_px / 2;
-    std::vector<BandFigures> figures(static_cast<std::size_t>(bands));
     pool_.run(bands, [&](int band) {
       const int first = height_ * band / bands;
       const int end = height_ * (band + 1) / bands;
@@ -139,19 +202,16 @@ class Pass {
         }
         fit.fit(row, noise_row.data(), limits.least(), width_,
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
-        if (y % check_every_ == 0)
-          spot_check(fit, row, y, noise_row, with_tuples, figures[static_cast<std::size_t>(band)]);
-        if (y - 2 * reach >= first) add_slope_error(y - reach);  // while the rows are in the cache
+        if (y - 2 * reach >= first) finish_sigma(y - reach);  // while the rows are in the cache
       }
     });
     pool_.run(bands, [&](int band) {  // where the slope reaches into the next band
       const int first = height_ * band / bands;
       const int end = height_ * (band + 1) / bands;
       for (int y = first; y < end; ++y) {
-        if (y - reach < first || y + reach >= end) add_slope_error(y);
+        if (y - reach < first || y + reach >= end) finish_sigma(y);
       }
     });
-    return figures;
   }
 
  private:
@@ -161,24 +221,14 @@ class Pass {
             [this, band](int y) { return curves_(band, y, nullptr); }};
   }
 
-  /// Of row y, from the heights of the rows a window's half above and below.
-  void add_slope_error(int y) {
+  /// Row y of the variances becomes one of standard errors, with what the slope adds to them: from the heights of the
+  /// rows a window's half above and below.
+  void finish_sigma(int y) {
     const int reach = settings_.window_px / 2;
-    if (reach == 0 || y < reach || y >= height_ - reach) return;
-    focus_kernels().add_slope_error(map_.height_m.row(y), map_.height_m.row(y - reach), map_.height_m.row(y + reach),
-                                    reach, kWeightOffset * static_cast<float>(settings_.window_px), width_,
-                                    map_.sigma_m.row(y));
-  }
-
-  void spot_check(const RowFit& fit, const CurveRow& row, int y, const std::vector<float>& noise, bool with_tuples,
-                  BandFigures& figures) const {
-    for (int x = 0; x < width_; x += check_every_) {
-      if (map_.mask.at(x, y) != 0) continue;
-      const auto curve_width = fit.curve_width_um(row, x);
-      if (curve_width) figures.widths_um.push_back(static_cast<float>(*curve_width));
-      if (!with_tuples) continue;
-      figures.tuples.push_back(tuple_of(fit, row, x, noise[static_cast<std::size_t>(x)], map_.height_m.at(x, y)));
-    }
+    const bool inside = reach > 0 && y >= reach && y < height_ - reach;
+    focus_kernels().finish_sigma(map_.height_m.row(y), inside ? map_.height_m.row(y - reach) : nullptr,
+                                 inside ? map_.height_m.row(y + reach) : nullptr, reach,
+                                 kWeightOffset * static_cast<float>(settings_.window_px), width_, map_.sigma_m.row(y));
   }
 
   const CurveSource& curves_;
@@ -188,36 +238,25 @@ class Pass {
   HeightMap& map_;
   int width_;
   int height_;
-  int check_every_;  // row and column
 };
-
-template <typename Values>
-Values joined(const std::vector<BandFigures>& figures, Values BandFigures::*member) {
-  Values all;
-  for (const BandFigures& band : figures) all.insert(all.end(), (band.*member).begin(), (band.*member).end());
-  return all;
-}
 
 }  // namespace
 
 void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
                 PeakMethod method, const NoiseProbe& noise, WorkerPool& pool, HeightMap& map) {
-  Pass pass(curves, settings, noise, pool, map);
-  const bool correct = settings.stage_correction && method == PeakMethod::kFiveSample;
-  auto figures = pass.fit(RowFit(z_um, settings, map.texture_format, method), correct);
-  if (correct) {
-    map.stage = solve_stage_correction(joined(figures, &BandFigures::tuples), z_um, pool);
+  MapFinish finish(curves, settings, noise, pool, map);
+  const auto tuples = finish.look_around(RowFit(z_um, settings, map.texture_format, method));
+  std::vector<double> corrected = z_um;
+  if (settings.stage_correction && method == PeakMethod::kFiveSample) {
+    map.stage = solve_stage_correction(tuples, z_um, pool);
+    for (std::size_t k = 0; k < map.stage.offsets_um.size(); ++k) corrected[k] += map.stage.offsets_um[k];
   } else {
     map.stage.reason = "not asked for";
   }
-  if (map.stage.applied) {
-    std::vector<double> corrected = z_um;
-    for (std::size_t k = 0; k < corrected.size(); ++k) corrected[k] += map.stage.offsets_um[k];
-    figures = pass.fit(RowFit(corrected, settings, map.texture_format, method), false);
-  }
+  const CurveShape shape = curve_shape(tuples, corrected);
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias));
   map.noise_grey = noise.median();
-  auto widths = joined(figures, &BandFigures::widths_um);
-  map.curve_width_um = median(widths);
+  map.curve_width_um = shape.width_um;
 }
 
 }  // namespace fvd

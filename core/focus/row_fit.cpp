@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/focus/five_sample_fit.hpp"
@@ -34,10 +34,12 @@ double sample_noise(const FocusSettings& settings, double noise_grey, double sha
   return 0.0;
 }
 
-RowFit::RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method)
+RowFit::RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
+               VertexBias bias)
     : settings_(settings),
       code_(sharpness_code(settings, format)),
       method_(method),
+      bias_(bias),
       z_um_(std::move(z_um)),
       heights_(height_table(z_um_)),
       bin_gain_(settings.bin_slices / std::ldexp(1.0, bin_shift(settings.bin_slices))) {}
@@ -64,32 +66,13 @@ void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amp
     const FitParameters parameters{static_cast<float>(settings_.min_prominence),
                                    static_cast<float>(settings_.min_significance),
                                    settings_.bin_slices > 1 ? kBinnedShapeError : kShapeError,
-                                   static_cast<float>(SharpnessCode::kUnit), code_.root};
+                                   static_cast<float>(SharpnessCode::kUnit),
+                                   code_.root,
+                                   bias_};
     focus_kernels().fit_five(row, heights_, noise, least_amplitude, width, parameters, out);
   } else {
     fit_triples(row, noise, least_amplitude, width, out);
   }
-}
-
-std::optional<double> RowFit::curve_width_um(const CurveRow& row, int x) const noexcept {
-  const auto index = static_cast<std::size_t>(row.peak_index[x]);
-  if (heights_[index].mask != 0) return std::nullopt;
-  const double floor = static_cast<double>(kFloorShare) * share(row.minimum[x]);
-  const double peak = share(row.peak[x]) - floor;
-  const double left = share(row.left[x]) - floor;
-  const double right = share(row.right[x]) - floor;
-  if (!(peak > 0.0 && left > 0.0 && right > 0.0)) return std::nullopt;
-  // G = F^-1/2 over that of the peak is 1 + a u + b u^2 through both neighbours; half of F is the root of 2 of G.
-  const auto u_left = static_cast<double>(heights_[index].u_left);
-  const auto u_right = static_cast<double>(heights_[index].u_right);
-  const double rise_left = (std::sqrt(peak / left) - 1.0) / u_left;
-  const double rise_right = (std::sqrt(peak / right) - 1.0) / u_right;
-  const double b = (rise_right - rise_left) / (u_right - u_left);
-  const double a = rise_left - b * u_left;
-  if (!(b > 0.0)) return std::nullopt;
-  const double lowest = 1.0 - a * a / (4.0 * b);
-  if (!(lowest > 0.0)) return std::nullopt;
-  return 2.0 * std::sqrt((std::numbers::sqrt2 - 1.0) * lowest / b) * static_cast<double>(heights_[index].scale_um);
 }
 
 void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
@@ -116,7 +99,8 @@ void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* l
     }
     const bool valid = mask == 0;
     out.height_m[x] = valid ? static_cast<float>(position->z_um * kMetresPerMicrometer) : NAN;
-    out.sigma_m[x] = valid ? static_cast<float>(position->sigma_um * kMetresPerMicrometer) : NAN;
+    const double sigma_m = valid ? position->sigma_um * kMetresPerMicrometer : std::nan("");
+    out.variance_m2[x] = static_cast<float>(sigma_m * sigma_m);
     out.prominence[x] = static_cast<float>(prominence);
     out.mask[x] = static_cast<std::uint8_t>(mask);
   }

@@ -1,8 +1,7 @@
 #pragma once
 
-/// From one row's condensed focus curves to heights, their standard errors, prominence and reasons to be a hole.
+/// From one row's condensed focus curves to heights, their variances, prominence and reasons to be a hole.
 
-#include <optional>
 #include <vector>
 
 #include "core/focus/focus_kernels.hpp"
@@ -22,8 +21,9 @@ namespace fvd {
 /// context: const members from many threads.
 class RowFit {
  public:
-  /// z of the samples; bins of how many slices.
-  RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method);
+  /// z of the samples. bias: what is taken off the vertices of kFiveSample.
+  RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
+         VertexBias bias = {});
 
   /// Standard deviation of a sample at the peak, as shares, from that of each pixel. Shape [width] each.
   void find_noise(const CurveRow& row, const float* noise_grey, int width, float* noise) const noexcept;
@@ -36,9 +36,6 @@ class RowFit {
   /// Shape [width] each.
   void fit(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
            const FitRow& out) const noexcept;
-
-  /// Full width at half maximum of one curve, from the peak and its neighbours; nothing where they enclose no maximum.
-  [[nodiscard]] std::optional<double> curve_width_um(const CurveRow& row, int x) const noexcept;
 
   /// A code's share of full scale.
   [[nodiscard]] double share(std::uint16_t code) const noexcept {
@@ -53,6 +50,7 @@ class RowFit {
   FocusSettings settings_;
   SharpnessCode code_;
   PeakMethod method_;
+  VertexBias bias_;
   std::vector<double> z_um_;
   std::vector<HeightEntry> heights_;
   double bin_gain_;  // from the mean code of a bin's slices to the bin's code

@@ -12,22 +12,14 @@
 /// What curves of another shape leave over follows the fraction of a step and averages out only where peaks lie at all
 /// fractions: so the system is solved only where they do, and used only where the offsets stand out of their error.
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/focus/curve_tuple.hpp"
 #include "core/pipeline/worker_pool.hpp"
 
 namespace fvd {
-
-/// Five samples about one pixel's peak.
-struct CurveTuple {
-  int index = 0;                 ///< of the peak's sample
-  std::array<float, 5> share{};  ///< over the floor, of the peak's: two before, the peak (1), two after; 0 = none
-  float noise = 0.0F;            ///< standard deviation of a share
-  float height_um = 0.0F;
-};
 
 /// Stage health as a scan shows it.
 struct StageCorrection {

@@ -111,17 +111,17 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
   const std::vector<float> noise_grey(kCurves, static_cast<float>(pixel));
   std::vector<float> noise(kCurves);
   std::vector<float> height_m(kCurves);
-  std::vector<float> sigma_m(kCurves);
+  std::vector<float> variance_m2(kCurves);
   std::vector<float> prominence(kCurves);
   std::vector<std::uint8_t> mask(kCurves);
   const std::vector<float> least(kCurves);
   fit.find_noise(row.curve, noise_grey.data(), kCurves, noise.data());
   fit.fit(row.curve, noise.data(), least.data(), kCurves,
-          {height_m.data(), sigma_m.data(), prominence.data(), mask.data()});
+          {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
   ErrorSum errors;
   for (std::size_t x = 0; x < truth.size(); ++x) {
     if (mask[x] != 0) continue;
-    errors.add(static_cast<double>(height_m[x]) * 1e6 - truth[x], static_cast<double>(sigma_m[x]) * 1e6);
+    errors.add(static_cast<double>(height_m[x]) * 1e6 - truth[x], std::sqrt(static_cast<double>(variance_m2[x])) * 1e6);
   }
   result.ratio = errors.rms() / bound;
   result.sigma_ratio = errors.sigma_ratio();

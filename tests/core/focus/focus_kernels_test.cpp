@@ -237,7 +237,7 @@ TEST(FocusKernels, FitAlike) {
       std::vector<float> floats(static_cast<std::size_t>(3 * width + kGuard), 5.0F);
       std::vector<std::uint8_t> mask(static_cast<std::size_t>(width + kGuard), 0x5A);
       kernels.fit_five(curves.row(), table, noise.data(), least.data(), width,
-                       {0.4F, 3.0F, 0.05F, 1.0F / 65535.0F, root},
+                       {0.4F, 3.0F, 0.05F, 1.0F / 65535.0F, root, {-0.1F, 0.4F}},
                        {floats.data(), floats.data() + width, floats.data() + 2 * width, mask.data()});
       std::vector<std::uint32_t> all(floats.size());
       std::memcpy(all.data(), floats.data(), floats.size() * sizeof(float));
@@ -258,7 +258,7 @@ TEST(FocusKernels, FindTheSameAmplitudesAndSlopes) {
       return highest;
     });
   }
-  expect_same("add_slope_error", [](const FocusKernels& kernels, int width, std::mt19937& random) {
+  expect_same("finish_sigma", [](const FocusKernels& kernels, int width, std::mt19937& random) {
     std::array<std::vector<float>, 4> rows;
     for (auto& row : rows) {
       for (int x = 0; x < width + kGuard; ++x) {
@@ -266,7 +266,9 @@ TEST(FocusKernels, FindTheSameAmplitudesAndSlopes) {
                                         : static_cast<float>(random() % 1000) * 1e-6F);
       }
     }
-    kernels.add_slope_error(rows[0].data(), rows[1].data(), rows[2].data(), 4, 0.3F, width, rows[3].data());
+    const bool inside = random() % 4 != 0;
+    kernels.finish_sigma(rows[0].data(), inside ? rows[1].data() : nullptr, inside ? rows[2].data() : nullptr, 4, 0.3F,
+                         width, rows[3].data());
     return rows[3];
   });
 }

@@ -1,0 +1,177 @@
+#include "core/focus/curve_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "core/focus/sample_heights.hpp"
+#include "core/focus/sharpness_code.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr std::size_t kMostCurves = 2500;   // that are looked at; their mean is good to 0.02 in p
+constexpr std::size_t kLeastCurves = 500;   // below which p stays that of the fit
+constexpr double kFitExponent = 2.0;        // of the five-sample fit
+constexpr double kOtherExponent = 1.5;      // the excess is taken to be linear in p between these two and beyond
+constexpr double kSmallestExponent = 1.25;  // of curves that the scenes of RESULTS.md show
+constexpr double kLargestExponent = 2.2;
+constexpr double kLeastNeighbour = 0.02;  // share of the peak: a smaller one tells more of noise than of the curve
+
+/// G = F^(-1/p) as a parabola through the peak, where it is 1 and u is 0, and both its neighbours.
+struct Parabola {
+  double slope = 0.0;
+  double bend = 0.0;  // coefficient of u^2
+  double p = kFitExponent;
+
+  /// F at u.
+  [[nodiscard]] double at(double u) const {
+    const double g = 1.0 + (slope + bend * u) * u;
+    if (p == kFitExponent) return 1.0 / (g * g);
+    return p == kOtherExponent ? 1.0 / (g * std::sqrt(g)) : std::pow(g, -p);
+  }
+  /// At the vertex.
+  [[nodiscard]] double lowest() const { return 1.0 - slope * slope / (4.0 * bend); }
+};
+
+double raised(double share, double p) {
+  if (p == kFitExponent) return 1.0 / std::sqrt(share);
+  return p == kOtherExponent ? 1.0 / std::cbrt(share * share) : std::pow(share, -1.0 / p);
+}
+
+std::optional<Parabola> parabola(const CurveTuple& tuple, const HeightEntry& at, double p) {
+  const auto left = static_cast<double>(tuple.share[1]);
+  const auto right = static_cast<double>(tuple.share[3]);
+  if (at.mask != 0 || !(left > kLeastNeighbour && right > kLeastNeighbour)) return std::nullopt;
+  const auto u_left = static_cast<double>(at.u_left);
+  const auto u_right = static_cast<double>(at.u_right);
+  const double rise_left = (raised(left, p) - 1.0) / u_left;
+  const double rise_right = (raised(right, p) - 1.0) / u_right;
+  Parabola result;
+  result.p = p;
+  result.bend = (rise_right - rise_left) / (u_right - u_left);
+  result.slope = rise_left - result.bend * u_left;
+  if (!(result.bend > 0.0) || !(result.lowest() > 0.0)) return std::nullopt;
+  return result;
+}
+
+/// What the nearer of the samples two steps away has over what the others foretell; the farther is mostly noise.
+std::optional<double> excess(const CurveTuple& tuple, const HeightEntry& at, double p) {
+  const auto curve = parabola(tuple, at, p);
+  if (!curve) return std::nullopt;
+  const bool before = tuple.share[1] > tuple.share[3];
+  const auto u = static_cast<double>(before ? at.u_left2 : at.u_right2);
+  if (u == 0.0) return std::nullopt;
+  return static_cast<double>(before ? tuple.share[0] : tuple.share[4]) - curve->at(u);
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// What the fit makes of curves (1 + bend u^2)^-p: of two, the vertex a fifth of a step from the peak's sample and
+/// almost half a step.
+VertexBias bias_of_fit(double bend, double p) {
+  constexpr std::array kPlaces{0.2, 0.45};
+  constexpr int kCurves = static_cast<int>(kPlaces.size());
+  constexpr double kPeakCode = 60000.0;
+  std::array<std::array<std::uint16_t, kCurves>, 9> columns{};
+  std::array<std::uint8_t, kCurves> saturated{};
+  auto& [previous, previous2, peak, left, left2, right, right2, minimum, index] = columns;
+  for (std::size_t x = 0; x < kPlaces.size(); ++x) {
+    const auto code = [&](double u) {
+      const double away = u - kPlaces[x];
+      return static_cast<std::uint16_t>(std::lround(kPeakCode * std::pow(1.0 + bend * away * away, -p)));
+    };
+    left2[x] = code(-2.0);
+    left[x] = code(-1.0);
+    peak[x] = code(0.0);
+    right[x] = code(1.0);
+    right2[x] = code(2.0);
+  }
+  const std::array<HeightEntry, 1> heights{
+      HeightEntry{.u_left2 = -2.0F, .u_left = -1.0F, .u_right = 1.0F, .u_right2 = 2.0F}};
+  const std::array<float, kCurves> nothing{};
+  // Without noise, and with a shape error of 1, the variance is the square of what the bias is divided by.
+  FitParameters parameters{};
+  parameters.shape_error = 1.0F;
+  parameters.code_unit = static_cast<float>(SharpnessCode::kUnit);
+  std::array<float, kCurves> height_m{};
+  std::array<float, kCurves> variance_m2{};
+  std::array<float, kCurves> prominence{};
+  std::array<std::uint8_t, kCurves> mask{};
+  focus_kernels().fit_five({previous.data(), previous2.data(), peak.data(), left.data(), left2.data(), right.data(),
+                            right2.data(), minimum.data(), index.data(), saturated.data()},
+                           heights, nothing.data(), nothing.data(), kCurves, parameters,
+                           {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
+  std::array<double, kCurves> u{};
+  std::array<double, kCurves> error{};
+  for (std::size_t x = 0; x < kPlaces.size(); ++x) {
+    if (mask[x] != 0) return {};
+    u[x] = static_cast<double>(height_m[x]) * 1e6;  // the scale is 1 um
+    error[x] = (u[x] - kPlaces[x]) / (std::sqrt(static_cast<double>(variance_m2[x])) * 1e6);
+  }
+  const double determinant = u[0] * u[1] * (u[1] * u[1] - u[0] * u[0]);
+  VertexBias bias;
+  bias.linear = static_cast<float>((error[0] * u[1] * u[1] * u[1] - error[1] * u[0] * u[0] * u[0]) / determinant);
+  bias.cubic = static_cast<float>((u[0] * error[1] - u[1] * error[0]) / determinant);
+  return bias;
+}
+
+}  // namespace
+
+CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um) {
+  const auto heights = height_table(z_um);
+  const std::size_t count = std::min(tuples.size(), kMostCurves);
+  // Not every n-th: tuples come in rows and columns.
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const auto pick = [&](std::size_t i) -> const CurveTuple& {
+    if (count == tuples.size()) return tuples[i];
+    const double place = static_cast<double>(i) * kGoldenRatio;
+    return tuples[static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(tuples.size()))];
+  };
+  double excess_at_fit = 0.0;
+  double excess_at_other = 0.0;
+  std::size_t told = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const CurveTuple& tuple = pick(i);
+    const HeightEntry& at = heights[static_cast<std::size_t>(tuple.index)];
+    const auto at_fit = excess(tuple, at, kFitExponent);
+    const auto at_other = excess(tuple, at, kOtherExponent);
+    if (!at_fit || !at_other) continue;
+    excess_at_fit += *at_fit;
+    excess_at_other += *at_other;
+    ++told;
+  }
+  CurveShape shape;
+  const bool tells = told >= kLeastCurves && excess_at_other < excess_at_fit;
+  if (tells) {
+    const double slope = (excess_at_fit - excess_at_other) / (kFitExponent - kOtherExponent);
+    shape.exponent = std::clamp(kFitExponent - excess_at_fit / slope, kSmallestExponent, kLargestExponent);
+  }
+
+  std::vector<double> bends;
+  std::vector<double> widths_um;
+  for (std::size_t i = 0; i < count; ++i) {
+    const CurveTuple& tuple = pick(i);
+    const HeightEntry& at = heights[static_cast<std::size_t>(tuple.index)];
+    const auto curve = parabola(tuple, at, shape.exponent);
+    if (!curve) continue;
+    const double bend = curve->bend / curve->lowest();  // of G over its lowest value
+    const double half = std::sqrt((std::exp2(1.0 / shape.exponent) - 1.0) / bend);
+    bends.push_back(bend);
+    widths_um.push_back(2.0 * half * static_cast<double>(at.scale_um));
+  }
+  if (bends.empty()) return shape;
+  shape.width_um = median(widths_um);
+  if (tells) shape.bias = bias_of_fit(median(bends), shape.exponent);
+  return shape;
+}
+
+}  // namespace fvd
