@@ -11,14 +11,14 @@
 ///
 /// sigma: the noise of each sample carried through the fit to first order, and what is left of the shape: curves differ
 /// from place to place, which makes an error that follows the fraction of a step. As a share of the step it grows with
-/// b, the curvature of G in steps, as b / (1 + 0.9 b), measured on four textures; summing slices to bins smooths most of
-/// it away.
+/// b, the curvature of G in steps, as b / (1 + 0.9 b), measured on four textures; summing slices to bins smooths most
+/// of it away.
 
 namespace fvd {
 
 inline constexpr float kFloorShare = 0.9F;
-inline constexpr float kSmallestShare = 1e-3F;      ///< of the peak: what a sample at the floor counts as
-inline constexpr float kShapeError = 0.0335F;       ///< standard deviation over b / (1 + 0.9 b), in sample distances
+inline constexpr float kSmallestShare = 1e-3F;       ///< of the peak: what a sample at the floor counts as
+inline constexpr float kShapeError = 0.0335F;        ///< standard deviation over b / (1 + 0.9 b), in sample distances
 inline constexpr float kBinnedShapeError = 0.0175F;  ///< the same where samples are bins
 
 }  // namespace fvd

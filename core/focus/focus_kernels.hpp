@@ -8,6 +8,7 @@
 ///
 /// Rows have shape [width] unless said otherwise, width >= 1; outputs do not overlap inputs. context: thread-safe.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -16,16 +17,17 @@ namespace fvd {
 
 /// One row's state of focus curves that pass by once, as columns. Sharpness is in codes, see sharpness_code.hpp.
 struct CurveRow {
-  std::uint16_t* previous;    ///< the sample before
-  std::uint16_t* previous2;   ///< the one before that
-  std::uint16_t* peak;        ///< largest so far; of equal ones the first
-  std::uint16_t* left;        ///< the sample before the peak, 0 where there is none
-  std::uint16_t* left2;       ///< the one before that
-  std::uint16_t* right;       ///< the sample after the peak, 0 while there is none
-  std::uint16_t* right2;      ///< the one after that
-  std::uint16_t* minimum;     ///< smallest so far
-  std::uint16_t* peak_index;  ///< number of the peak's sample, 0-based
-  std::uint8_t* saturated;    ///< 1 if a pixel of the window was saturated at the peak
+  std::uint16_t* previous;         ///< the sample before
+  std::uint16_t* previous2;        ///< the one before that
+  std::uint16_t* peak;             ///< largest so far; of equal ones the first
+  std::uint16_t* left;             ///< the sample before the peak, 0 where there is none
+  std::uint16_t* left2;            ///< the one before that
+  std::uint16_t* right;            ///< the sample after the peak, 0 while there is none
+  std::uint16_t* right2;           ///< the one after that
+  std::uint16_t* minimum;          ///< smallest so far
+  std::uint16_t* peak_index;       ///< number of the peak's sample, 0-based
+  std::uint8_t* saturated;         ///< 1 if a pixel of the window was saturated at the peak
+  std::ptrdiff_t pitch_bytes = 0;  ///< from each of these to the same of the next row; 0: unknown
 };
 
 /// A row of one sample: codes, whether its window was saturated, pixels. Texture: std::uint8_t or std::uint16_t.

@@ -62,6 +62,7 @@ StateRow<Texture> PeakAccumulator<Texture>::row(int y) noexcept {
   if (binned_) take(row.bin.texture);
   take(row.curve.saturated);
   if (binned_) take(row.bin.saturated);
+  row.curve.pitch_bytes = static_cast<std::ptrdiff_t>(blocks_per_row_ * sizeof(Block));
   return row;
 }
 

@@ -24,8 +24,8 @@ constexpr double kPrior = 0.2;        // of a step: what a stage's error is thou
 constexpr double kMinErrors = 3.0;    // standard errors that the offsets must exceed
 constexpr int kIterations = 3;
 constexpr double kMostLeftOver = 0.6;  // of the curves' departure from a parabola: the stage must be to blame for more
-constexpr double kHopeless =
-    0.85;  // foreseen to be left over after the first iteration: no further one brings it below that
+constexpr std::size_t kFirstLook = 4;  // of so many curves one, to see whether the stage may be to blame at all
+constexpr double kHopeless = 0.85;     // foreseen then to be left over: nothing brings it below kMostLeftOver
 constexpr double kMinInformation = 50.0;  // over that of the prior, for a sample to count as seen
 constexpr double kLeastOffset = 0.015;    // of a step: below it the shape of the curves is to blame
 
@@ -188,16 +188,15 @@ struct Equations {
 
 using BandSolver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
-/// What all curves say. Always in as many pieces, so that the sum does not depend on the number of threads.
-Equations equations_of(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, double step,
-                       WorkerPool& pool) {
+/// What every n-th curve says. Always in as many pieces, so that the sum does not depend on the number of threads.
+Equations equations_of(std::span<const CurveTuple> tuples, std::size_t every, const std::vector<double>& z_um,
+                       double step, WorkerPool& pool) {
   constexpr std::size_t kPieces = 8;
   std::vector<Equations> pieces(kPieces, Equations(z_um.size()));
   pool.run(kPieces, [&](int piece) {
     const auto number = static_cast<std::size_t>(piece);
-    const auto end = static_cast<std::ptrdiff_t>(tuples.size() * (number + 1) / kPieces);
-    for (auto i = static_cast<std::ptrdiff_t>(tuples.size() * number / kPieces); i < end; ++i) {
-      pieces[number].add(tuples[static_cast<std::size_t>(i)], z_um, step);
+    for (std::size_t i = number * every; i < tuples.size(); i += kPieces * every) {
+      pieces[number].add(tuples[i], z_um, step);
     }
   });
   for (std::size_t piece = 1; piece < kPieces; ++piece) pieces[0] += pieces[piece];
@@ -265,8 +264,8 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   BandSolver solver;
   double left_over_before = 0.0;
   double left_over = 0.0;
-  for (int iteration = 0; iteration <= kIterations; ++iteration) {
-    equations = equations_of(tuples, corrected, step, pool);
+  const auto solve = [&](std::size_t every) {
+    equations = equations_of(tuples, every, corrected, step, pool);
     equations.diagonals.row(0).array() += kPriorWeight;
     for (Eigen::Index k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(k);
@@ -274,14 +273,23 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
     }
     solver.compute(equations.normal_matrix());
     left_over = equations.left_over;
-    if (iteration == 0) left_over_before = left_over;
-    if (iteration == kIterations) break;  // only to see what is left over now
-    const Eigen::VectorXd change = solver.solve(equations.right);
+    return Eigen::VectorXd(solver.solve(equations.right));
+  };
+  const auto correct = [&](const Eigen::VectorXd& change) {
     for (Eigen::Index k = 0; k < count; ++k) corrected[static_cast<std::size_t>(k)] += step * change(k);
-    const double foreseen = left_over - equations.right.dot(change);
-    if (iteration == 0 && foreseen > kHopeless * left_over_before) {
-      left_over = foreseen;
-      break;
+  };
+  Eigen::VectorXd change = solve(kFirstLook);
+  left_over_before = left_over;
+  const double foreseen = left_over - equations.right.dot(change);
+  if (foreseen > kHopeless * left_over_before) {
+    correct(change);
+    left_over = foreseen;
+  } else {
+    change = solve(1);
+    left_over_before = left_over;
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      correct(change);
+      change = solve(1);  // the last one only to see what is left over now
     }
   }
 
