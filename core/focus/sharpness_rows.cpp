@@ -85,18 +85,26 @@ Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings
   return codes;
 }
 
+/// Windows about x = first .. end - 1, each from the one before: their ends only move to the right.
+template <typename Sum>
+void slide_windows(const Sum* values, int width, int radius, int first, int end, Sum* out) {
+  int left = WindowReach(first, radius, width).first;
+  int right = left;
+  Sum sum = 0;  // of [left, right)
+  for (int x = first; x < end; ++x) {
+    const WindowReach reach(x, radius, width);
+    while (right <= reach.last) sum = static_cast<Sum>(sum + values[right++]);
+    while (left < reach.first) sum = static_cast<Sum>(sum - values[left++]);
+    out[x] = sum;
+  }
+}
+
 /// The kernel's sums reach from `radius` to width - radius; nearer to the ends the window shrinks.
 template <typename Sum>
 void sum_ends(const Sum* values, int width, int radius, Sum* out) {
-  const auto at = [&](int x) {
-    const WindowReach reach(x, radius, width);
-    Sum sum = 0;
-    for (int u = reach.first; u <= reach.last; ++u) sum = static_cast<Sum>(sum + values[u]);
-    out[x] = sum;
-  };
   const int left_end = std::min(radius, width);
-  for (int x = 0; x < left_end; ++x) at(x);
-  for (int x = std::max(left_end, width - radius); x < width; ++x) at(x);
+  slide_windows(values, width, radius, 0, left_end, out);
+  slide_windows(values, width, radius, std::max(left_end, width - radius), width, out);
 }
 
 }  // namespace

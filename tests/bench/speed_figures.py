@@ -96,6 +96,7 @@ def main():
         "threads2_over_1": rate / median(mono8.format(1), "Mpx/s"),
         "mono8_mpx_s": rate,
         "batch8_over_1": rate / median(mono8.format(2).replace("batch:8", "batch:1"), "Mpx/s"),
+        "mono12_mpx_s": median(mono16.replace("bits:16", "bits:12"), "Mpx/s"),
         "bin4_over_1": median(mono8.format(2).replace("bin:1", "bin:4"), "Mpx/s") / rate,
     }
     print(json.dumps({name: round(value, 3) for name, value in figures.items()}))
