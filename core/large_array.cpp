@@ -9,7 +9,9 @@
 
 #include <sys/mman.h>
 
-namespace fvd::detail {
+namespace fvd {
+
+namespace detail {
 
 namespace {
 
@@ -53,11 +55,12 @@ class KeptMemory {
     const std::lock_guard lock(mutex_);
     blocks_.push_back({memory, bytes});
     kept_bytes_ += bytes;
-    while (kept_bytes_ > kMostKeptBytes || blocks_.size() == blocks_.capacity()) {  // the oldest go
-      ::munmap(blocks_.front().memory, blocks_.front().bytes);
-      kept_bytes_ -= blocks_.front().bytes;
-      blocks_.erase(blocks_.begin());
-    }
+    while (kept_bytes_ > kMostKeptBytes || blocks_.size() == blocks_.capacity()) release_oldest();
+  }
+
+  void release_all() noexcept {
+    const std::lock_guard lock(mutex_);
+    while (!blocks_.empty()) release_oldest();
   }
 
  private:
@@ -66,6 +69,11 @@ class KeptMemory {
     void* memory;
     std::size_t bytes;
   };
+  void release_oldest() noexcept {
+    ::munmap(blocks_.front().memory, blocks_.front().bytes);
+    kept_bytes_ -= blocks_.front().bytes;
+    blocks_.erase(blocks_.begin());
+  }
   static std::vector<Block> no_blocks() {
     std::vector<Block> blocks;
     blocks.reserve(kMostBlocks);  // keep() may not throw
@@ -100,4 +108,8 @@ void release_large(void* memory, std::size_t bytes) noexcept {
   }
 }
 
-}  // namespace fvd::detail
+}  // namespace detail
+
+void release_kept_memory() noexcept { detail::kept_memory().release_all(); }
+
+}  // namespace fvd

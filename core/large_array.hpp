@@ -18,6 +18,9 @@ void release_large(void* memory, std::size_t bytes) noexcept;
 inline constexpr std::size_t kMostKeptBytes = std::size_t{1} << 30;
 }  // namespace detail
 
+/// Gives the operating system back what has been kept. context: thread-safe.
+void release_kept_memory() noexcept;
+
 /// A fixed number of plain values, unset at first, aligned to 64 bytes. From 2 MiB up the kernel is asked for huge
 /// pages (madvise(2), MADV_HUGEPAGE), and a page costs nothing until the first thread writes to it. A surface of 5
 /// million points is 30 000 ordinary pages: to get them takes as long as to compute the heights.

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
+#include "core/large_array.hpp"
 #include "core/pipeline/worker_pool.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/version.hpp"
@@ -120,6 +121,7 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   ResultData data;
   describe(data, options, stack);
   measure(options, stack, start, on_slice, data);
+  release_kept_memory();  // there is no next scan
   data.step_summary = summarize_steps(data.steps);
   const HeightSummary summary = write_result(options.out, data);
   return {stack.list().description, stack.slices(), stack.width(), stack.height(), data.state_bytes_per_pixel, summary};

@@ -50,6 +50,18 @@ TEST(LargeArray, TakesMemoryThatOneOfItsSizeReleased) {
   EXPECT_NE(third.data(), memory);
 }
 
+TEST(LargeArray, GivesBackWhatWasKeptWhenAsked) {
+  constexpr std::size_t kSize = 2 * kHugePage + 54321;
+  const std::uint8_t* memory = nullptr;
+  {
+    const LargeArray<std::uint8_t> array(kSize);
+    memory = array.data();
+  }
+  ASSERT_TRUE(is_mapped(memory));
+  release_kept_memory();
+  EXPECT_FALSE(is_mapped(memory));
+}
+
 TEST(LargeArray, KeepsOnlySoMuchOfWhatWasReleased) {
   // Never written to: it takes no memory.
   constexpr std::size_t kSize = detail::kMostKeptBytes / 2 + kHugePage;
