@@ -14,7 +14,7 @@ namespace fvd {
 
 namespace {
 
-constexpr std::size_t kMostCurves = 2500;   // that are looked at; their mean is good to 0.02 in p
+constexpr std::size_t kMostCurves = 1500;   // that are looked at; their mean is good to 0.03 in p
 constexpr std::size_t kLeastCurves = 500;   // below which p stays that of the fit
 constexpr double kFitExponent = 2.0;        // of the five-sample fit
 constexpr double kOtherExponent = 1.5;      // the excess is taken to be linear in p between these two and beyond
