@@ -15,6 +15,10 @@ std::vector<const FocusKernels*> runnable() {
   std::vector<const FocusKernels*> kernels{&scalar_focus_kernels(), &baseline_focus_kernels()};
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") != 0) kernels.push_back(&avx2_focus_kernels());
+  if (__builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+      __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0) {
+    kernels.push_back(&avx512_focus_kernels());
+  }
 #endif
   return kernels;
 }

@@ -2,9 +2,9 @@
 
 /// The loops in which a scan spends its time, once for every kind of processor, chosen when the program starts.
 ///
-/// One source, focus_kernels.inc, is compiled three times: without vector code ("scalar"), for the processor every
-/// build may assume ("baseline"), and for AVX2. All three give the same bits; the tests hold them against each other.
-/// The environment variable FVD_FORCE_KERNEL names the one to use.
+/// One source, focus_kernels.inc, is compiled four times: without vector code ("scalar"), for the processor every
+/// build may assume ("baseline"), for AVX2 and for AVX-512. All give the same bits; the tests hold them against each
+/// other. The environment variable FVD_FORCE_KERNEL names the one to use.
 ///
 /// Rows have shape [width] unless said otherwise, width >= 1; outputs do not overlap inputs. context: thread-safe.
 

@@ -29,6 +29,7 @@ inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 [[nodiscard]] const FocusKernels& baseline_focus_kernels() noexcept;
 #if defined(__x86_64__)
 [[nodiscard]] const FocusKernels& avx2_focus_kernels() noexcept;
+[[nodiscard]] const FocusKernels& avx512_focus_kernels() noexcept;
 #endif
 
 }  // namespace fvd
