@@ -106,7 +106,8 @@ struct FocusKernels {
   /// sums += codes / 2^shift, rounded.
   void (*add_to_bin)(std::uint16_t* sums, const std::uint16_t* codes, int shift, int width) noexcept;
 
-  void (*widen_u8)(const std::uint8_t* values, int width, std::uint16_t* out) noexcept;
+  /// out = values. The next row is pitch_bytes behind the values, width behind out.
+  void (*widen_u8)(const std::uint8_t* values, std::ptrdiff_t pitch_bytes, int width, std::uint16_t* out) noexcept;
 
   /// Takes successive samples in, the first of number first_index >= 1; texture keeps the pixel of the peak's sample.
   /// The rows of the state, and texture, have room for width rounded up to 16.

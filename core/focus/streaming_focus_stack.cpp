@@ -86,7 +86,7 @@ class TypedStack {
       }
       if (texture != nullptr) {
         if constexpr (sizeof(Pixel) == 1) {
-          focus_kernels().widen_u8(row.texture, width, texture);
+          focus_kernels().widen_u8(row.texture, row.curve.pitch_bytes, width, texture);
         } else {
           std::copy_n(row.texture, width, texture);
         }

@@ -159,6 +159,20 @@ TEST(FocusKernels, GiveTheSameCodesBinsAndMaxima) {
   });
 }
 
+TEST(FocusKernels, WidenEveryPixelAndNothingBehind) {
+  for (const FocusKernels* kernels : all_focus_kernels()) {
+    for (const int width : {1, 15, 64, 65, 130}) {
+      std::mt19937 random(2);
+      const auto values = random_row<std::uint8_t>(width, random);
+      std::vector<std::uint16_t> out(static_cast<std::size_t>(width + kGuard), 0x5A5A);
+      kernels->widen_u8(values.data(), 0, width, out.data());
+      for (std::size_t x = 0; x < out.size(); ++x) {
+        ASSERT_EQ(out[x], x < static_cast<std::size_t>(width) ? values[x] : 0x5A5A) << kernels->name << ' ' << width;
+      }
+    }
+  }
+}
+
 TEST(FocusKernels, GiveTheSameNoise) {
   expect_same("noise", [](const FocusKernels& kernels, int width, std::mt19937& random) {
     std::vector<std::uint64_t> sums;
