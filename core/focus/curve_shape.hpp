@@ -14,6 +14,7 @@
 
 #include "core/focus/curve_tuple.hpp"
 #include "core/focus/focus_kernels.hpp"
+#include "core/pipeline/worker_pool.hpp"
 
 namespace fvd {
 
@@ -24,6 +25,7 @@ struct CurveShape {
 };
 
 /// Tuples: of valid points spread over the image. z_um: of the samples.
-[[nodiscard]] CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um);
+[[nodiscard]] CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um,
+                                     WorkerPool& pool);
 
 }  // namespace fvd

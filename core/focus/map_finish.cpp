@@ -253,7 +253,7 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
   } else {
     map.stage.reason = "not asked for";
   }
-  const CurveShape shape = curve_shape(tuples, corrected);
+  const CurveShape shape = curve_shape(tuples, corrected, pool);
   finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias));
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;

@@ -31,6 +31,11 @@ std::vector<double> uneven_heights() {
   return z_um;
 }
 
+WorkerPool& pool() {
+  static WorkerPool two(2);
+  return two;
+}
+
 struct Curves {
   std::vector<CurveTuple> tuples;
   std::vector<double> truth_um;
@@ -90,7 +95,7 @@ TEST(CurveShape, FindsTheExponentAndTheWidth) {
   const auto z_um = uneven_heights();
   for (const double exponent : {1.4, 1.7, 2.0}) {
     for (const double noise : {0.0, 0.01}) {
-      const CurveShape shape = curve_shape(Curves(exponent, noise, 10000, z_um).tuples, z_um);
+      const CurveShape shape = curve_shape(Curves(exponent, noise, 10000, z_um).tuples, z_um, pool());
       EXPECT_NEAR(shape.exponent, exponent, 0.08) << "noise " << noise;
       EXPECT_NEAR(shape.width_um, kWidth_um, 0.02 * kWidth_um) << "exponent " << exponent << ", noise " << noise;
     }
@@ -102,25 +107,37 @@ TEST(CurveShape, TakesTheRippleOffTheFit) {
   for (const double exponent : {1.3, 1.5, 1.7}) {
     Curves curves(exponent, 0.0, 5000, z_um);
     const double before_um = curves.rms_um(z_um, {});
-    const double after_um = curves.rms_um(z_um, curve_shape(curves.tuples, z_um).bias);
+    const double after_um = curves.rms_um(z_um, curve_shape(curves.tuples, z_um, pool()).bias);
     EXPECT_LT(after_um, 0.25 * before_um) << "exponent " << exponent << ", " << before_um << " um before";
   }
+}
+
+TEST(CurveShape, DoesNotDependOnTheNumberOfThreads) {
+  const auto z_um = uneven_heights();
+  const Curves curves(1.5, 0.01, 3000, z_um);
+  WorkerPool one(1);
+  WorkerPool five(5);
+  const CurveShape alone = curve_shape(curves.tuples, z_um, one);
+  const CurveShape together = curve_shape(curves.tuples, z_um, five);
+  EXPECT_EQ(alone.exponent, together.exponent);
+  EXPECT_EQ(alone.width_um, together.width_um);
+  EXPECT_EQ(alone.bias.cubic, together.bias.cubic);
 }
 
 TEST(CurveShape, LeavesCurvesAloneThatTheFitIsExactFor) {
   const auto z_um = uneven_heights();
   Curves curves(2.0, 0.0, 5000, z_um);
-  EXPECT_LT(curves.rms_um(z_um, curve_shape(curves.tuples, z_um).bias), 0.02);
+  EXPECT_LT(curves.rms_um(z_um, curve_shape(curves.tuples, z_um, pool()).bias), 0.02);
 }
 
 TEST(CurveShape, IsThatOfTheFitWhereTooFewCurvesTell) {
   const auto z_um = uneven_heights();
-  const CurveShape few = curve_shape(Curves(1.4, 0.0, 499, z_um).tuples, z_um);
+  const CurveShape few = curve_shape(Curves(1.4, 0.0, 499, z_um).tuples, z_um, pool());
   EXPECT_EQ(few.exponent, 2.0);
   EXPECT_EQ(few.bias.linear, 0.0F);
   EXPECT_EQ(few.bias.cubic, 0.0F);
   EXPECT_GT(few.width_um, 0.0) << "one curve is enough for a width";
-  const CurveShape none = curve_shape({}, z_um);
+  const CurveShape none = curve_shape({}, z_um, pool());
   EXPECT_EQ(none.exponent, 2.0);
   EXPECT_EQ(none.width_um, 0.0);
 }
@@ -132,7 +149,7 @@ TEST(CurveShape, HoldsBackWhereCurvesAreNone) {
     tuple.index = 5;
     tuple.share = {0.0F, 1.0F, 1.0F, 1.0F, 0.0F};
   }
-  const CurveShape shape = curve_shape(tuples, uneven_heights());
+  const CurveShape shape = curve_shape(tuples, uneven_heights(), pool());
   EXPECT_EQ(shape.exponent, 2.0);
   EXPECT_EQ(shape.width_um, 0.0);
 }
