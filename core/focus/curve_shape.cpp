@@ -28,11 +28,10 @@ struct Parabola {
   double bend = 0.0;  // coefficient of u^2
   double p = kFitExponent;
 
-  /// F at u.
+  /// F at u; for the two exponents above.
   [[nodiscard]] double at(double u) const {
     const double g = 1.0 + (slope + bend * u) * u;
-    if (p == kFitExponent) return 1.0 / (g * g);
-    return p == kOtherExponent ? 1.0 / (g * std::sqrt(g)) : std::pow(g, -p);
+    return p == kFitExponent ? 1.0 / (g * g) : 1.0 / (g * std::sqrt(g));
   }
   /// At the vertex.
   [[nodiscard]] double lowest() const { return 1.0 - slope * slope / (4.0 * bend); }
@@ -131,36 +130,42 @@ VertexBias bias_of_fit(double bend, double p) {
   return bias;
 }
 
-}  // namespace
+/// The curves that are looked at, in pieces for many threads. Always in as many, so that sums do not depend on the
+/// number of threads.
+class Curves {
+ public:
+  static constexpr int kPieces = 8;
 
-CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, WorkerPool& pool) {
-  const auto heights = height_table(z_um);
-  const std::size_t count = std::min(tuples.size(), kMostCurves);
-  // Not every n-th: tuples come in rows and columns.
-  constexpr double kGoldenRatio = 0.6180339887498949;
-  const auto pick = [&](std::size_t i) -> const CurveTuple& {
-    if (count == tuples.size()) return tuples[i];
-    const double place = static_cast<double>(i) * kGoldenRatio;
-    return tuples[static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(tuples.size()))];
-  };
-  // Always in as many pieces, so that sums do not depend on the number of threads.
-  constexpr int kPieces = 8;
-  const auto each = [&](int piece, const auto& look) {
-    for (auto i = static_cast<std::size_t>(piece); i < count; i += kPieces) {
-      const CurveTuple& tuple = pick(i);
-      look(tuple, heights[static_cast<std::size_t>(tuple.index)]);
+  Curves(std::span<const CurveTuple> tuples, const std::vector<double>& z_um)
+      : tuples_(tuples), heights_(height_table(z_um)), count_(std::min(tuples.size(), kMostCurves)) {}
+
+  /// look(tuple, what is known of its peak's sample).
+  template <typename Look>
+  void each(int piece, const Look& look) const {
+    for (auto i = static_cast<std::size_t>(piece); i < count_; i += kPieces) {
+      const CurveTuple& tuple = tuples_[count_ == tuples_.size() ? i : spread_index(i, tuples_.size())];
+      look(tuple, heights_[static_cast<std::size_t>(tuple.index)]);
     }
-  };
+  }
 
+ private:
+  std::span<const CurveTuple> tuples_;
+  std::vector<HeightEntry> heights_;
+  std::size_t count_;
+};
+
+/// The exponent at which the excess vanishes in the mean; nothing where too few curves tell, or their mean tells of
+/// none.
+std::optional<double> exponent_of(const Curves& curves, WorkerPool& pool) {
   struct Excess {
     double at_fit = 0.0;
     double at_other = 0.0;
     std::size_t curves = 0;
   };
-  std::array<Excess, kPieces> excesses;
-  pool.run(kPieces, [&](int piece) {
+  std::array<Excess, Curves::kPieces> pieces;
+  pool.run(Curves::kPieces, [&](int piece) {
     Excess sum;  // not in the array: its pieces share cache lines
-    each(piece, [&](const CurveTuple& tuple, const HeightEntry& at) {
+    curves.each(piece, [&](const CurveTuple& tuple, const HeightEntry& at) {
       const auto at_fit = excess(tuple, at, kFitExponent);
       const auto at_other = excess(tuple, at, kOtherExponent);
       if (!at_fit || !at_other) return;
@@ -168,28 +173,34 @@ CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<dou
       sum.at_other += *at_other;
       ++sum.curves;
     });
-    excesses[static_cast<std::size_t>(piece)] = sum;
+    pieces[static_cast<std::size_t>(piece)] = sum;
   });
   Excess total;
-  for (const Excess& piece : excesses) {
+  for (const Excess& piece : pieces) {
     total.at_fit += piece.at_fit;
     total.at_other += piece.at_other;
     total.curves += piece.curves;
   }
-  CurveShape shape;
-  const bool tells = total.curves >= kLeastCurves && total.at_other < total.at_fit;
-  if (tells) {
-    const double slope = (total.at_fit - total.at_other) / (kFitExponent - kOtherExponent);
-    shape.exponent = std::clamp(kFitExponent - total.at_fit / slope, kSmallestExponent, kLargestExponent);
-  }
+  if (total.curves < kLeastCurves || !(total.at_other < total.at_fit)) return std::nullopt;
+  const double slope = (total.at_fit - total.at_other) / (kFitExponent - kOtherExponent);
+  return std::clamp(kFitExponent - total.at_fit / slope, kSmallestExponent, kLargestExponent);
+}
 
-  std::array<std::vector<double>, kPieces> bends;  // of G over its lowest value
-  std::array<std::vector<double>, kPieces> widths_um;
-  pool.run(kPieces, [&](int piece) {
+}  // namespace
+
+CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, WorkerPool& pool) {
+  const Curves curves(tuples, z_um);
+  const std::optional<double> exponent = exponent_of(curves, pool);
+  CurveShape shape;
+  shape.exponent = exponent.value_or(kFitExponent);
+
+  std::array<std::vector<double>, Curves::kPieces> bends;  // of G over its lowest value
+  std::array<std::vector<double>, Curves::kPieces> widths_um;
+  pool.run(Curves::kPieces, [&](int piece) {
     auto& bends_here = bends[static_cast<std::size_t>(piece)];
     auto& widths_here = widths_um[static_cast<std::size_t>(piece)];
     const double rise_to_half = std::exp2(1.0 / shape.exponent) - 1.0;
-    each(piece, [&](const CurveTuple& tuple, const HeightEntry& at) {
+    curves.each(piece, [&](const CurveTuple& tuple, const HeightEntry& at) {
       const auto curve = parabola(tuple, at, shape.exponent);
       if (!curve) return;
       const double bend = curve->bend / curve->lowest();
@@ -201,7 +212,7 @@ CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<dou
   if (all_widths_um.empty()) return shape;
   shape.width_um = median(all_widths_um);
   auto all_bends = joined(bends);
-  if (tells) shape.bias = bias_of_fit(median(all_bends), shape.exponent);
+  if (exponent) shape.bias = bias_of_fit(median(all_bends), *exponent);
   return shape;
 }
 

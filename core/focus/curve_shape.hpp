@@ -24,7 +24,7 @@ struct CurveShape {
   VertexBias bias;        ///< of the five-sample fit
 };
 
-/// Tuples: of valid points spread over the image. z_um: of the samples.
+/// Tuples: spread over the image, their indices within z_um. z_um: of the samples. context: computes on the pool too.
 [[nodiscard]] CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um,
                                      WorkerPool& pool);
 

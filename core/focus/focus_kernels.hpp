@@ -67,7 +67,7 @@ struct FitParameters {
   VertexBias bias;  ///< to be taken off
 };
 
-/// Where fits go; NaN in height and variance exactly where mask is not 0.
+/// Where fits go, rows of planes without padding; NaN in height and variance exactly where mask is not 0.
 struct FitRow {
   float* height_m;
   float* variance_m2;  ///< of the height

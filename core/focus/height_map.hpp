@@ -32,7 +32,8 @@ struct HeightMap {
   Plane<std::uint8_t> colour;  ///< shape [height][3 * width]: blue, green, red at the peak slice; empty for grey slices
   StageCorrection stage;       ///< what the scan says about the stage, and whether heights were corrected by it
   double noise_grey = 0.0;     ///< standard deviation of a pixel in grey levels, median over the image
-  double curve_width_um = 0.0;  ///< full width at half maximum of the focus curve, median of valid points; 0 unknown
+  double curve_width_um =
+      0.0;  ///< full width at half maximum of the focus curve, median of points over the image; 0 unknown
 };
 
 /// All planes allocated, contents to be written.

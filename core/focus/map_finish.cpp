@@ -106,7 +106,7 @@ class SpotRow {
   SpotRow(int row_width, int every) : every_(every), width_((row_width - every / 2 + every - 1) / every) {
     for (auto& field : fields_) field.resize(static_cast<std::size_t>(width_));
     saturated_.resize(static_cast<std::size_t>(width_));
-    noise_grey.resize(static_cast<std::size_t>(width_));
+    noise_grey_.resize(static_cast<std::size_t>(width_));
   }
 
   [[nodiscard]] int width() const noexcept { return width_; }
@@ -120,7 +120,7 @@ class SpotRow {
         fields_[field][static_cast<std::size_t>(i)] = from[field][x];
       }
       saturated_[static_cast<std::size_t>(i)] = row.saturated[x];
-      noise_grey[static_cast<std::size_t>(i)] = noise_grey_row[x];
+      noise_grey_[static_cast<std::size_t>(i)] = noise_grey_row[x];
     }
   }
   [[nodiscard]] CurveRow curves() noexcept {
@@ -128,13 +128,14 @@ class SpotRow {
     return {nullptr,      nullptr,       peak.data(),    left.data(),       left2.data(),
             right.data(), right2.data(), minimum.data(), peak_index.data(), saturated_.data()};
   }
-  std::vector<float> noise_grey;
+  [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
 
  private:
   int every_;
   int width_;
   std::array<std::vector<std::uint16_t>, 7> fields_;
   std::vector<std::uint8_t> saturated_;
+  std::vector<float> noise_grey_;
 };
 
 /// What goes over the image of one map.
@@ -150,7 +151,7 @@ class MapFinish {
         width_(map.height_m.width()),
         height_(map.height_m.height()) {}
 
-  /// Valid points spread over the image, in the order of rows.
+  /// Points spread over the image, in the order of rows.
   std::vector<CurveTuple> look_around(const RowFit& fit) {
     const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)));
     const int rows = (height_ - every / 2 + every - 1) / every;
@@ -171,7 +172,7 @@ class MapFinish {
         const int y = every / 2 + row * every;
         limits.move_to(y);
         spots.gather(curves_(band, y, nullptr), limits.noise_grey());
-        fit.find_noise(spots.curves(), spots.noise_grey.data(), spots.width(), noise.data());
+        fit.find_noise(spots.curves(), spots.noise_grey(), spots.width(), noise.data());
         fit.fit(spots.curves(), noise.data(), least.data(), spots.width(),
                 {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
         for (int i = 0; i < spots.width(); ++i) {

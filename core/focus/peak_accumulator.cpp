@@ -62,7 +62,9 @@ StateRow<Texture> PeakAccumulator<Texture>::row(int y) noexcept {
   if (binned_) take(row.bin.texture);
   take(row.curve.saturated);
   if (binned_) take(row.bin.saturated);
-  row.curve.pitch_bytes = static_cast<std::ptrdiff_t>(blocks_per_row_ * sizeof(Block));
+  if (storage_.size() > blocks_per_row_) {
+    row.curve.pitch_bytes = static_cast<std::ptrdiff_t>(blocks_per_row_ * sizeof(Block));
+  }
   return row;
 }
 

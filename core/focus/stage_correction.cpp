@@ -188,15 +188,16 @@ struct Equations {
 
 using BandSolver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
-/// What every n-th curve says. Always in as many pieces, so that the sum does not depend on the number of threads.
-Equations equations_of(std::span<const CurveTuple> tuples, std::size_t every, const std::vector<double>& z_um,
+/// What `number` of the curves say, spread over all. Always in as many pieces, so that the sum does not depend on the
+/// number of threads.
+Equations equations_of(std::span<const CurveTuple> tuples, std::size_t number, const std::vector<double>& z_um,
                        double step, WorkerPool& pool) {
   constexpr std::size_t kPieces = 8;
   std::vector<Equations> pieces(kPieces, Equations(z_um.size()));
   pool.run(kPieces, [&](int piece) {
-    const auto number = static_cast<std::size_t>(piece);
-    for (std::size_t i = number * every; i < tuples.size(); i += kPieces * every) {
-      pieces[number].add(tuples[i], z_um, step);
+    Equations& sum = pieces[static_cast<std::size_t>(piece)];
+    for (auto i = static_cast<std::size_t>(piece); i < number; i += kPieces) {
+      sum.add(tuples[number == tuples.size() ? i : spread_index(i, tuples.size())], z_um, step);
     }
   });
   for (std::size_t piece = 1; piece < kPieces; ++piece) pieces[0] += pieces[piece];
@@ -264,8 +265,9 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   BandSolver solver;
   double left_over_before = 0.0;
   double left_over = 0.0;
-  const auto solve = [&](std::size_t every) {
-    equations = equations_of(tuples, every, corrected, step, pool);
+  double least_information = kMinInformation * kPriorWeight;
+  const auto solve = [&](std::size_t number) {
+    equations = equations_of(tuples, number, corrected, step, pool);
     equations.diagonals.row(0).array() += kPriorWeight;
     for (Eigen::Index k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(k);
@@ -278,24 +280,25 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   const auto correct = [&](const Eigen::VectorXd& change) {
     for (Eigen::Index k = 0; k < count; ++k) corrected[static_cast<std::size_t>(k)] += step * change(k);
   };
-  Eigen::VectorXd change = solve(kFirstLook);
+  Eigen::VectorXd change = solve(tuples.size() / kFirstLook);
   left_over_before = left_over;
   const double foreseen = left_over - equations.right.dot(change);
   if (foreseen > kHopeless * left_over_before) {
     correct(change);
     left_over = foreseen;
+    least_information /= kFirstLook;
   } else {
-    change = solve(1);
+    change = solve(tuples.size());
     left_over_before = left_over;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
       correct(change);
-      change = solve(1);  // the last one only to see what is left over now
+      change = solve(tuples.size());  // the last one only to see what is left over now
     }
   }
 
   std::vector<std::size_t> samples;  // that the curves say something about
   for (Eigen::Index k = 0; k < count; ++k) {
-    if (equations.diagonals(0, k) > kMinInformation * kPriorWeight) samples.push_back(static_cast<std::size_t>(k));
+    if (equations.diagonals(0, k) > least_information) samples.push_back(static_cast<std::size_t>(k));
   }
   if (samples.size() < static_cast<std::size_t>(kMinSteps)) return off("too few samples lie near a peak");
   const SlowPart slow(z_um, samples);

@@ -30,7 +30,9 @@ struct StageCorrection {
   std::vector<double> offsets_um;  ///< to be added to each sample's z; empty where not applied
 };
 
-/// z_um: measured z of the samples, at least one. Tuples: some thousand valid points spread over the image.
+/// z_um: measured z of the samples, at least one. Tuples: some thousand spread over the image, their indices within
+/// z_um. Where a sixth of them shows already that the stage is not to blame, the figures are from these.
+/// context: computes on the pool too.
 [[nodiscard]] StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples,
                                                      const std::vector<double>& z_um, WorkerPool& pool);
 

@@ -121,6 +121,7 @@ TEST(CurveShape, DoesNotDependOnTheNumberOfThreads) {
   const CurveShape together = curve_shape(curves.tuples, z_um, five);
   EXPECT_EQ(alone.exponent, together.exponent);
   EXPECT_EQ(alone.width_um, together.width_um);
+  EXPECT_EQ(alone.bias.linear, together.bias.linear);
   EXPECT_EQ(alone.bias.cubic, together.bias.cubic);
 }
 
@@ -142,8 +143,8 @@ TEST(CurveShape, IsThatOfTheFitWhereTooFewCurvesTell) {
   EXPECT_EQ(none.width_um, 0.0);
 }
 
-TEST(CurveShape, HoldsBackWhereCurvesAreNone) {
-  // Neighbours as high as the peak, and nothing else: no curve, whatever the mean says.
+TEST(CurveShape, PassesOverCurvesWithoutAPeak) {
+  // Neighbours as high as the peak, and nothing else.
   std::vector<CurveTuple> tuples(1000);
   for (CurveTuple& tuple : tuples) {
     tuple.index = 5;

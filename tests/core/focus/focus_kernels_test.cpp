@@ -287,6 +287,23 @@ TEST(FocusKernels, FindTheSameAmplitudesAndSlopes) {
   });
 }
 
+TEST(FocusKernels, AddWhatASlopeAddsToSigma) {
+  constexpr int kWidth = 40;
+  constexpr int kReach = 4;
+  const auto plane = [](int x, int y) { return 3e-7F * static_cast<float>(x) - 4e-7F * static_cast<float>(y); };
+  std::vector<float> rows[3];
+  for (int row = 0; row < 3; ++row) {
+    for (int x = 0; x < kWidth; ++x) rows[row].push_back(plane(x, kReach * (row - 1)));
+  }
+  for (const FocusKernels* kernels : all_focus_kernels()) {
+    std::vector<float> sigma(kWidth, 4e-14F);  // variance
+    kernels->finish_sigma(rows[1].data(), rows[0].data(), rows[2].data(), kReach, 0.5F, kWidth, sigma.data());
+    // A gradient of 5e-7 a pixel, of which half counts, and 2e-7 of its own.
+    EXPECT_NEAR(static_cast<double>(sigma[20]), std::hypot(2e-7, 2.5e-7), 1e-12) << kernels->name;
+    EXPECT_NEAR(static_cast<double>(sigma[3]), 2e-7, 1e-12) << kernels->name << ": too near the end for a gradient";
+  }
+}
+
 TEST(FocusKernels, AreThoseThatTheEnvironmentNames) {
   const char* forced = std::getenv("FVD_FORCE_KERNEL");
   if (forced != nullptr && *forced != '\0') {
