@@ -125,6 +125,33 @@ TEST(CurveShape, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(alone.bias.cubic, together.bias.cubic);
 }
 
+TEST(CurveShape, TakesNoVertexToOrBeyondTheNeighbours) {
+  const auto z_um = uneven_heights();
+  Curves curves(1.4, 0.2, 5000, z_um);  // hardly a peak left in such noise
+  FocusSettings settings;
+  settings.min_significance = 0.0;
+  settings.min_prominence = 0.0;
+  const RowFit fit(z_um, settings, PixelFormat::kMono8, PeakMethod::kFiveSample, {-0.3F, 1.2F});
+  const auto count = curves.truth_um.size();
+  std::vector<float> height_m(count);
+  std::vector<float> variance_m2(count);
+  std::vector<float> prominence(count);
+  std::vector<std::uint8_t> mask(count);
+  const std::vector<float> nothing(count);
+  fit.fit(curves.row(), nothing.data(), nothing.data(), static_cast<int>(count),
+          {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
+  int beyond_half = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mask[i] != 0) continue;
+    const auto peak = static_cast<std::size_t>(curves.tuples[i].index);
+    const double height_um = static_cast<double>(height_m[i]) * 1e6;
+    EXPECT_GT(height_um, z_um[peak - 1]);
+    EXPECT_LT(height_um, z_um[peak + 1]);
+    beyond_half += std::abs(height_um - z_um[peak]) > 7.0 ? 1 : 0;
+  }
+  EXPECT_GT(beyond_half, 100) << "or nothing was put to the test";
+}
+
 TEST(CurveShape, LeavesCurvesAloneThatTheFitIsExactFor) {
   const auto z_um = uneven_heights();
   Curves curves(2.0, 0.0, 5000, z_um);
