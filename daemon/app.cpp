@@ -1,8 +1,8 @@
 #include "daemon/app.hpp"
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
-#include "drivers/driver_table.hpp"
+#include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
 
@@ -26,7 +26,7 @@ App::App(const Config& config)
       store_(prepared_state_dir(config_.paths) / "fvd.sqlite"),
       engine_(config_, {store_, clock_, [this] { return open_camera(config_.camera); },
                         [this] { return open_stage(config_.stage); }}),
-      rpc_(config_.rpc, config_.paths.runtime_dir, engine_) {}
+      rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {}
 
 App::~App() { engine_.shut_down(); }
 

@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "core/hw/clock.hpp"
-#include "daemon/config.hpp"
-#include "daemon/engine.hpp"
-#include "daemon/rpc/rpc_server.hpp"
+#include "core/base/clock.hpp"
+#include "daemon/config/config.hpp"
+#include "daemon/jobs/engine.hpp"
 #include "daemon/store/job_store.hpp"
+#include "daemon/transport/rpc_server.hpp"
 
 namespace fvd {
 

@@ -6,12 +6,12 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "daemon/app.hpp"
-#include "daemon/exit_code.hpp"
+#include "daemon/base/exit_code.hpp"
+#include "daemon/base/systemd_notify.hpp"
+#include "daemon/base/version.hpp"
 #include "daemon/options.hpp"
-#include "daemon/systemd_notify.hpp"
-#include "daemon/version.hpp"
 
 namespace fvd {
 namespace {

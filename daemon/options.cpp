@@ -4,9 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "daemon/exit_code.hpp"
-#include "daemon/recipe_book.hpp"
-#include "daemon/version.hpp"
+#include "daemon/base/exit_code.hpp"
+#include "daemon/base/version.hpp"
+#include "daemon/recipes/recipe_book.hpp"
 
 namespace fvd {
 

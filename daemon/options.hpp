@@ -6,7 +6,7 @@
 #include <iosfwd>
 #include <optional>
 
-#include "daemon/config_file.hpp"
+#include "daemon/config/config_file.hpp"
 
 namespace fvd {
 

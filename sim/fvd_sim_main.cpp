@@ -11,11 +11,11 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "core/error.hpp"
-#include "sim/evaluate.hpp"
-#include "sim/fault_config.hpp"
-#include "sim/plant.hpp"
-#include "sim/world_config.hpp"
+#include "core/base/error.hpp"
+#include "sim/evaluate/evaluate.hpp"
+#include "sim/faults/fault_config.hpp"
+#include "sim/plant/plant.hpp"
+#include "sim/world/world_config.hpp"
 
 namespace fvd::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/image.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 

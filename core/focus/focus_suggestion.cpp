@@ -7,10 +7,10 @@
 #include <numbers>
 #include <string>
 
-#include "core/error.hpp"
-#include "core/focus/noise_probe.hpp"
-#include "core/focus/row_fit.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/base/error.hpp"
+#include "core/focus/fit/row_fit.hpp"
+#include "core/focus/measure/noise_probe.hpp"
+#include "core/runtime/worker_pool.hpp"
 
 namespace fvd {
 

@@ -2,8 +2,8 @@
 
 /// Which neighbour distance and window suit a surface, from one sharp image of it.
 
-#include "core/focus/focus_settings.hpp"
-#include "core/image.hpp"
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 

@@ -2,7 +2,7 @@
 
 /// What the grey levels of an image say of its exposure.
 
-#include "core/image.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "core/focus/focus_settings.hpp"
-#include "core/focus/height_map.hpp"
-#include "core/image.hpp"
+#include "core/focus/fit/height_map.hpp"
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 

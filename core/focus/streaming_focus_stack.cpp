@@ -8,14 +8,14 @@
 #include <variant>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/focus/colour_texture.hpp"
-#include "core/focus/map_finish.hpp"
-#include "core/focus/noise_probe.hpp"
-#include "core/focus/peak_accumulator.hpp"
-#include "core/focus/sharpness_rows.hpp"
-#include "core/focus/slice_binner.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/focus/fit/map_finish.hpp"
+#include "core/focus/measure/noise_probe.hpp"
+#include "core/focus/measure/peak_accumulator.hpp"
+#include "core/focus/measure/sharpness_rows.hpp"
+#include "core/focus/measure/slice_binner.hpp"
+#include "core/runtime/worker_pool.hpp"
 
 namespace fvd {
 

@@ -1,4 +1,4 @@
-#include "core/hw/z_stage.hpp"
+#include "core/hw/axis.hpp"
 
 namespace fvd {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "core/frame.hpp"
-#include "core/image.hpp"
-#include "core/sensor_format.hpp"
+#include "core/image/frame.hpp"
+#include "core/image/image.hpp"
+#include "core/image/sensor_format.hpp"
 
 namespace fvd {
 

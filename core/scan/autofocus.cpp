@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/scan/slice_capture.hpp"
 
 namespace fvd {
@@ -35,7 +35,7 @@ double mean_laplacian(PlaneView<const Pixel> image, const Region& region) {
 
 class Searcher {
  public:
-  Searcher(Camera& camera, ZStage& stage, Clock& clock, const AutofocusPlan& plan, std::stop_token stop)
+  Searcher(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan, std::stop_token stop)
       : stage_(stage), plan_(plan), stop_(std::move(stop)), capture_(camera, clock, ledger_) {}
 
   /// Arrives from below, and says how sharp it is there.
@@ -69,7 +69,7 @@ class Searcher {
   }
 
  private:
-  ZStage& stage_;
+  Axis& stage_;
   const AutofocusPlan& plan_;
   std::stop_token stop_;
   FrameLedger ledger_;
@@ -110,8 +110,7 @@ double mean_focus(const ImageView& image, const Region& region) {
                                             : mean_laplacian(image.as<std::uint16_t>(), inner);
 }
 
-AutofocusResult autofocus(Camera& camera, ZStage& stage, Clock& clock, const AutofocusPlan& plan,
-                          std::stop_token stop) {
+AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan, std::stop_token stop) {
   if (!(plan.step.value > 0.0) || (plan.to - plan.from).value < 3.0 * plan.step.value) {
     throw Error(ErrorCode::kBadInput, "the range of an autofocus must hold three of its steps at least");
   }

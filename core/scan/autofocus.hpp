@@ -5,9 +5,9 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/base/clock.hpp"
+#include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
-#include "core/hw/clock.hpp"
-#include "core/hw/z_stage.hpp"
 
 namespace fvd {
 
@@ -47,7 +47,7 @@ struct AutofocusResult {
 /// The camera is configured and triggered by software, the stage homed. Every move arrives from below. Throws Error
 /// kBadInput for a range without three steps, kStageLimit, kStageNotHomed, kCameraFramesLost, kFocusRange if it is
 /// sharpest at an end of the range or nowhere, kAborted, and what camera and stage throw. context: the scan's thread.
-[[nodiscard]] AutofocusResult autofocus(Camera& camera, ZStage& stage, Clock& clock, const AutofocusPlan& plan,
+[[nodiscard]] AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan,
                                         std::stop_token stop);
 
 }  // namespace fvd

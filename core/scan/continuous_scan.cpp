@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 
@@ -28,7 +28,7 @@ HostTime middle(const Frame& frame) { return frame.exposure_start + (frame.expos
 /// The stage's motion on a thread of its own; stopped and waited for when this goes.
 class Sweep {
  public:
-  Sweep(ZStage& stage, Micrometers target, double speed_um_per_s, std::stop_token stop)
+  Sweep(Axis& stage, Micrometers target, double speed_um_per_s, std::stop_token stop)
       : stage_(stage), forward_(stop, [this] { own_.request_stop(); }) {
     std::packaged_task<void()> task(
         [this, target, speed_um_per_s] { stage_.sweep_to(target, speed_um_per_s, own_.get_token()); });
@@ -48,7 +48,7 @@ class Sweep {
   }
 
  private:
-  ZStage& stage_;
+  Axis& stage_;
   std::stop_source own_;
   std::stop_callback<std::function<void()>> forward_;
   std::future<void> result_;

@@ -2,7 +2,7 @@
 
 /// How far the stage's clock is off the camera's, from one surface scanned up and down at the same speed.
 
-#include "core/focus/height_map.hpp"
+#include "core/focus/fit/height_map.hpp"
 
 namespace fvd {
 

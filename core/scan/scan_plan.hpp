@@ -4,9 +4,9 @@
 
 #include <chrono>
 
+#include "core/base/units.hpp"
+#include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
-#include "core/hw/z_stage.hpp"
-#include "core/units.hpp"
 
 namespace fvd {
 

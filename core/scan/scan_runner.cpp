@@ -4,7 +4,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/scan/slice_capture.hpp"
 
 namespace fvd {

@@ -6,14 +6,14 @@
 #include <optional>
 #include <stop_token>
 
+#include "core/base/clock.hpp"
+#include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
-#include "core/hw/clock.hpp"
-#include "core/hw/z_stage.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_plan.hpp"
 #include "core/scan/slice_capture.hpp"
 #include "core/scan/slice_sink.hpp"
-#include "core/scan/step_log.hpp"
+#include "core/stage/step_log.hpp"
 
 namespace fvd {
 
@@ -26,7 +26,7 @@ struct ScanReport {
 
 struct ScanDependencies {
   Camera& camera;  ///< configured
-  ZStage& stage;   ///< homed
+  Axis& stage;     ///< homed
   Clock& clock;
   SliceSink& sink;
 };

@@ -2,7 +2,7 @@
 
 /// Decides from a stream of samples when an axis has arrived.
 
-#include "core/hw/z_stage.hpp"
+#include "core/hw/axis.hpp"
 
 namespace fvd {
 

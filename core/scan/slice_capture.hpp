@@ -6,8 +6,8 @@
 #include <optional>
 #include <stop_token>
 
+#include "core/base/clock.hpp"
 #include "core/hw/camera.hpp"
-#include "core/hw/clock.hpp"
 #include "core/scan/frame_ledger.hpp"
 
 namespace fvd {

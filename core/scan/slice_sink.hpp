@@ -4,7 +4,7 @@
 
 #include <stop_token>
 
-#include "core/frame.hpp"
+#include "core/image/frame.hpp"
 
 namespace fvd {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 
@@ -32,7 +32,7 @@ void check_plan(const StageRunPlan& plan, const StageInfo& stage) {
 
 class Run {
  public:
-  Run(ZStage& stage, Clock& clock, const StageRunPlan& plan, std::stop_token stop)
+  Run(Axis& stage, Clock& clock, const StageRunPlan& plan, std::stop_token stop)
       : stage_(stage), clock_(clock), plan_(plan), stop_(std::move(stop)), begun_(clock.now()) {}
 
   StagePoint measure(int repeat, int direction, Micrometers target) {
@@ -74,7 +74,7 @@ class Run {
     return known.empty() ? std::nullopt : std::optional(known.front().celsius);
   }
 
-  ZStage& stage_;
+  Axis& stage_;
   Clock& clock_;
   const StageRunPlan& plan_;
   std::stop_token stop_;
@@ -83,7 +83,7 @@ class Run {
 
 }  // namespace
 
-std::vector<StagePoint> run_stage(ZStage& stage, Clock& clock, const StageRunPlan& plan,
+std::vector<StagePoint> run_stage(Axis& stage, Clock& clock, const StageRunPlan& plan,
                                   const std::function<void(int, int)>& on_point, std::stop_token stop) {
   check_plan(plan, stage.info());
   if (!stage.status().homed) {

@@ -6,9 +6,9 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/hw/clock.hpp"
-#include "core/hw/z_stage.hpp"
-#include "core/metrology/stage_point.hpp"
+#include "core/base/clock.hpp"
+#include "core/hw/axis.hpp"
+#include "core/stage/stage_point.hpp"
 
 namespace fvd {
 
@@ -24,8 +24,8 @@ struct StageRunPlan {
 /// Each pass starts with a move beyond its first position by the stage's take-up distance, so that every position of an
 /// upward pass is approached from below and of a downward one from above. on_point: after each, with the number of
 /// points so far. Throws Error kBadInput (the plan), kStageLimit before anything moves if take-up does not fit, and as
-/// ZStage::move_to. The stage must be homed. context: blocks.
-[[nodiscard]] std::vector<StagePoint> run_stage(ZStage& stage, Clock& clock, const StageRunPlan& plan,
+/// Axis::move_to. The stage must be homed. context: blocks.
+[[nodiscard]] std::vector<StagePoint> run_stage(Axis& stage, Clock& clock, const StageRunPlan& plan,
                                                 const std::function<void(int done, int all)>& on_point,
                                                 std::stop_token stop);
 

@@ -2,7 +2,7 @@
 
 /// Exit codes of fvdctl, after sysexits.h.
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd::ctl {
 

@@ -7,14 +7,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
+#include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/job_commands.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/rpc_client.hpp"
 #include "daemon/ctl/stage_command.hpp"
 #include "daemon/ctl/suggest_command.hpp"
-#include "daemon/version.hpp"
 
 namespace fvd::ctl {
 

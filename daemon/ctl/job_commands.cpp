@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/progress_line.hpp"
 

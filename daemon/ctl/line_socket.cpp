@@ -11,7 +11,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd::ctl {
 

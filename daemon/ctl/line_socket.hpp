@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/base/unique_fd.hpp"
 #include "daemon/ctl/rpc_endpoint.hpp"
-#include "daemon/unique_fd.hpp"
 
 namespace fvd::ctl {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/focus/focus_settings.hpp"
+#include "core/focus/measure/focus_settings.hpp"
 #include "daemon/ctl/fvdctl.hpp"
 
 namespace CLI {

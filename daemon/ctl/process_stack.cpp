@@ -6,12 +6,12 @@
 #include <functional>
 #include <thread>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
+#include "core/base/large_array.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/large_array.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/runtime/worker_pool.hpp"
+#include "daemon/base/version.hpp"
 #include "daemon/export/result_writer.hpp"
-#include "daemon/version.hpp"
 #include "drivers/replay/recorded_stack.hpp"
 
 namespace fvd::ctl {

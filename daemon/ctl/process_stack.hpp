@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/focus/focus_settings.hpp"
+#include "core/focus/measure/focus_settings.hpp"
 #include "daemon/export/height_summary.hpp"
 #include "drivers/replay/slice_heights.hpp"
 

@@ -1,6 +1,6 @@
 #include "daemon/ctl/rpc_client.hpp"
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd::ctl {
 

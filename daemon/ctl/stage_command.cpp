@@ -8,14 +8,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/error.hpp"
-#include "core/metrology/stage_report.hpp"
+#include "core/base/error.hpp"
+#include "core/stage/stage_report.hpp"
+#include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/export/stage_report_files.hpp"
-#include "daemon/version.hpp"
 #include "drivers/modbus/drive_check.hpp"
-#include "drivers/modbus/modbus_z_stage.hpp"
+#include "drivers/modbus/modbus_axis.hpp"
 
 namespace fvd::ctl {
 

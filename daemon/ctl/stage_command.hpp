@@ -7,7 +7,7 @@
 
 #include "core/scan/stage_run.hpp"
 #include "daemon/ctl/fvdctl.hpp"
-#include "drivers/driver_config.hpp"
+#include "drivers/common/driver_config.hpp"
 
 namespace fvd::ctl {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "daemon/unique_fd.hpp"
+#include "daemon/base/unique_fd.hpp"
 
 namespace fvd {
 

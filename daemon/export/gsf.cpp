@@ -3,7 +3,7 @@
 #include <bit>
 #include <charconv>
 
-#include "core/units.hpp"
+#include "core/base/units.hpp"
 
 namespace fvd {
 

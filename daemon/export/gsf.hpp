@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/units.hpp"
+#include "core/base/units.hpp"
 
 namespace fvd {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "core/focus/height_map.hpp"
+#include "core/focus/fit/height_map.hpp"
 
 namespace fvd {
 

@@ -8,7 +8,7 @@
 
 #include <tiffio.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/image.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/focus/height_map.hpp"
+#include "core/focus/fit/height_map.hpp"
 
 namespace fvd {
 

@@ -9,7 +9,7 @@
 #include <png.h>
 #include <zlib.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/base/error.hpp"
+#include "core/base/units.hpp"
 #include "daemon/export/axis_ticks.hpp"
 #include "daemon/export/page_text.hpp"
 #include "daemon/export/png_bytes.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/image.hpp"
+#include "core/image/image.hpp"
 #include "daemon/export/atomic_directory.hpp"
 
 namespace fvd {

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/focus/focus_settings.hpp"
-#include "core/focus/height_map.hpp"
-#include "core/metrology/stage_accuracy.hpp"
+#include "core/focus/fit/height_map.hpp"
+#include "core/focus/measure/focus_settings.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_plan.hpp"
-#include "core/scan/step_log.hpp"
+#include "core/stage/stage_accuracy.hpp"
+#include "core/stage/step_log.hpp"
 
 namespace fvd {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/metrology/stage_report.hpp"
+#include "core/stage/stage_report.hpp"
 
 namespace fvd {
 

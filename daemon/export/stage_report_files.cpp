@@ -1,6 +1,6 @@
 #include "daemon/export/stage_report_files.hpp"
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

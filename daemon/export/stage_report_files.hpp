@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/metrology/stage_report.hpp"
+#include "core/stage/stage_report.hpp"
 #include "daemon/export/atomic_directory.hpp"
 
 namespace fvd {

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "daemon/export/json_values.hpp"
 #include "daemon/export/page_text.hpp"
 #include "daemon/export/plot_axes.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/scan/step_log.hpp"
+#include "core/stage/step_log.hpp"
 
 namespace fvd {
 

@@ -1,6 +1,6 @@
 #include "daemon/store/job_schema.hpp"
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

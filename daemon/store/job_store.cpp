@@ -4,7 +4,7 @@
 #include <chrono>
 #include <mutex>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_id.hpp"
 #include "daemon/store/job_schema.hpp"

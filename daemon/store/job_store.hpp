@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "daemon/job_service.hpp"
+#include "daemon/store/job_status.hpp"
 
 namespace fvd {
 

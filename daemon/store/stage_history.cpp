@@ -6,7 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "config/strict_json.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/stage_report_files.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/metrology/step_history.hpp"
+#include "core/stage/step_history.hpp"
 
 namespace fvd {
 

@@ -13,8 +13,8 @@
 #include <arv.h>
 #include <spdlog/spdlog.h>
 
-#include "core/error.hpp"
-#include "core/pixels/unpack.hpp"
+#include "core/base/error.hpp"
+#include "core/image/unpack.hpp"
 #include "drivers/aravis/camera_clock.hpp"
 #include "drivers/aravis/camera_features.hpp"
 #include "drivers/aravis/control_watch.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/hw/camera.hpp"
-#include "drivers/driver_config.hpp"
+#include "drivers/common/driver_config.hpp"
 
 namespace fvd {
 

@@ -8,7 +8,7 @@
 
 #include <arv.h>
 
-#include "core/hw/clock.hpp"
+#include "core/base/clock.hpp"
 
 namespace fvd {
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "drivers/aravis/gobject.hpp"
 
 namespace fvd {

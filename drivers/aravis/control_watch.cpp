@@ -5,7 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "core/hw/clock.hpp"
+#include "core/base/clock.hpp"
 
 namespace fvd {
 

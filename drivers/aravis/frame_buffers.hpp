@@ -7,7 +7,7 @@
 
 #include <arv.h>
 
-#include "core/frame.hpp"
+#include "core/image/frame.hpp"
 #include "drivers/aravis/gobject.hpp"
 
 namespace fvd {

@@ -6,8 +6,8 @@
 
 #include <arv.h>
 
-#include "core/frame.hpp"
 #include "core/hw/camera.hpp"
+#include "core/image/frame.hpp"
 
 namespace fvd {
 

@@ -8,7 +8,7 @@
 #include <arv.h>
 
 #include "drivers/aravis/camera_features.hpp"
-#include "drivers/driver_config.hpp"
+#include "drivers/common/driver_config.hpp"
 
 namespace fvd {
 

@@ -7,7 +7,7 @@
 
 #include <arv.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/hw/clock.hpp"
+#include "core/base/clock.hpp"
 
 namespace fvd {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/frame.hpp"
+#include "core/image/frame.hpp"
 
 namespace fvd {
 

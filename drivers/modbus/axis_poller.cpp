@@ -7,7 +7,7 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

@@ -8,7 +8,7 @@
 
 #include "config/field_reader.hpp"
 #include "config/strict_json.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "drivers/modbus/drive_profile_parts.hpp"
 
 namespace fvd {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/hw/z_stage.hpp"
+#include "core/hw/axis.hpp"
 #include "drivers/modbus/drive_register.hpp"
 #include "drivers/modbus/drive_sequence.hpp"
 

@@ -12,7 +12,7 @@
 
 #include <pthread.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

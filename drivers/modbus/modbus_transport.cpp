@@ -22,7 +22,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/hw/z_stage.hpp"
+#include "core/hw/axis.hpp"
 
 namespace fvd {
 

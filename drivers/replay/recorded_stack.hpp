@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "core/image.hpp"
+#include "core/image/image.hpp"
 #include "drivers/replay/slice_files.hpp"
 #include "drivers/replay/slice_image.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "drivers/replay/recorded_stack.hpp"
 #include "drivers/replay/replay_bench.hpp"
 #include "drivers/replay/replay_devices.hpp"

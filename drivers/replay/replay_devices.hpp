@@ -4,9 +4,9 @@
 
 #include <memory>
 
+#include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
-#include "core/hw/z_stage.hpp"
-#include "drivers/driver_config.hpp"
+#include "drivers/common/driver_config.hpp"
 
 namespace fvd {
 
@@ -21,6 +21,6 @@ namespace fvd {
 /// slice's z. A target further from every slice than the settle window fails with kStagePosition. Travel: the recorded
 /// range plus half a step, inside the configured limits. No take-up.
 /// Throws Error kBadConfig without replay_dir, kBadInput for unusable heights.
-[[nodiscard]] std::unique_ptr<ZStage> open_replay_stage(const StageConfig& config);
+[[nodiscard]] std::unique_ptr<Axis> open_replay_stage(const StageConfig& config);
 
 }  // namespace fvd

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "drivers/replay/replay_bench.hpp"
 #include "drivers/replay/replay_devices.hpp"
 #include "drivers/replay/slice_heights.hpp"
@@ -22,7 +22,7 @@ ZSource z_source(const StageConfig& config) {
   return ZFile{config.replay_z_file, *unit};
 }
 
-class ReplayStage final : public ZStage {
+class ReplayStage final : public Axis {
  public:
   explicit ReplayStage(const StageConfig& config)
       : z_um_(slice_heights_um(z_source(config), find_slices(config.replay_dir))),
@@ -109,7 +109,7 @@ class ReplayStage final : public ZStage {
 
 }  // namespace
 
-std::unique_ptr<ZStage> open_replay_stage(const StageConfig& config) {
+std::unique_ptr<Axis> open_replay_stage(const StageConfig& config) {
   if (config.replay_dir.empty()) {
     throw Error(ErrorCode::kBadConfig, "stage.replay_dir: the driver 'replay' needs the folder of recorded slices");
   }

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "drivers/replay/image_file.hpp"
 
 namespace fvd {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fvd {
 

@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "drivers/replay/image_file.hpp"
 
 namespace fvd {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/image.hpp"
+#include "core/image/image.hpp"
 #include "drivers/replay/slice_files.hpp"
 
 namespace fvd {

@@ -14,9 +14,9 @@
 #include <opencv2/core.hpp>
 
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/pipeline/worker_pool.hpp"
-#include "sim/axis_model.hpp"
-#include "sim/sim_world.hpp"
+#include "core/runtime/worker_pool.hpp"
+#include "sim/axis/axis_model.hpp"
+#include "sim/world/sim_world.hpp"
 
 namespace fvd::bench {
 

@@ -22,17 +22,17 @@
 #include <unistd.h>
 
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/pipeline/focus_worker.hpp"
 #include "core/scan/continuous_scan.hpp"
-#include "daemon/config_file.hpp"
+#include "core/scan/focus_worker.hpp"
+#include "daemon/config/config_file.hpp"
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/result_writer.hpp"
-#include "daemon/measurement.hpp"
-#include "daemon/recipe_book.hpp"
-#include "drivers/driver_table.hpp"
-#include "sim/evaluate.hpp"
-#include "sim/gvsp_sender.hpp"
-#include "sim/plant.hpp"
+#include "daemon/pipeline/measurement.hpp"
+#include "daemon/recipes/recipe_book.hpp"
+#include "drivers/registry/driver_table.hpp"
+#include "sim/camera/gvsp_sender.hpp"
+#include "sim/evaluate/evaluate.hpp"
+#include "sim/plant/plant.hpp"
 #include "tests/support/camera_fault_case.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -391,7 +391,7 @@ class Bench {
   ScratchDir folder_;
   Config config_;
   std::unique_ptr<Camera> camera_;
-  std::unique_ptr<ZStage> stage_;
+  std::unique_ptr<Axis> stage_;
   SystemClock clock_;
   WorkerPool pool_{2};
   int scans_ = 0;

@@ -19,9 +19,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "benchmark/benchmark.h"
-#include "core/focus/sharpness_rows.hpp"
+#include "core/focus/measure/sharpness_rows.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/runtime/worker_pool.hpp"
 
 namespace fvd {
 namespace {

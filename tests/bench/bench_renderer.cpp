@@ -4,8 +4,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "sim/defocus_renderer.hpp"
-#include "sim/texture.hpp"
+#include "sim/world/defocus_renderer.hpp"
+#include "sim/world/texture.hpp"
 
 namespace fvd::sim {
 namespace {

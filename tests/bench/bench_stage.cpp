@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "core/metrology/stage_report.hpp"
 #include "core/scan/stage_run.hpp"
+#include "core/stage/stage_report.hpp"
 #include "tests/support/fault_case.hpp"
 
 namespace fvd::test {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "core/focus/focus_settings.hpp"
-#include "core/focus/row_fit.hpp"
-#include "core/focus/slice_binner.hpp"
+#include "core/focus/fit/row_fit.hpp"
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/focus/measure/slice_binner.hpp"
 #include "tests/bench/accuracy_scans.hpp"
 
 namespace fvd::bench {

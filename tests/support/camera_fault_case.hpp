@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/scan/scan_runner.hpp"
 #include "drivers/aravis/aravis_camera.hpp"
-#include "sim/frame_watermark.hpp"
-#include "sim/gige_camera_server.hpp"
-#include "sim/pattern_source.hpp"
+#include "sim/camera/gige_camera_server.hpp"
+#include "sim/world/frame_watermark.hpp"
+#include "sim/world/pattern_source.hpp"
 #include "tests/support/timed_stage.hpp"
 
 namespace fvd::test {

@@ -6,9 +6,9 @@
 #include <ostream>
 #include <string>
 
-#include "drivers/modbus/modbus_z_stage.hpp"
-#include "sim/axis_model.hpp"
-#include "sim/drive_kinds.hpp"
+#include "drivers/modbus/modbus_axis.hpp"
+#include "sim/axis/axis_model.hpp"
+#include "sim/drives/drive_kinds.hpp"
 #include "tests/support/simulated_line.hpp"
 
 namespace fvd::test {
@@ -75,8 +75,8 @@ class SimulatedDrive {
     config.simulated = true;
     return config;
   }
-  [[nodiscard]] std::unique_ptr<ZStage> open() const { return open_modbus_stage(config()); }
-  [[nodiscard]] std::unique_ptr<ZStage> open_homed() const {
+  [[nodiscard]] std::unique_ptr<Axis> open() const { return open_modbus_stage(config()); }
+  [[nodiscard]] std::unique_ptr<Axis> open_homed() const {
     auto stage = open();
     stage->home({});
     return stage;

@@ -7,8 +7,8 @@
 #include <ostream>
 
 #include "drivers/modbus/modbus_transport.hpp"
-#include "sim/modbus_rtu_server.hpp"
-#include "sim/modbus_tcp_server.hpp"
+#include "sim/modbus/modbus_rtu_server.hpp"
+#include "sim/modbus/modbus_tcp_server.hpp"
 
 namespace fvd::test {
 

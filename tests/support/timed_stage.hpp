@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/hw/z_stage.hpp"
+#include "core/base/error.hpp"
+#include "core/hw/axis.hpp"
 
 namespace fvd::test {
 
-/// context: z_um() thread-safe, the rest as a ZStage.
-class TimedStage final : public ZStage {
+/// context: z_um() thread-safe, the rest as a Axis.
+class TimedStage final : public Axis {
  public:
   [[nodiscard]] StageInfo info() const override {
     return {.name = "timed stage",

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "sim/evaluate.hpp"
+#include "sim/evaluate/evaluate.hpp"
 #include "tests/system/system_fixture.hpp"
 
 namespace fvd {

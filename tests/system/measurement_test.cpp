@@ -5,7 +5,7 @@
 
 #include "core/focus/streaming_focus_stack.hpp"
 #include "daemon/ctl/process_stack.hpp"
-#include "sim/evaluate.hpp"
+#include "sim/evaluate/evaluate.hpp"
 #include "tests/system/system_fixture.hpp"
 
 namespace fvd {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/app.hpp"
-#include "daemon/config_file.hpp"
+#include "daemon/config/config_file.hpp"
 #include "gtest/gtest.h"
-#include "sim/plant.hpp"
+#include "sim/plant/plant.hpp"
 #include "tests/support/line_client.hpp"
 #include "tests/support/scratch_dir.hpp"
 

@@ -12,7 +12,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/runtime/worker_pool.hpp"
 #include "gtest/gtest.h"
 
 namespace fvd {

@@ -5,7 +5,7 @@
 #include <new>
 
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/runtime/worker_pool.hpp"
 #include "gtest/gtest.h"
 
 namespace {

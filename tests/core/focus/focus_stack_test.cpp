@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/focus/simple_focus_stack.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/runtime/worker_pool.hpp"
 #include "gtest/gtest.h"
 
 namespace fvd {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "gtest/gtest.h"
 
 namespace fvd {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/focus/grey_statistics.hpp"
-#include "sim/fakes.hpp"
+#include "sim/fakes/fakes.hpp"
 #include "tests/support/expect_error.hpp"
 
 namespace fvd {
@@ -17,7 +17,7 @@ namespace {
 /// A camera above a textured plane at `plane_um`: the contrast falls off as a Gaussian of defocus.
 class TexturedCamera final : public Camera, private FrameRecycler {
  public:
-  TexturedCamera(sim::FakeClock& clock, sim::FakeZStage& stage, double plane_um)
+  TexturedCamera(sim::FakeClock& clock, sim::FakeAxis& stage, double plane_um)
       : clock_(clock), stage_(stage), plane_um_(plane_um), pixels_(64 * 64) {}
   [[nodiscard]] CameraInfo info() const override { return {}; }
   CameraSettings configure(const CameraSettings& settings) override { return settings; }
@@ -51,7 +51,7 @@ class TexturedCamera final : public Camera, private FrameRecycler {
  private:
   void recycle(void* /*slot*/) noexcept override {}
   sim::FakeClock& clock_;
-  sim::FakeZStage& stage_;
+  sim::FakeAxis& stage_;
   double plane_um_;
   std::vector<std::uint8_t> pixels_;
   std::uint64_t id_ = 0;
@@ -69,7 +69,7 @@ AutofocusPlan from_to(double from_um, double to_um) {
 TEST(Autofocus, StopsWhereTheRegionIsSharpestAndComesFromBelow) {
   for (const double plane_um : {-31.3, 0.0, 47.8}) {
     sim::FakeClock clock;
-    sim::FakeZStage stage(clock);
+    sim::FakeAxis stage(clock);
     TexturedCamera camera(clock, stage, plane_um);
     const AutofocusResult result = autofocus(camera, stage, clock, from_to(-100.0, 100.0), {});
     EXPECT_NEAR(result.z_um, plane_um, 0.5);
@@ -83,7 +83,7 @@ TEST(Autofocus, StopsWhereTheRegionIsSharpestAndComesFromBelow) {
 
 TEST(Autofocus, SaysWhereNothingIsSharp) {
   sim::FakeClock clock;
-  sim::FakeZStage stage(clock);
+  sim::FakeAxis stage(clock);
   TexturedCamera above(clock, stage, 300.0);
   test::expect_error(ErrorCode::kFocusRange, {"widen the range"},
                      [&] { (void)autofocus(above, stage, clock, from_to(-100.0, 100.0), {}); });

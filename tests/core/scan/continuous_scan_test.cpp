@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "tests/support/expect_error.hpp"
 
 namespace fvd {
@@ -45,7 +45,7 @@ class TestClock final : public Clock {
 };
 
 /// Trapezoidal motion with 20000 um/s^2.
-class SweepingStage final : public ZStage {
+class SweepingStage final : public Axis {
  public:
   explicit SweepingStage(TestClock& clock) : clock_(clock) {}
 

@@ -1,16 +1,16 @@
 #include "core/scan/scan_runner.hpp"
 
-#include "core/error.hpp"
-#include "core/metrology/stage_accuracy.hpp"
+#include "core/base/error.hpp"
+#include "core/stage/stage_accuracy.hpp"
 #include "gtest/gtest.h"
-#include "sim/fakes.hpp"
+#include "sim/fakes/fakes.hpp"
 
 namespace fvd {
 namespace {
 
+using sim::FakeAxis;
 using sim::FakeCamera;
 using sim::FakeClock;
-using sim::FakeZStage;
 using sim::SpySink;
 using sim::TriggerOutcome;
 
@@ -42,7 +42,7 @@ class AScan : public testing::Test {
   }
 
   FakeClock clock_;
-  FakeZStage stage_{clock_};
+  FakeAxis stage_{clock_};
   SpySink sink_;
   std::chrono::microseconds camera_clock_error_{0};
   ScanPlan plan_;

@@ -2,9 +2,9 @@
 
 #include <deque>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "gtest/gtest.h"
-#include "sim/fakes.hpp"
+#include "sim/fakes/fakes.hpp"
 
 namespace fvd {
 namespace {

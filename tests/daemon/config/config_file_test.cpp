@@ -1,4 +1,4 @@
-#include "daemon/config_file.hpp"
+#include "daemon/config/config_file.hpp"
 
 #include <fstream>
 

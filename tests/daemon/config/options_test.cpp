@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/exit_code.hpp"
+#include "daemon/base/exit_code.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {

@@ -12,8 +12,8 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include "daemon/config_file.hpp"
-#include "daemon/recipe_book.hpp"
+#include "daemon/config/config_file.hpp"
+#include "daemon/recipes/recipe_book.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 #include "tests/daemon/expect_error.hpp"
 

@@ -17,8 +17,8 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "daemon/base/unique_fd.hpp"
 #include "daemon/ctl/rpc_endpoint.hpp"
-#include "daemon/unique_fd.hpp"
 
 namespace fvd::test {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/focus/streaming_focus_stack.hpp"
-#include "core/pipeline/worker_pool.hpp"
+#include "core/runtime/worker_pool.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/fvdctl.hpp"
 #include "daemon/export/recorded_slices.hpp"

@@ -12,11 +12,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/unique_fd.hpp"
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/export/storage_error.hpp"
-#include "daemon/unique_fd.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/units.hpp"
+#include "core/base/units.hpp"
 #include "daemon/export/result_data.hpp"
 
 namespace fvd::test {

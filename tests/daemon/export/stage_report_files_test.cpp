@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "tests/core/metrology/synthetic_stage.hpp"
+#include "tests/core/stage/synthetic_stage.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
 

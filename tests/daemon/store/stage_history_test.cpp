@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "gtest/gtest.h"
 #include "tests/support/scratch_dir.hpp"
 

@@ -6,11 +6,11 @@
 #include <memory>
 #include <set>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "drivers/aravis/frame_counter.hpp"
 #include "gtest/gtest.h"
-#include "sim/frame_source.hpp"
-#include "sim/gige_camera_server.hpp"
+#include "sim/camera/gige_camera_server.hpp"
+#include "sim/world/frame_source.hpp"
 
 namespace fvd {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "config/strict_json.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "gtest/gtest.h"
 
 namespace fvd {

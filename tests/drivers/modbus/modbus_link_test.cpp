@@ -8,7 +8,7 @@
 #include <future>
 #include <thread>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "gtest/gtest.h"
 #include "tests/support/simulated_line.hpp"
 

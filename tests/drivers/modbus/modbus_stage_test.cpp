@@ -4,13 +4,13 @@
 #include <memory>
 #include <thread>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
+#include "drivers/modbus/modbus_axis.hpp"
 #include "drivers/modbus/modbus_link.hpp"
-#include "drivers/modbus/modbus_z_stage.hpp"
 #include "gtest/gtest.h"
-#include "sim/axis_model.hpp"
-#include "sim/az_drive.hpp"
-#include "sim/modbus_tcp_server.hpp"
+#include "sim/axis/axis_model.hpp"
+#include "sim/drives/az_drive.hpp"
+#include "sim/modbus/modbus_tcp_server.hpp"
 
 namespace fvd {
 namespace {
@@ -36,7 +36,7 @@ class AModbusStage : public testing::Test {
     port_ = server_->port();
   }
 
-  [[nodiscard]] std::unique_ptr<ZStage> open() const {
+  [[nodiscard]] std::unique_ptr<Axis> open() const {
     StageConfig config;
     config.profile = FVD_SOURCE_DIR "/config/drives/oriental-az.json";
     config.port = port_;
@@ -45,7 +45,7 @@ class AModbusStage : public testing::Test {
     return open_modbus_stage(config);
   }
 
-  [[nodiscard]] std::unique_ptr<ZStage> open_homed() const {
+  [[nodiscard]] std::unique_ptr<Axis> open_homed() const {
     auto stage = open();
     stage->home({});
     return stage;

@@ -1,0 +1,40 @@
+#pragma once
+
+/// The result of a scan: heights with honest holes.
+
+#include <cstdint>
+
+#include "core/focus/fit/stage_correction.hpp"
+#include "core/image/image.hpp"
+#include "core/surface/mask_reason.hpp"
+
+namespace fvd {
+
+/// All planes have shape [height][width] of the slices.
+struct HeightMap {
+  Plane<float> height_m;     ///< metres, NaN exactly where mask != 0
+  Plane<std::uint8_t> mask;  ///< 0 valid, else mask_reason bits
+  Plane<float> sigma_m;      ///< expected standard error of the height, metres; NaN where mask != 0
+  Plane<float> prominence;   ///< 0..1
+  PixelFormat texture_format = PixelFormat::kMono8;
+  Plane<std::uint16_t> texture;  ///< all-in-focus: grey level at the peak slice, 0..max_grey_level(texture_format)
+  Plane<std::uint8_t> colour;  ///< shape [height][3 * width]: blue, green, red at the peak slice; empty for grey slices
+  StageCorrection stage;       ///< what the scan says about the stage, and whether heights were corrected by it
+  double noise_grey = 0.0;     ///< standard deviation of a pixel in grey levels, median over the image
+  double curve_width_um =
+      0.0;  ///< full width at half maximum of the focus curve, median of points over the image; 0 unknown
+};
+
+/// All planes allocated, contents to be written.
+[[nodiscard]] inline HeightMap empty_map(int width, int height, PixelFormat format) {
+  HeightMap map;
+  map.height_m = Plane<float>::unset(width, height);
+  map.mask = Plane<std::uint8_t>::unset(width, height);
+  map.sigma_m = Plane<float>::unset(width, height);
+  map.prominence = Plane<float>::unset(width, height);
+  map.texture_format = format;
+  map.texture = Plane<std::uint16_t>::unset(width, height);
+  return map;
+}
+
+}  // namespace fvd

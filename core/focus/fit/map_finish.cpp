@@ -1,0 +1,263 @@
+#include "core/focus/fit/map_finish.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/focus/fit/curve_shape.hpp"
+#include "core/focus/fit/curve_tuple.hpp"
+#include "core/focus/kernels/five_sample_fit.hpp"
+#include "core/focus/measure/peak_tiles.hpp"
+#include "core/focus/measure/sharpness_rows.hpp"
+
+namespace fvd {
+
+namespace {
+
+/// The texture of a window has its weight not quite in the middle; on a slope that is an error of height: so many
+/// windows beside the middle, standard deviation. Measured on the chapter's ramp.
+constexpr float kWeightOffset = 0.038F;
+
+/// About how many points are looked at first: what the curves are like, and where the stage was off.
+constexpr double kSpotChecks = 10000.0;
+
+/// The share of the full window that is left about a pixel near the border: its sums are smaller by as much, their
+/// noise by its root.
+double window_share(int centre, int window, int size) {
+  const WindowReach reach(centre, window / 2, size);
+  return static_cast<double>(reach.last - reach.first + 1) / window;
+}
+
+/// What a row's points are judged by: the same for all rows of a tile, but near the upper and the lower border.
+class Limits {
+ public:
+  /// Without tiles no point is taken for bleeding.
+  Limits(const NoiseProbe& noise, std::optional<PeakTiles> tiles, int width, int height, int window)
+      : noise_(noise),
+        tiles_(std::move(tiles)),
+        width_(width),
+        height_(height),
+        window_(window),
+        noise_grey_(static_cast<std::size_t>(width)),
+        least_(static_cast<std::size_t>(width)) {}
+
+  /// For row y; cheapest from top to bottom. Returns whether that changes anything.
+  bool move_to(int y) {
+    const Key key{noise_.tile_row(y), tiles_ ? tiles_->tile_row(y) : 0, window_share(y, window_, height_)};
+    if (key == key_) return false;
+    key_ = key;
+    noise_.noise_row(key.noise_row, noise_grey_.data());
+    if (tiles_) tiles_->least_amplitude(key.peak_row, least_.data());
+    const int inner = key.share < 1.0 ? width_ : std::min(window_ / 2, width_);  // all columns, or those at the ends
+    for (int x = 0; x < inner; ++x) shrink(x);
+    for (int x = std::max(inner, width_ - window_ / 2); x < width_; ++x) shrink(x);
+    return true;
+  }
+  /// Standard deviation of a pixel, and the least amplitude that is no bleeding. Shape [width] each.
+  [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
+  [[nodiscard]] const float* least() const noexcept { return least_.data(); }
+
+ private:
+  struct Key {
+    int noise_row = -1;
+    int peak_row = -1;
+    double share = 0.0;  // of a full window's rows
+    bool operator==(const Key&) const = default;
+  };
+
+  void shrink(int x) {
+    const double share = key_.share * window_share(x, window_, width_);
+    noise_grey_[static_cast<std::size_t>(x)] *= static_cast<float>(std::sqrt(share));
+    least_[static_cast<std::size_t>(x)] *= static_cast<float>(share);
+  }
+
+  const NoiseProbe& noise_;
+  std::optional<PeakTiles> tiles_;
+  int width_;
+  int height_;
+  int window_;
+  Key key_;
+  std::vector<float> noise_grey_;
+  std::vector<float> least_;
+};
+
+CurveTuple tuple_of(const RowFit& fit, const CurveRow& row, int x, float noise, float height_m) {
+  const double floor = static_cast<double>(kFloorShare) * fit.share(row.minimum[x]);
+  const double amplitude = fit.share(row.peak[x]) - floor;
+  const auto share = [&](std::uint16_t code) {
+    return static_cast<float>(std::max(0.0, (fit.share(code) - floor) / amplitude));
+  };
+  CurveTuple tuple;
+  tuple.index = row.peak_index[x];
+  tuple.share = {share(row.left2[x]), share(row.left[x]), 1.0F, share(row.right[x]), share(row.right2[x])};
+  tuple.noise = static_cast<float>(static_cast<double>(noise) / amplitude);
+  tuple.height_um = height_m * 1e6F;
+  return tuple;
+}
+
+/// Points here and there in a row, as a row of their own.
+class SpotRow {
+ public:
+  SpotRow(int row_width, int every) : every_(every), width_((row_width - every / 2 + every - 1) / every) {
+    for (auto& field : fields_) field.resize(static_cast<std::size_t>(width_));
+    saturated_.resize(static_cast<std::size_t>(width_));
+    noise_grey_.resize(static_cast<std::size_t>(width_));
+  }
+
+  [[nodiscard]] int width() const noexcept { return width_; }
+
+  /// noise_grey: of every pixel of the row.
+  void gather(const CurveRow& row, const float* noise_grey_row) noexcept {
+    const std::array from{row.peak, row.left, row.left2, row.right, row.right2, row.minimum, row.peak_index};
+    for (int i = 0; i < width_; ++i) {
+      const int x = every_ / 2 + i * every_;
+      for (std::size_t field = 0; field < from.size(); ++field) {
+        fields_[field][static_cast<std::size_t>(i)] = from[field][x];
+      }
+      saturated_[static_cast<std::size_t>(i)] = row.saturated[x];
+      noise_grey_[static_cast<std::size_t>(i)] = noise_grey_row[x];
+    }
+  }
+  [[nodiscard]] CurveRow curves() noexcept {
+    auto& [peak, left, left2, right, right2, minimum, peak_index] = fields_;
+    return {nullptr,      nullptr,       peak.data(),    left.data(),       left2.data(),
+            right.data(), right2.data(), minimum.data(), peak_index.data(), saturated_.data()};
+  }
+  [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
+
+ private:
+  int every_;
+  int width_;
+  std::array<std::vector<std::uint16_t>, 7> fields_;
+  std::vector<std::uint8_t> saturated_;
+  std::vector<float> noise_grey_;
+};
+
+/// What goes over the image of one map.
+class MapFinish {
+ public:
+  MapFinish(const CurveSource& curves, const FocusSettings& settings, const NoiseProbe& noise, WorkerPool& pool,
+            HeightMap& map)
+      : curves_(curves),
+        settings_(settings),
+        noise_(noise),
+        pool_(pool),
+        map_(map),
+        width_(map.height_m.width()),
+        height_(map.height_m.height()) {}
+
+  /// Points spread over the image, in the order of rows.
+  std::vector<CurveTuple> look_around(const RowFit& fit) {
+    const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)));
+    const int rows = (height_ - every / 2 + every - 1) / every;
+    const int bands = pool_.threads();
+    std::vector<std::vector<CurveTuple>> found(static_cast<std::size_t>(bands));
+    pool_.run(bands, [&](int band) {
+      auto& tuples = found[static_cast<std::size_t>(band)];
+      Limits limits(noise_, std::nullopt, width_, height_, settings_.window_px);
+      SpotRow spots(width_, every);
+      const auto count = static_cast<std::size_t>(spots.width());
+      std::vector<float> noise(count);
+      std::vector<float> height_m(count);
+      std::vector<float> variance_m2(count);
+      std::vector<float> prominence(count);
+      std::vector<std::uint8_t> mask(count);
+      const std::vector<float> least(count);
+      for (int row = rows * band / bands; row < rows * (band + 1) / bands; ++row) {
+        const int y = every / 2 + row * every;
+        limits.move_to(y);
+        spots.gather(curves_(band, y, nullptr), limits.noise_grey());
+        fit.find_noise(spots.curves(), spots.noise_grey(), spots.width(), noise.data());
+        fit.fit(spots.curves(), noise.data(), least.data(), spots.width(),
+                {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
+        for (int i = 0; i < spots.width(); ++i) {
+          const auto n = static_cast<std::size_t>(i);
+          if (mask[n] == 0) tuples.push_back(tuple_of(fit, spots.curves(), i, noise[n], height_m[n]));
+        }
+      }
+    });
+    std::vector<CurveTuple> all;
+    for (const auto& tuples : found) all.insert(all.end(), tuples.begin(), tuples.end());
+    return all;
+  }
+
+  /// All planes.
+  void fit(const RowFit& fit) {
+    const int bands = pool_.threads();
+    const int reach = settings_.window_px / 2;
+    pool_.run(bands, [&](int band) {
+      const int first = height_ * band / bands;
+      const int end = height_ * (band + 1) / bands;
+      Limits limits(noise_, peak_tiles(band), width_, height_, settings_.window_px);
+      std::vector<float> noise_row(static_cast<std::size_t>(width_));  // of a sample, as shares
+      for (int y = first; y < end; ++y) {
+        const bool other_limits = limits.move_to(y);
+        const CurveRow row = curves_(band, y, map_.texture.row(y));
+        if (other_limits || fit.noise_follows_sharpness()) {
+          fit.find_noise(row, limits.noise_grey(), width_, noise_row.data());
+        }
+        fit.fit(row, noise_row.data(), limits.least(), width_,
+                {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
+        if (y - 2 * reach >= first) finish_sigma(y - reach);  // while the rows are in the cache
+      }
+    });
+    pool_.run(bands, [&](int band) {  // where the slope reaches into the next band
+      const int first = height_ * band / bands;
+      const int end = height_ * (band + 1) / bands;
+      for (int y = first; y < end; ++y) {
+        if (y - reach < first || y + reach >= end) finish_sigma(y);
+      }
+    });
+  }
+
+ private:
+  [[nodiscard]] PeakTiles peak_tiles(int band) const {
+    return {width_, height_, settings_.window_px + settings_.distance_px,
+            sharpness_code(settings_, map_.texture_format).root,
+            [this, band](int y) { return curves_(band, y, nullptr); }};
+  }
+
+  /// Row y of the variances becomes one of standard errors, with what the slope adds to them: from the heights of the
+  /// rows a window's half above and below.
+  void finish_sigma(int y) {
+    const int reach = settings_.window_px / 2;
+    const bool inside = reach > 0 && y >= reach && y < height_ - reach;
+    focus_kernels().finish_sigma(map_.height_m.row(y), inside ? map_.height_m.row(y - reach) : nullptr,
+                                 inside ? map_.height_m.row(y + reach) : nullptr, reach,
+                                 kWeightOffset * static_cast<float>(settings_.window_px), width_, map_.sigma_m.row(y));
+  }
+
+  const CurveSource& curves_;
+  const FocusSettings& settings_;
+  const NoiseProbe& noise_;
+  WorkerPool& pool_;
+  HeightMap& map_;
+  int width_;
+  int height_;
+};
+
+}  // namespace
+
+void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
+                PeakMethod method, const NoiseProbe& noise, WorkerPool& pool, HeightMap& map) {
+  MapFinish finish(curves, settings, noise, pool, map);
+  const auto tuples = finish.look_around(RowFit(z_um, settings, map.texture_format, method));
+  std::vector<double> corrected = z_um;
+  if (settings.stage_correction && method == PeakMethod::kFiveSample) {
+    map.stage = solve_stage_correction(tuples, z_um, pool);
+    for (std::size_t k = 0; k < map.stage.offsets_um.size(); ++k) corrected[k] += map.stage.offsets_um[k];
+  } else {
+    map.stage.reason = "not asked for";
+  }
+  const CurveShape shape = curve_shape(tuples, corrected, pool);
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias));
+  map.noise_grey = noise.median();
+  map.curve_width_um = shape.width_um;
+}
+
+}  // namespace fvd

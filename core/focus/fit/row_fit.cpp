@@ -1,0 +1,109 @@
+#include "core/focus/fit/row_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/base/units.hpp"
+#include "core/focus/fit/height_map.hpp"
+#include "core/focus/fit/peak_fit.hpp"
+#include "core/focus/kernels/five_sample_fit.hpp"
+#include "core/focus/measure/peak_accumulator.hpp"
+
+namespace fvd {
+
+namespace {
+
+/// c of the modified Laplacian; measured on blurred textures, see README.md.
+constexpr double kLaplacianNoise = 4.0;
+
+}  // namespace
+
+double sample_noise(const FocusSettings& settings, double noise_grey, double sharpness) noexcept {
+  const double window = settings.window_px;
+  switch (settings.focus_operator) {
+    case FocusOperator::kModifiedLaplacian:
+      return kLaplacianNoise * window * noise_grey;
+    case FocusOperator::kTenengrad:
+      // g = (gx, gy) of white noise has 12 sigma^2 each; neighbouring gradients share pixels, which doubles the sum.
+      return 2.0 * std::sqrt(2.0 * 12.0 * sharpness) * noise_grey;
+    case FocusOperator::kIntensity:
+      return window * noise_grey;
+  }
+  return 0.0;
+}
+
+RowFit::RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
+               VertexBias bias)
+    : settings_(settings),
+      code_(sharpness_code(settings, format)),
+      method_(method),
+      bias_(bias),
+      z_um_(std::move(z_um)),
+      heights_(height_table(z_um_)),
+      bin_gain_(settings.bin_slices / std::ldexp(1.0, bin_shift(settings.bin_slices))) {}
+
+void RowFit::find_noise(const CurveRow& row, const float* noise_grey, int width, float* noise) const noexcept {
+  // A bin's sample is the sum of `slices` codes: the signal grows with their number, the noise with its root.
+  const double slices = settings_.bin_slices;
+  const double scale = code_.gain * bin_gain_ * SharpnessCode::kUnit;
+  const double to_share = (code_.root ? scale * scale : scale) / std::sqrt(slices);
+  if (!noise_follows_sharpness()) {
+    const auto at_one = static_cast<float>(sample_noise(settings_, 1.0, 0.0) * to_share);
+    for (int x = 0; x < width; ++x) noise[x] = noise_grey[x] * at_one;
+  } else {
+    for (int x = 0; x < width; ++x) {
+      const double sharpness = code_.decode(row.peak[x]) / (bin_gain_ * bin_gain_);
+      noise[x] = static_cast<float>(sample_noise(settings_, static_cast<double>(noise_grey[x]), sharpness) * to_share);
+    }
+  }
+}
+
+void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
+                 const FitRow& out) const noexcept {
+  if (method_ == PeakMethod::kFiveSample) {
+    const FitParameters parameters{static_cast<float>(settings_.min_prominence),
+                                   static_cast<float>(settings_.min_significance),
+                                   settings_.bin_slices > 1 ? kBinnedShapeError : kShapeError,
+                                   static_cast<float>(SharpnessCode::kUnit),
+                                   code_.root,
+                                   bias_};
+    focus_kernels().fit_five(row, heights_, noise, least_amplitude, width, parameters, out);
+  } else {
+    fit_triples(row, noise, least_amplitude, width, out);
+  }
+}
+
+void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
+                         const FitRow& out) const noexcept {
+  const double half_a_count = (code_.root ? 0.25 * SharpnessCode::kUnit : 0.5) * SharpnessCode::kUnit;
+  for (int x = 0; x < width; ++x) {
+    const auto index = static_cast<std::size_t>(row.peak_index[x]);
+    const double peak = share(row.peak[x]);
+    const double minimum = share(row.minimum[x]);
+    const double prominence = peak > 0.0 ? (peak - minimum) / peak : 0.0;
+    auto mask = static_cast<unsigned>(heights_[index].mask);
+    if (peak == 0.0 || prominence < settings_.min_prominence) mask |= mask_reason::kLowProminence;
+    if (peak - minimum < settings_.min_significance * static_cast<double>(noise[x]))
+      mask |= mask_reason::kInsignificant;
+    if (peak - minimum < static_cast<double>(least_amplitude[x])) mask |= mask_reason::kEdgeBleeding;
+    if (row.saturated[x] != 0) mask |= mask_reason::kSaturated;
+    std::optional<PeakPosition> position;
+    if ((mask & (mask_reason::kFirstSlice | mask_reason::kLastSlice)) == 0) {
+      position = fit_peak(method_,
+                          {z_um_[index - 1], z_um_[index], z_um_[index + 1], share(row.left[x]), peak,
+                           share(row.right[x]), static_cast<double>(noise[x])},
+                          half_a_count);
+      if (!position) mask |= mask_reason::kNotBracketed;
+    }
+    const bool valid = mask == 0;
+    out.height_m[x] = valid ? static_cast<float>(position->z_um * kMetresPerMicrometer) : NAN;
+    const double sigma_m = valid ? position->sigma_um * kMetresPerMicrometer : std::nan("");
+    out.variance_m2[x] = static_cast<float>(sigma_m * sigma_m);
+    out.prominence[x] = static_cast<float>(prominence);
+    out.mask[x] = static_cast<std::uint8_t>(mask);
+  }
+}
+
+}  // namespace fvd

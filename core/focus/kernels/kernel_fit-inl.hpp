@@ -1,0 +1,367 @@
+// From condensed curves to heights. Part of focus_kernels-inl.hpp.
+
+/// The fit goes over so many pixels at once, in short loops one after the other: one long loop would wait for its own
+/// divisions and roots, of short ones the processor has several passes under way. What they hand on stays in the
+/// nearest cache, all of it 32 bits wide: in a loop that also loads 8 and 16 bits g++ takes as many pixels at once as
+/// the narrowest fill a register, and spills.
+constexpr int kFitPixels = 64;
+using FitFloats = float[kFitPixels];
+using FitFlags = std::int32_t[kFitPixels];
+
+/// Per neighbour of the peak: two before it, two after.
+struct FitNeighbours {
+  FitFloats left2;
+  FitFloats left;
+  FitFloats right;
+  FitFloats right2;
+};
+
+/// What is known of the pixels so far; filled from top to bottom.
+struct FitPixels {
+  FitFloats peak;  // codes or, where these are roots, their squares
+  FitFloats minimum;
+  FitNeighbours codes;
+  FitFloats z_um;  // and what else the table says
+  FitFloats scale_um;
+  FitNeighbours u;
+  FitFlags known;     // the mask before the fit
+  FitFloats inverse;  // of the amplitude
+  FitNeighbours r;    // shares of the amplitude; after the sums to the power of 5
+  FitFloats s0;       // sums over the samples of w u^n, w = r^4
+  FitFloats s1;
+  FitFloats s2;
+  FitFloats s3;
+  FitFloats s4;
+  FitFloats t0;  // and of w u^n r^-1/2
+  FitFloats t1;
+  FitFloats t2;
+  FitFloats vertex;  // in u
+  FitFloats l0;      // the vertex' derivatives by t0, t1, t2
+  FitFloats l1;
+  FitFloats l2;
+  FitFloats bend;  // b / (1 + 0.9 b), b the curvature in u
+  FitFlags peaked;
+  FitFlags mask;
+};
+
+template <bool kRoot>
+inline void decode(const std::uint16_t* codes, int count, float* values) {
+  for (int x = 0; x < count; ++x) {
+    const auto value = static_cast<float>(codes[x]);
+    values[x] = kRoot ? value * value : value;
+  }
+}
+
+template <bool kRoot>
+inline void decode(const CurveRow& row, int first, int count, FitPixels& at) {
+  decode<kRoot>(row.peak + first, count, at.peak);
+  decode<kRoot>(row.minimum + first, count, at.minimum);
+  decode<kRoot>(row.left2 + first, count, at.codes.left2);
+  decode<kRoot>(row.left + first, count, at.codes.left);
+  decode<kRoot>(row.right + first, count, at.codes.right);
+  decode<kRoot>(row.right2 + first, count, at.codes.right2);
+}
+
+using Four = float __attribute__((vector_size(16), may_alias));
+using FourPlaces = std::int32_t __attribute__((vector_size(16)));
+
+/// Number n of each of four rows goes to columns[n].
+inline __attribute__((always_inline)) void transpose(const float* row0, const float* row1, const float* row2,
+                                                     const float* row3, float* column0, float* column1, float* column2,
+                                                     float* column3) {
+  Four rows[4];
+  load(row0, rows[0]);
+  load(row1, rows[1]);
+  load(row2, rows[2]);
+  load(row3, rows[3]);
+  constexpr FourPlaces kLow{0, 4, 1, 5};
+  constexpr FourPlaces kHigh{2, 6, 3, 7};
+  constexpr FourPlaces kFirst{0, 1, 4, 5};
+  constexpr FourPlaces kSecond{2, 3, 6, 7};
+  const Four low01 = __builtin_shuffle(rows[0], rows[1], kLow);
+  const Four high01 = __builtin_shuffle(rows[0], rows[1], kHigh);
+  const Four low23 = __builtin_shuffle(rows[2], rows[3], kLow);
+  const Four high23 = __builtin_shuffle(rows[2], rows[3], kHigh);
+  store(__builtin_shuffle(low01, low23, kFirst), column0);
+  store(__builtin_shuffle(low01, low23, kSecond), column1);
+  store(__builtin_shuffle(high01, high23, kFirst), column2);
+  store(__builtin_shuffle(high01, high23, kSecond), column3);
+}
+
+/// For 4 pixels from x on.
+inline __attribute__((always_inline)) void look_up_four(const std::uint16_t* indices, HeightTable table, int x,
+                                                        FitPixels& at) {
+  const auto* const e0 = &table[indices[x]].z_um;
+  const auto* const e1 = &table[indices[x + 1]].z_um;
+  const auto* const e2 = &table[indices[x + 2]].z_um;
+  const auto* const e3 = &table[indices[x + 3]].z_um;
+  float none[4];
+  transpose(e0, e1, e2, e3, at.z_um + x, at.scale_um + x, at.u.left2 + x, at.u.left + x);
+  transpose(e0 + 4, e1 + 4, e2 + 4, e3 + 4, at.u.right + x, at.u.right2 + x, reinterpret_cast<float*>(at.known + x),
+            none);
+}
+
+using Eight = float __attribute__((vector_size(32), may_alias));
+using EightFlags = std::int32_t __attribute__((vector_size(32), may_alias));
+
+/// One entry for 8 pixels from x on. Less a zero: that leaves every value as it is, and g++ makes a broadcast of it.
+inline __attribute__((always_inline)) void look_up_once(const HeightEntry& entry, int x, FitPixels& at) {
+  const Eight z_um = entry.z_um - Eight{};
+  const Eight scale_um = entry.scale_um - Eight{};
+  const Eight left2 = entry.u_left2 - Eight{};
+  const Eight left = entry.u_left - Eight{};
+  const Eight right = entry.u_right - Eight{};
+  const Eight right2 = entry.u_right2 - Eight{};
+  const EightFlags known = entry.mask - EightFlags{};
+  store(z_um, at.z_um + x);
+  store(scale_um, at.scale_um + x);
+  store(left2, at.u.left2 + x);
+  store(left, at.u.left + x);
+  store(right, at.u.right + x);
+  store(right2, at.u.right2 + x);
+  store(known, at.known + x);
+}
+
+/// On most surfaces neighbours peak in one and the same slice: then one entry serves them all.
+inline void look_up(const std::uint16_t* indices, HeightTable table, int count, FitPixels& at) {
+  int x = 0;
+  for (; x + 8 <= count; x += 8) {
+    std::uint64_t four[2];
+    __builtin_memcpy(four, indices + x, sizeof four);
+    constexpr std::uint64_t kEach = 0x0001000100010001;
+    if (four[0] == four[1] && four[0] == kEach * indices[x]) {
+      look_up_once(table[indices[x]], x, at);
+    } else {
+      look_up_four(indices, table, x, at);
+      look_up_four(indices, table, x + 4, at);
+    }
+  }
+  for (; x < count; ++x) {
+    const HeightEntry& entry = table[indices[x]];
+    at.z_um[x] = entry.z_um;
+    at.scale_um[x] = entry.scale_um;
+    at.u.left2[x] = entry.u_left2;
+    at.u.left[x] = entry.u_left;
+    at.u.right[x] = entry.u_right;
+    at.u.right2[x] = entry.u_right2;
+    at.known[x] = entry.mask;
+  }
+}
+
+inline void find_shares(int count, FitPixels& at) {
+  FVD_NO_ALIASING
+  for (int x = 0; x < count; ++x) {
+    const float floor = kFloorShare * at.minimum[x];
+    const float amplitude = at.peak[x] - floor;
+    const float inverse = 1.0F / (amplitude > 0.0F ? amplitude : 1.0F);
+    at.inverse[x] = inverse;
+    const auto share = [&](float value) {
+      const float r = (value - floor) * inverse;
+      return r > kSmallestShare ? r : kSmallestShare;
+    };
+    at.r.left[x] = share(at.codes.left[x]);
+    at.r.right[x] = share(at.codes.right[x]);
+    // A sample that is not there has no weight.
+    at.r.left2[x] = at.u.left2[x] != 0.0F ? share(at.codes.left2[x]) : 0.0F;
+    at.r.right2[x] = at.u.right2[x] != 0.0F ? share(at.codes.right2[x]) : 0.0F;
+  }
+}
+
+/// Over the peak and its neighbours.
+struct FitSums {
+  float s0 = 1.0F;  // the peak itself: weight 1 at u = 0, r = 1
+  float s1 = 0.0F;
+  float s2 = 0.0F;
+  float s3 = 0.0F;
+  float s4 = 0.0F;
+  float t0 = 1.0F;
+  float t1 = 0.0F;
+  float t2 = 0.0F;
+};
+
+/// Returns r^5.
+inline __attribute__((always_inline)) float add_sample(FitSums& sums, float r, float u) {
+  const float r2 = r * r;
+  const float w = r2 * r2;
+  const float v = r2 * r * std::sqrt(r);  // w r^-1/2 without its division
+  const float wu = w * u;
+  const float wu2 = wu * u;
+  const float wu3 = wu2 * u;
+  const float vu = v * u;
+  sums.s0 += w;
+  sums.s1 += wu;
+  sums.s2 += wu2;
+  sums.s3 += wu3;
+  sums.s4 += wu3 * u;
+  sums.t0 += v;
+  sums.t1 += vu;
+  sums.t2 += vu * u;
+  return w * r;
+}
+
+inline void add_samples(int count, FitPixels& at) {
+  FVD_NO_ALIASING
+  for (int x = 0; x < count; ++x) {
+    FitSums sums;
+    at.r.left2[x] = add_sample(sums, at.r.left2[x], at.u.left2[x]);
+    at.r.left[x] = add_sample(sums, at.r.left[x], at.u.left[x]);
+    at.r.right[x] = add_sample(sums, at.r.right[x], at.u.right[x]);
+    at.r.right2[x] = add_sample(sums, at.r.right2[x], at.u.right2[x]);
+    at.s0[x] = sums.s0;
+    at.s1[x] = sums.s1;
+    at.s2[x] = sums.s2;
+    at.s3[x] = sums.s3;
+    at.s4[x] = sums.s4;
+    at.t0[x] = sums.t0;
+    at.t1[x] = sums.t1;
+    at.t2[x] = sums.t2;
+  }
+}
+
+inline void solve(int count, FitPixels& at) {
+  FVD_NO_ALIASING
+  for (int x = 0; x < count; ++x) {
+    const float s0 = at.s0[x];
+    const float s1 = at.s1[x];
+    const float s2 = at.s2[x];
+    const float s3 = at.s3[x];
+    const float s4 = at.s4[x];
+    // Cramer's rule for k1, k2 of g = k0 + k1 u + k2 u^2; c.. are the cofactors of their rows.
+    const float c10 = s2 * s3 - s1 * s4;
+    const float c11 = s0 * s4 - s2 * s2;
+    const float c12 = s1 * s2 - s0 * s3;
+    const float c20 = s1 * s3 - s2 * s2;
+    const float c22 = s0 * s2 - s1 * s1;
+    const float k1 = c10 * at.t0[x] + c11 * at.t1[x] + c12 * at.t2[x];
+    const float k2 = c20 * at.t0[x] + c12 * at.t1[x] + c22 * at.t2[x];
+    // Both lack the same positive factor, the determinant; their ratio does not mind.
+    const float determinant = s1 * c10 + s2 * c11 + s3 * c12;
+    const std::int32_t convex = static_cast<std::int32_t>(k2 > 0.0F) & static_cast<std::int32_t>(determinant > 0.0F);
+    const float curvature = convex != 0 ? k2 : 1.0F;
+    // u = a k1, and du = a dk1 + b dk2 with the determinant back in.
+    const float a = -0.5F / curvature;
+    const float u = a * k1;
+    const float b = 2.0F * a * u;
+    // A vertex beyond the neighbours is not the peak that was sampled.
+    at.peaked[x] = convex & static_cast<std::int32_t>((u - at.u.left[x]) * (u - at.u.right[x]) <= 0.0F);
+    at.vertex[x] = u;
+    at.l0[x] = a * c10 + b * c20;
+    at.l1[x] = a * c11 + b * c12;
+    at.l2[x] = a * c12 + b * c22;
+    // The curvature is k2 over the determinant; what is not convex is a hole.
+    at.bend[x] = curvature / ((determinant > 0.0F ? determinant : 1.0F) + 0.9F * curvature);
+  }
+}
+
+inline float share_unit(const FitParameters& parameters) {
+  return parameters.root_code ? parameters.code_unit * parameters.code_unit : parameters.code_unit;
+}
+
+/// The share of the variance of a sample of weight r^4 that reaches the vertex, times 4: dg = r^-3/2 dr / 2.
+inline __attribute__((always_inline)) float gain(float r5, float u, float l0, float l1, float l2) {
+  const float lever = l0 + (l1 + l2 * u) * u;
+  return r5 * lever * lever;
+}
+
+/// Fills at.mask.
+inline void judge(int count, const float* noise, const float* least, const FitParameters& parameters, FitPixels& at,
+                  float* prominences) {
+  const float min_prominence = parameters.min_prominence;
+  const float min_significance = parameters.min_significance;
+  const float unit = share_unit(parameters);
+  FVD_NO_ALIASING
+  for (int x = 0; x < count; ++x) {
+    const float top = at.peak[x];
+    const float rise = top - at.minimum[x];
+    const float prominence = rise / (top > 0.0F ? top : 1.0F);
+    const float share = rise * unit;
+    const std::int32_t known = at.known[x];
+    constexpr std::int32_t kEnds = mask_reason::kFirstSlice | mask_reason::kLastSlice;
+    const std::int32_t flat =
+        static_cast<std::int32_t>(prominence < min_prominence) | static_cast<std::int32_t>(top == 0.0F);
+    const auto weak = static_cast<std::int32_t>(share < min_significance * noise[x]);
+    const auto bled = static_cast<std::int32_t>(share < least[x]);
+    const std::int32_t open = static_cast<std::int32_t>((known & kEnds) == 0) & (at.peaked[x] ^ 1);
+    at.mask[x] = known | (-flat & mask_reason::kLowProminence) | (-weak & mask_reason::kInsignificant) |
+                 (-bled & mask_reason::kEdgeBleeding) | (-open & mask_reason::kNotBracketed);
+    prominences[x] = prominence;
+  }
+}
+
+inline void find_heights(int count, const float* noise, const FitParameters& parameters, const FitPixels& at,
+                         float* height_m, float* variance_m2) {
+  const float shape_error = parameters.shape_error;
+  const VertexBias bias = parameters.bias;
+  const float half_per_unit = 0.5F / share_unit(parameters);
+  FVD_NO_ALIASING
+  for (int x = 0; x < count; ++x) {
+    const float l0 = at.l0[x];
+    const float l1 = at.l1[x];
+    const float l2 = at.l2[x];
+    const float variance =
+        l0 * l0 + gain(at.r.left[x], at.u.left[x], l0, l1, l2) + gain(at.r.left2[x], at.u.left2[x], l0, l1, l2) +
+        gain(at.r.right[x], at.u.right[x], l0, l1, l2) + gain(at.r.right2[x], at.u.right2[x], l0, l1, l2);
+    const float relative_noise = noise[x] * half_per_unit * at.inverse[x];
+    const float bend = at.bend[x];
+    const float shape = shape_error * bend;
+    const float scale_m = at.scale_um[x] * 1e-6F;
+    const float u = at.vertex[x];
+    const float below = u < 0.5F ? u : 0.5F;  // the bias is known to half a step
+    const float near = below > -0.5F ? below : -0.5F;
+    // From there it goes to nothing at the neighbours: no vertex is taken beyond them.
+    const float inside = (u - at.u.left[x]) * (at.u.right[x] - u) * (4.0F / 3.0F);
+    const float share = inside < 1.0F ? inside : 1.0F;
+    const float vertex = u - (bias.linear + bias.cubic * near * near) * near * bend * share;
+    const bool valid = at.mask[x] == 0;
+    const float spread = (variance * (relative_noise * relative_noise) + shape * shape) * (scale_m * scale_m);
+    const float height = (at.z_um[x] + vertex * at.scale_um[x]) * 1e-6F;
+    variance_m2[x] = valid ? spread : kNaN;
+    height_m[x] = valid ? height : kNaN;
+  }
+}
+
+inline void mark_saturated(const std::uint8_t* saturated, int count, FitPixels& at) {
+  std::uint8_t any = 0;
+  for (int x = 0; x < count; ++x) any = static_cast<std::uint8_t>(any | saturated[x]);
+  if (any == 0) return;  // nearly always
+  for (int x = 0; x < count; ++x) {
+    const std::int32_t flag = saturated[x];
+    at.known[x] |= -flag & mask_reason::kSaturated;
+  }
+}
+
+/// The next row's part below these pixels.
+inline __attribute__((always_inline)) void fetch_below(const CurveRow& row, const FitRow& out, int width, int first) {
+  for (const std::uint16_t* field :
+       {row.peak, row.left, row.left2, row.right, row.right2, row.minimum, row.peak_index}) {
+    fetch<2 * kFitPixels>(field + first, row.pitch_bytes, false);
+  }
+  fetch<kFitPixels>(row.saturated + first, row.pitch_bytes, false);
+  for (const float* plane : {out.height_m, out.variance_m2, out.prominence}) {
+    fetch<4 * kFitPixels>(plane + first, std::ptrdiff_t{4} * width, true);
+  }
+  fetch<kFitPixels>(out.mask + first, width, true);
+}
+
+void fit_five(const CurveRow& row, HeightTable table, const float* noise, const float* least_amplitude, int width,
+              const FitParameters& parameters, const FitRow& out) noexcept {
+  FitPixels at;
+  for (int first = 0; first < width; first += kFitPixels) {
+    const int count = width - first < kFitPixels ? width - first : kFitPixels;
+    if (parameters.root_code) {
+      decode<true>(row, first, count, at);
+    } else {
+      decode<false>(row, first, count, at);
+    }
+    fetch_below(row, out, width, first);
+    look_up(row.peak_index + first, table, count, at);
+    mark_saturated(row.saturated + first, count, at);
+    find_shares(count, at);
+    add_samples(count, at);
+    solve(count, at);
+    judge(count, noise + first, least_amplitude + first, parameters, at, out.prominence + first);
+    find_heights(count, noise + first, parameters, at, out.height_m + first, out.variance_m2 + first);
+    auto* const mask = out.mask + first;
+    for (int x = 0; x < count; ++x) mask[x] = static_cast<std::uint8_t>(at.mask[x]);
+  }
+}

@@ -1,0 +1,29 @@
+// What points say of those near them. Part of focus_kernels-inl.hpp.
+
+void raise_amplitudes(const std::uint16_t* peak, const std::uint16_t* minimum, bool root_code, int width,
+                      std::uint32_t* highest) noexcept {
+  FVD_NO_ALIASING
+  for (int x = 0; x < width; ++x) {
+    const std::uint32_t high = peak[x];
+    const std::uint32_t low = minimum[x];
+    const std::uint32_t amplitude = root_code ? high * high - low * low : high - low;
+    highest[x] = amplitude > highest[x] ? amplitude : highest[x];
+  }
+}
+
+void finish_sigma(const float* height, const float* upper, const float* lower, int reach, float factor, int width,
+                  float* sigma) noexcept {
+  const int first = upper != nullptr && 2 * reach < width ? reach : width;
+  const int end = upper != nullptr && 2 * reach < width ? width - reach : width;
+  for (int x = 0; x < first; ++x) sigma[x] = std::sqrt(sigma[x]);
+  const float scale = factor / static_cast<float>(2 * reach);
+  FVD_NO_ALIASING
+  for (int x = first; x < end; ++x) {
+    const float across = height[x + reach] - height[x - reach];
+    const float along = lower[x] - upper[x];
+    const float gx = across == across ? across * scale : 0.0F;  // NaN where a neighbour is a hole
+    const float gy = along == along ? along * scale : 0.0F;
+    sigma[x] = std::sqrt(sigma[x] + gx * gx + gy * gy);
+  }
+  for (int x = end; x < width; ++x) sigma[x] = std::sqrt(sigma[x]);
+}

@@ -1,0 +1,111 @@
+// From operator values to window sums and codes. Part of focus_kernels-inl.hpp.
+
+void slide_u32(std::uint32_t* columns, const std::uint32_t* entering, std::uint32_t* leaving, int width) noexcept {
+  FVD_NO_ALIASING
+  for (int x = 0; x < width; ++x) {
+    columns[x] += entering[x] - leaving[x];
+    leaving[x] = entering[x];
+  }
+}
+
+/// out[x] = sum of the rows at x. The pointers are parameters: from an array g++ would load them anew for every x.
+template <typename T, typename... Rows>
+inline __attribute__((always_inline)) void add_rows(int count, T* out, Rows... rows) {
+  FVD_NO_ALIASING
+  for (int x = 0; x < count; ++x) out[x] = static_cast<T>((rows[x] + ...));
+}
+
+template <std::size_t... kTerm, typename T>
+inline __attribute__((always_inline)) void add_terms(std::index_sequence<kTerm...> /*terms*/, const T* const* terms,
+                                                     int count, T* out) {
+  add_rows(count, out, terms[kTerm]...);
+}
+template <int kTerms, typename T>
+inline __attribute__((always_inline)) void add_terms(const T* const* terms, int count, T* out) {
+  add_terms(std::make_index_sequence<kTerms>(), terms, count, out);
+}
+
+template <typename T>
+inline __attribute__((always_inline)) void add_terms(const T* const* terms, int number, int count, T* out) {
+  switch (number) {
+    case 1:
+      return add_terms<1>(terms, count, out);
+    case 2:
+      return add_terms<2>(terms, count, out);
+    case 3:
+      return add_terms<3>(terms, count, out);
+    case 4:
+      return add_terms<4>(terms, count, out);
+    case 5:
+      return add_terms<5>(terms, count, out);
+    case 6:
+      return add_terms<6>(terms, count, out);
+    case 7:
+      return add_terms<7>(terms, count, out);
+    case 8:
+      return add_terms<8>(terms, count, out);
+    case 9:
+      return add_terms<9>(terms, count, out);
+    case 10:
+      return add_terms<10>(terms, count, out);
+    case 11:
+      return add_terms<11>(terms, count, out);
+    default:
+      return;  // no window needs more: 63 = 7 * 9, 61 = 6 * 9 + 2 * 3 + 1
+  }
+}
+
+/// A window in powers of three: sums of 3, then of 9 values, each from three of the level below, and at last the
+/// window from what is largest. 9 takes 4 additions, 31 takes 8, 63 takes 10. count: windows, up to kWindowsAtOnce.
+constexpr int kWindowsAtOnce = 1280;  // two of these halve a row of 2448
+template <typename T>
+inline __attribute__((always_inline)) void window_sums_at(const T* values, int window, int count, T* out) {
+  T scratch[2][kWindowsAtOnce + 64];
+  const T* level = values;
+  const T* levels[3] = {values, values, values};
+  int power = 1;
+  int top = 0;
+  while (top < 2 && power * 9 <= window) {
+    const T* const terms[3] = {level, level + power, level + 2 * power};
+    add_terms<3>(terms, count + window - 3 * power, scratch[top]);
+    power *= 3;
+    level = scratch[top];
+    ++top;
+    levels[top] = level;
+  }
+  const T* terms[12];
+  int number = 0;
+  int offset = 0;
+  for (; top >= 0; --top, power /= 3) {
+    while (offset + power <= window) {
+      terms[number++] = levels[top] + offset;
+      offset += power;
+    }
+  }
+  add_terms(terms, number, count, out);
+}
+
+/// So many windows at once that the sums between stay in the nearest cache.
+template <typename T>
+inline __attribute__((always_inline)) void window_sums(const T* values, int window, int width, T* out) {
+  const int windows = width - window + 1;
+  for (int first = 0; first < windows; first += kWindowsAtOnce) {
+    const int count = windows - first < kWindowsAtOnce ? windows - first : kWindowsAtOnce;
+    window_sums_at(values + first, window, count, out + first);
+  }
+}
+void window_sums_u16(const std::uint16_t* values, int window, int width, std::uint16_t* out) noexcept {
+  window_sums(values, window, width, out);
+}
+void window_sums_u32(const std::uint32_t* values, int window, int width, std::uint32_t* out) noexcept {
+  window_sums(values, window, width, out);
+}
+
+void root_code(const std::uint32_t* sums, float gain, int width, std::uint16_t* out) noexcept {
+  FVD_NO_ALIASING
+  for (int x = 0; x < width; ++x) {
+    // Through int: there is no vector instruction from unsigned to float before AVX-512.
+    const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sums[x])));
+    out[x] = static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
+  }
+}

@@ -1,0 +1,54 @@
+#pragma once
+
+/// The noise of the image, seen in the same scan: every part of it is out of focus in some slice, and what varies from
+/// pixel to pixel then is noise.
+///
+/// J. Immerkaer, "Fast noise variance estimation", CVIU 64(2), 1996: the mask [1 -2 1; -2 4 -2; 1 -2 1] does not see
+/// smooth images; of white noise it makes sigma = sqrt(pi / 2) / 6 * mean |response|. Here the mean is taken over tiles
+/// of about 128 x 128 pixels, every sixteenth row of them, and each tile keeps its least.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/focus/kernels/focus_kernels.hpp"
+#include "core/image/image.hpp"
+#include "core/runtime/worker_pool.hpp"
+
+namespace fvd {
+
+/// context: one thread at a time; add() spreads its work over the pool. All memory is taken by the constructor.
+class NoiseProbe {
+ public:
+  NoiseProbe(int width, int height);
+
+  /// Looks at one slice of the constructor's size.
+  void add(const ImageView& slice, WorkerPool& pool) noexcept;
+
+  [[nodiscard]] int tile_row(int y) const noexcept;
+
+  /// Standard deviation in grey levels at each pixel of a row of tiles, at least that of rounding, 1 / sqrt(12).
+  /// Shape [width].
+  void noise_row(int tile_row, float* out) const noexcept;
+
+  /// Of the tiles, in grey levels.
+  [[nodiscard]] double median() const;
+  [[nodiscard]] double least() const;
+
+ private:
+  template <typename Pixel>
+  void add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept;
+  [[nodiscard]] int tile_left(int column) const noexcept;  // with the neighbours that the mask needs
+  [[nodiscard]] int tile_right(int column) const noexcept;
+  [[nodiscard]] float sigma(int column, int tile_row) const noexcept;
+  [[nodiscard]] std::vector<float> sigmas() const;
+
+  const FocusKernels& kernels_;
+  int width_;
+  int height_;
+  int columns_;  // of tiles
+  int rows_;
+  std::vector<double> least_;        // [rows][columns], mean |response|
+  std::vector<std::uint64_t> sums_;  // [rows][columns], of the slice that is looked at
+};
+
+}  // namespace fvd

@@ -1,0 +1,72 @@
+#pragma once
+
+/// What is kept per pixel of a focus curve that passes by once: its maximum so far with two neighbours on either side,
+/// where it was, and the minimum.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/base/large_array.hpp"
+#include "core/focus/kernels/focus_kernels.hpp"
+
+namespace fvd {
+
+/// Slices that are being summed to one sample; nullptr throughout where every slice is a sample.
+template <typename Texture>
+struct BinRow {
+  std::uint16_t* sums = nullptr;
+  Texture* texture = nullptr;         ///< of the slice in the middle of the bin
+  std::uint8_t* saturated = nullptr;  ///< 1 if a window of the bin was saturated
+};
+
+template <typename Texture>
+struct StateRow {
+  CurveRow curve;
+  Texture* texture = nullptr;
+  BinRow<Texture> bin;
+};
+
+/// 20 bytes a pixel for Mono8, 21 for 16 bit, with bins 24 and 26; rows padded to 16 pixels; never grows.
+/// Texture: std::uint8_t for Mono8, else std::uint16_t.
+template <typename Texture>
+class PeakAccumulator {
+ public:
+  PeakAccumulator(int width, int height, bool binned);
+
+  [[nodiscard]] StateRow<Texture> row(int y) noexcept;
+  /// Writes rows first to end - 1: the memory is there when the first slice comes, and near to the thread that calls.
+  void touch_rows(int first, int end) noexcept;
+  /// Row 0 becomes a copy of row y of another accumulator of the same width and kind.
+  void copy_row(const PeakAccumulator& from, int y) noexcept;
+  [[nodiscard]] std::size_t memory_bytes() const noexcept { return storage_.size() * sizeof(Block); }
+  [[nodiscard]] static std::size_t memory_bytes(int width, int height, bool binned);
+
+ private:
+  struct alignas(64) Block {
+    std::byte bytes[64];
+  };
+  [[nodiscard]] static std::size_t blocks_per_row(int width, bool binned);
+
+  std::size_t padded_width_;
+  std::size_t blocks_per_row_;
+  bool binned_;
+  LargeArray<Block> storage_;
+};
+
+/// By how many bits the codes of a bin's slices are shifted so that their sum fits 16 bits: 0 for 1 slice, 6 for 64.
+[[nodiscard]] int bin_shift(int bin_slices) noexcept;
+
+/// Takes sample 0 in: initialises the row.
+template <typename Texture>
+void start_peaks(const StateRow<Texture>& row, const Sample<Texture>& sample, int width) noexcept;
+
+/// Takes successive samples in, the first of number first_index >= 1.
+template <typename Texture>
+void update_peaks(const FocusKernels& kernels, const StateRow<Texture>& row, std::span<const Sample<Texture>> samples,
+                  int width, int first_index) noexcept;
+
+extern template class PeakAccumulator<std::uint8_t>;
+extern template class PeakAccumulator<std::uint16_t>;
+
+}  // namespace fvd

@@ -1,0 +1,54 @@
+#pragma once
+
+/// How high the focus curves of a neighbourhood rise, to find points that see an edge's blur instead of a surface.
+///
+/// Out of focus, light of a bright edge reaches windows beside it that hold no texture of their own. Their curves have
+/// a peak then, at a height where there is nothing. It is low beside the edge's own: a point whose curve rises less
+/// than a tenth of the highest within about a window from it is no surface.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/focus/kernels/focus_kernels.hpp"
+#include "core/focus/measure/sharpness_code.hpp"
+
+namespace fvd {
+
+/// Goes down the image, so that what it has looked at is still in a cache when the fit comes by. context: one thread;
+/// each has one of its own.
+class PeakTiles {
+ public:
+  /// The condensed curves of row y; good until the next call.
+  using CurveOfRow = std::function<CurveRow(int y)>;
+
+  /// reach_px: side of a tile; a point is compared with its own tile and the eight about it.
+  PeakTiles(int width, int height, int reach_px, bool root_code, CurveOfRow curves);
+
+  [[nodiscard]] int tile_row(int y) const noexcept { return y / reach_px_; }
+
+  /// A tenth of the neighbourhood's highest amplitude at each pixel of a row of tiles, in shares. Shape [width].
+  /// Looks at the curves of that row and its neighbours, of those that the last call looked at not again.
+  void least_amplitude(int tile_row, float* out);
+
+ private:
+  void look_at(int tile_row);
+  [[nodiscard]] std::vector<float>& tiles(int tile_row) noexcept {
+    return tiles_[static_cast<std::size_t>(tile_row) % tiles_.size()];
+  }
+
+  int width_;
+  int height_;
+  int reach_px_;
+  bool root_code_;
+  CurveOfRow curves_;
+  int columns_;
+  int rows_;
+  int first_seen_ = 0;  // rows of tiles that are in tiles_
+  int last_seen_ = -1;
+  std::array<std::vector<float>, 3> tiles_;  // highest amplitude in shares
+  std::vector<std::uint32_t> highest_;       // [width] of a row of tiles, in codes
+};
+
+}  // namespace fvd

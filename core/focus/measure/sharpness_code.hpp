@@ -1,0 +1,35 @@
+#pragma once
+
+/// How a window's sum becomes the 16 bits that are kept per sample.
+///
+///   linear:  code = F * gain               8-bit modified Laplacian; gain is a power of 1/2
+///   root:    code = round(gain * sqrt(F))  everything wider: 16 bits keep the precision of small sums
+///
+/// Both rise with F, so a peak of codes is a peak of F. share(F), linear code / 65535 or its square for root codes, is
+/// what the fits work with.
+
+#include <cstdint>
+
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/image/image.hpp"
+
+namespace fvd {
+
+struct SharpnessCode {
+  bool root = false;
+  int shift = 0;           ///< linear: of the sum over a column, 0..6
+  int operator_shift = 0;  ///< of an operator's value before it is summed
+  double gain = 1.0;       ///< from F, the sum of the operator's unshifted values, to the code
+
+  static constexpr double kUnit = 1.0 / 65535.0;  ///< a code times this is a share or the root of one
+
+  /// F of a code, for people and for tests.
+  [[nodiscard]] double decode(std::uint16_t code) const noexcept {
+    const double value = code / gain;
+    return root ? value * value : value;
+  }
+};
+
+[[nodiscard]] SharpnessCode sharpness_code(const FocusSettings& settings, PixelFormat format) noexcept;
+
+}  // namespace fvd

@@ -1,0 +1,154 @@
+#pragma once
+
+/// The Z stage as the scan needs it: absolute moves that end settled, and the position measured over an exposure.
+/// No word of any fieldbus here; high-end stages speak other protocols.
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/base/clock.hpp"
+#include "core/base/units.hpp"
+
+namespace fvd {
+
+/// Where the measured position comes from. kNone: step counting, the accuracy is not observable.
+enum class FeedbackSource { kNone, kMotorEncoder, kLinearScale };
+
+struct StageInfo {
+  std::string name;     ///< the drive profile's name
+  std::string address;  ///< e.g. "127.0.0.1:502 unit 1"
+  FeedbackSource feedback = FeedbackSource::kNone;
+  Micrometers step_quantum;             ///< smallest commandable step
+  Micrometers feedback_resolution;      ///< smallest step of the measured position
+  Micrometers min;                      ///< lowest target allowed, take-up included
+  Micrometers max;                      ///< highest target allowed
+  Micrometers take_up;                  ///< overshoot below the first target that loads the backlash
+  Micrometers lead{};                   ///< of the screw, the period of its error; 0 = unknown
+  double speed_um_per_s = 0.0;          ///< of moves, and the fastest a sweep may be
+  double acceleration_um_per_s2 = 0.0;  ///< of both
+  bool simulated = false;
+};
+
+/// Where an axis stands between being found and being ready.
+enum class AxisState {
+  kDisconnected,
+  kIdentifying,  ///< connected, is it the right drive?
+  kDisabled,
+  kNotHomed,
+  kHoming,
+  kReady,
+  kMoving,
+  kSettling,  ///< the drive has stopped, the settle criterion is not met yet
+  kAlarm,
+  kCommLost,  ///< stopped answering; its position is unknown until it is opened anew
+};
+/// "NotHomed" and so on.
+[[nodiscard]] const char* axis_state_name(AxisState state) noexcept;
+
+struct StageTemperature {
+  std::string name;  ///< "driver", "motor"
+  double celsius = 0.0;
+};
+
+/// How the line to the drive does.
+struct StageLinkStats {
+  std::uint64_t requests = 0;
+  std::uint64_t retries = 0;
+  std::uint64_t unanswered = 0;  ///< no answer, or none that could be used
+  std::uint64_t refused = 0;     ///< by the drive
+  std::uint64_t reconnects = 0;
+  std::uint64_t discarded_bytes = 0;  ///< late or garbled
+  std::uint64_t implausible = 0;      ///< positions no axis could have reached, read again
+  double latency_p50_us = 0.0;
+  double latency_p99_us = 0.0;
+  double latency_max_us = 0.0;
+};
+
+struct StageStatus {
+  AxisState state = AxisState::kReady;
+  bool enabled = false;
+  bool homed = false;
+  bool moving = false;
+  bool in_position = false;
+  bool alarm = false;
+  int alarm_code = 0;
+  std::string alarm_text;
+  Micrometers position;  ///< measured
+  std::vector<StageTemperature> temperatures;
+};
+
+/// Definition of "arrived": |measured - target| <= window, not moving and in position, for `samples` consecutive
+/// samples that span at least `dwell`.
+struct SettleCriterion {
+  Micrometers window{0.5};
+  int samples = 3;
+  std::chrono::milliseconds dwell{15};
+  std::chrono::milliseconds timeout{3000};  ///< from the start of the move
+};
+
+/// How one move went.
+struct MoveRecord {
+  Micrometers target;            ///< as asked for
+  Micrometers target_quantised;  ///< as the drive can represent it
+  StageCounts target_counts;
+  Micrometers position;  ///< measured, last sample of the settle criterion
+  HostTime started{};
+  HostTime halted{};  ///< first sample after the commanded motion had ended
+  HostTime settled{};
+  int polls = 0;
+};
+
+/// Mean of the measured positions inside a time window.
+struct PositionMean {
+  Micrometers mean;
+  Micrometers sd;   ///< 0 with fewer than two samples
+  int samples = 0;  ///< samples inside the window; 0 = interpolated from the nearest before and after it
+};
+
+/// A connected axis. Constructing one connects and identifies the drive (throws Error kStageDisconnected).
+/// context: one thread at a time, except stop(), connected(), mean_position() and position_at().
+class Axis {
+ public:
+  virtual ~Axis() = default;
+
+  [[nodiscard]] virtual StageInfo info() const = 0;
+
+  /// Throws Error kStageDisconnected.
+  [[nodiscard]] virtual StageStatus status() = 0;
+
+  /// Enables the drive and finds the reference; returns when homed and at rest.
+  /// Throws Error kStageDisconnected, kStageAlarm, kTimeout, kAborted.
+  virtual void home(std::stop_token stop) = 0;
+
+  /// Moves to an absolute position and returns when settled. A stop request halts the axis.
+  /// Throws Error kStageLimit (nothing moved), kStageNotHomed, kStageAlarm, kStagePosition (not settled in time),
+  /// kStageDisconnected, kAborted.
+  virtual MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) = 0;
+
+  /// Moves to an absolute position at a speed of its own, so that positions may be taken on the way; returns when at
+  /// rest. Throws as move_to does; kStageLimit also for a speed that is not above 0 or above that of moves.
+  virtual MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) = 0;
+
+  /// The measured position over [from, to]; waits at most for one sample at or after `to`.
+  /// Throws Error kStageDisconnected.
+  [[nodiscard]] virtual PositionMean mean_position(HostTime from, HostTime to) = 0;
+
+  /// The measured position of a moving axis: a line through the samples from `reach` before to `reach` after `at`, read
+  /// at `at`. sd is that of the samples about the line, samples their number; 0 = none there, the position is
+  /// extrapolated. Waits at most for one sample at or after at + reach. Throws Error kStageDisconnected.
+  [[nodiscard]] virtual PositionMean position_at(HostTime at, std::chrono::microseconds reach) = 0;
+
+  /// Halts the axis ahead of everything else that is queued. context: any thread.
+  virtual void stop() noexcept = 0;
+
+  [[nodiscard]] virtual bool connected() const noexcept = 0;
+
+  /// Nothing where there is no line.
+  [[nodiscard]] virtual std::optional<StageLinkStats> link_stats() const { return std::nullopt; }
+};
+
+}  // namespace fvd

@@ -1,0 +1,27 @@
+#pragma once
+
+/// Error codes on the wire: JSON-RPC 2.0's own, and fvd's, which are positive and never change their meaning.
+
+#include <string_view>
+
+#include "core/base/error.hpp"
+
+namespace fvd {
+
+namespace json_rpc {
+inline constexpr int kParseError = -32700;
+inline constexpr int kInvalidRequest = -32600;
+inline constexpr int kMethodNotFound = -32601;
+inline constexpr int kInvalidParams = -32602;
+inline constexpr int kInternalError = -32603;
+}  // namespace json_rpc
+
+struct RpcError {
+  int code = 0;
+  bool retry = false;  ///< the same request may succeed later without anybody doing anything
+};
+
+/// One code for every ErrorCode; no two share one.
+[[nodiscard]] RpcError rpc_error(ErrorCode code) noexcept;
+
+}  // namespace fvd

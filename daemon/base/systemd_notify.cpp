@@ -1,0 +1,27 @@
+#include "daemon/base/systemd_notify.hpp"
+
+#include <algorithm>
+
+#include <systemd/sd-daemon.h>
+
+namespace fvd {
+
+namespace {
+
+/// A line break would begin another assignment.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\0'; }, ' ');
+  return text;
+}
+
+/// Nothing depends on being heard, so a manager that does not listen is no error.
+void notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_str())); }
+
+}  // namespace
+
+void notify_ready(const std::string& status) { notify("READY=1\nSTATUS=" + one_line(status)); }
+void notify_status(const std::string& status) { notify("STATUS=" + one_line(status)); }
+void notify_stopping() { notify("STOPPING=1\nSTATUS=stopping"); }
+
+}  // namespace fvd

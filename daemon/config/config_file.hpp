@@ -1,0 +1,44 @@
+#pragma once
+
+/// The configuration file: reading, checking, showing.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/fields.hpp"
+#include "config/problem.hpp"
+#include "daemon/config/config.hpp"
+
+namespace fvd {
+
+/// Every key with its range and meaning: the one place that defines them.
+void describe(Config& config, Fields& fields);
+
+/// Each "group.key=value" as given to --set; the value is JSON, or a text where that is no JSON.
+using Overrides = std::vector<std::string>;
+
+struct LoadedConfig {
+  Config config;
+  Problems problems;  ///< empty = usable
+};
+
+/// Text to structure: overrides are applied, then types, ranges and names are checked. Keys that are absent or refused
+/// have their default. base: the file's folder, against which profile, replay_dir and recipe_dir are taken if relative;
+/// state_dir and runtime_dir stay relative to the current directory. Never throws for bad input.
+[[nodiscard]] LoadedConfig parse_config(std::string_view json_text, const std::filesystem::path& base,
+                                        const Overrides& overrides = {});
+
+/// What must fit together or exist on this machine, beyond the range of a single key. No device is touched.
+[[nodiscard]] Problems check_config(const Config& config);
+
+/// Reads the file and does both; a file that cannot be read is a problem too.
+[[nodiscard]] LoadedConfig load_config(const std::filesystem::path& file, const Overrides& overrides = {});
+
+/// The configuration in force, as JSON text.
+[[nodiscard]] std::string config_text(Config config);
+/// JSON Schema of the file; config/fvd.schema.json is this text.
+[[nodiscard]] std::string config_schema_text();
+
+}  // namespace fvd

@@ -1,0 +1,158 @@
+#include "daemon/jobs/device_commands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/focus/grey_statistics.hpp"
+#include "core/scan/slice_capture.hpp"
+#include "daemon/export/image_png.hpp"
+#include "daemon/pipeline/preview_hub.hpp"
+
+namespace fvd {
+
+namespace {
+
+using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr int kRetries = 3;
+constexpr std::size_t kSnapsKept = 100;
+constexpr int kLooks = 8;
+/// The exposure is right when it is this near.
+constexpr double kNear = 0.05;
+
+struct Shot {
+  Frame frame;
+  CameraSettings settings;  ///< in force
+  double z_um = 0.0;
+};
+
+/// A frame exposed from now on.
+Shot shoot(const Devices& devices, const CameraSettings& settings, const std::stop_token& stop) {
+  Shot shot;
+  shot.settings = devices.camera.configure(settings);
+  FrameLedger ledger;
+  auto captured = SliceCapture(devices.camera, devices.clock, ledger).capture(devices.clock.now(), kRetries, stop);
+  if (!captured) {
+    throw Error(ErrorCode::kCameraFramesLost,
+                "the camera sent no good frame for " + std::to_string(1 + kRetries) + " triggers: check its link");
+  }
+  shot.frame = std::move(captured->frame);
+  shot.z_um = devices.stage.mean_position(shot.frame.exposure_start, shot.frame.exposure_end).mean.value;
+  return shot;
+}
+
+ordered_json grey_json(const GreyStatistics& grey) {
+  return {{"min", grey.min}, {"max", grey.max}, {"mean", grey.mean}, {"p01", grey.p01},
+          {"p50", grey.p50}, {"p99", grey.p99}, {"p999", grey.p999}, {"saturated_fraction", grey.saturated_fraction}};
+}
+
+/// <folder>/20261124T050102Z-<n>.png, n counting within the second.
+fs::path new_snap(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  char stem[32];
+  std::strftime(stem, sizeof stem, "%Y%m%dT%H%M%SZ", &utc);
+  for (int i = 1;; ++i) {
+    fs::path path = folder / (std::string(stem) + "-" + std::to_string(i) + ".png");
+    if (!fs::exists(path, error)) return path;
+  }
+}
+
+void drop_oldest(const fs::path& folder) {
+  std::vector<fs::path> snaps;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == ".png") snaps.push_back(entry->path());
+  }
+  if (snaps.size() <= kSnapsKept) return;
+  std::sort(snaps.begin(), snaps.end());  // by time
+  for (std::size_t i = 0; i + kSnapsKept < snaps.size(); ++i) fs::remove(snaps[i], error);
+}
+
+}  // namespace
+
+DeviceTask::Work snap_work(const CameraSettings& settings) {
+  return [settings](const Devices& devices, const std::stop_token& stop) {
+    const Shot shot = shoot(devices, settings, stop);
+    const fs::path folder = devices.state_dir / "snaps";
+    const fs::path path = new_snap(folder);
+    std::ofstream out(path, std::ios::binary);
+    out << encode_image_png(shot.frame.image);
+    out.close();
+    if (!out) throw Error(ErrorCode::kStorageWrite, "cannot write " + path.string() + "; see /paths/state_dir");
+    drop_oldest(folder);
+    return ordered_json{{"path", fs::absolute(path).string()},
+                        {"width_px", shot.frame.image.width},
+                        {"height_px", shot.frame.image.height},
+                        {"bits", significant_bits(shot.frame.image.format)},
+                        {"exposure_us", shot.settings.exposure_us},
+                        {"gain_db", shot.settings.gain_db},
+                        {"z_um", shot.z_um},
+                        {"grey", grey_json(grey_statistics(shot.frame.image))}}
+        .dump();
+  };
+}
+
+DeviceTask::Work preview_work(const CameraSettings& settings) {
+  return [settings](const Devices& devices, const std::stop_token& stop) {
+    const Shot shot = shoot(devices, settings, stop);
+    PreviewPicture picture = make_preview(shot.frame.image, shot.z_um);
+    picture.seq = shot.frame.id;
+    return preview_json(picture);
+  };
+}
+
+DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
+  return [asked, target](const Devices& devices, const std::stop_token& stop) {
+    CameraSettings settings = asked;
+    ordered_json result;
+    for (int look = 1; look <= kLooks; ++look) {
+      const Shot shot = shoot(devices, settings, stop);
+      const GreyStatistics grey = grey_statistics(shot.frame.image);
+      const double factor = exposure_factor(grey, shot.frame.image.format, target);
+      const bool reached = std::abs(factor - 1.0) <= kNear;
+      result = {
+          {"exposure_us", shot.settings.exposure_us}, {"reached", reached}, {"looks", look}, {"grey", grey_json(grey)}};
+      if (reached) break;
+      settings.exposure_us = shot.settings.exposure_us * factor;
+    }
+    (void)devices.camera.configure(asked);
+    return result.dump();
+  };
+}
+
+DeviceTask::Work autofocus_work(const CameraSettings& settings, const AutofocusPlan& plan) {
+  return [settings, plan](const Devices& devices, const std::stop_token& stop) {
+    (void)devices.camera.configure(settings);
+    const AutofocusResult found = autofocus(devices.camera, devices.stage, devices.clock, plan, stop);
+    ordered_json curve = ordered_json::array();
+    for (const FocusSample& sample : found.curve) curve.push_back({sample.z_um, sample.focus});
+    return ordered_json{{"z_um", found.z_um}, {"focus", found.focus}, {"curve_um_focus", std::move(curve)}}.dump();
+  };
+}
+
+DeviceTask::Work home_work() {
+  return [](const Devices& devices, const std::stop_token& stop) {
+    devices.stage.home(stop);
+    return ordered_json{{"z_um", devices.stage.status().position.value}, {"homed", true}}.dump();
+  };
+}
+
+DeviceTask::Work move_work(Micrometers target) {
+  return [target](const Devices& devices, const std::stop_token& stop) {
+    const MoveRecord move = devices.stage.move_to(target, SettleCriterion{}, stop);
+    return ordered_json{{"z_um", move.position.value}}.dump();
+  };
+}
+
+}  // namespace fvd

@@ -1,0 +1,57 @@
+#pragma once
+
+/// Something to be done with the devices between two jobs: an image, an autofocus.
+
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "core/base/clock.hpp"
+#include "core/base/error.hpp"
+#include "core/hw/axis.hpp"
+#include "core/hw/camera.hpp"
+
+namespace fvd {
+
+struct Devices {
+  Camera& camera;
+  Axis& stage;
+  Clock& clock;
+  std::filesystem::path state_dir;
+};
+
+/// context: run() on the engine's thread, the rest on any.
+class DeviceTask {
+ public:
+  /// Returns the result as a JSON text. A stop request ends it: a job has come, or the daemon goes.
+  using Work = std::function<std::string(const Devices& devices, std::stop_token stop)>;
+
+  struct Outcome {
+    std::string json;
+    std::optional<ErrorCode> error;
+    std::string message;
+  };
+
+  explicit DeviceTask(Work work) : work_(std::move(work)) {}
+  /// One that is done already.
+  explicit DeviceTask(Outcome outcome) : outcome_(std::move(outcome)) {}
+
+  void run(const Devices& devices, std::stop_token stop) noexcept;
+  void fail(ErrorCode code, const std::string& message) noexcept;
+
+  /// Nothing while it is not done.
+  [[nodiscard]] std::optional<Outcome> outcome() const;
+
+ private:
+  void end(Outcome outcome) noexcept;
+
+  Work work_;
+  mutable std::mutex mutex_;
+  std::optional<Outcome> outcome_;  // guarded by mutex_
+};
+
+}  // namespace fvd

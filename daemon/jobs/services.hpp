@@ -1,0 +1,122 @@
+#pragma once
+
+/// What the API needs of the engine, a narrow interface for each concern; tests put fakes in their place.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/scan/scan_state.hpp"
+#include "core/stage/step_history.hpp"
+#include "daemon/jobs/device_task.hpp"
+#include "daemon/store/job_status.hpp"
+
+namespace fvd {
+
+struct MachineStatus {
+  ScanState state = ScanState::kPreoperational;
+  std::string recipe;            ///< prepared recipe, empty = none
+  std::optional<JobStatus> job;  ///< the running or the latest job
+  int results_waiting = 0;       ///< completed and not acknowledged
+  bool simulated = false;
+  std::int64_t epoch = 0;          ///< counts the daemon's starts
+  std::optional<ErrorCode> error;  ///< why the state is kError
+  std::string error_message;
+};
+
+/// What readers poll: made anew at every change, never waited for.
+class MachineView {
+ public:
+  virtual ~MachineView() = default;
+  /// No lock that is held across a database or file access; never null.
+  [[nodiscard]] virtual std::shared_ptr<const MachineStatus> snapshot() const = 0;
+  /// Called after every change of a job or the machine, from the engine's threads; must return at once. Set before use.
+  virtual void on_change(std::function<void()> listener) = 0;
+};
+
+/// Accepts jobs and tells of them.
+/// context: every function thread-safe; blocks for a database commit, so never called on the network thread.
+class JobService {
+ public:
+  virtual ~JobService() = default;
+
+  struct Started {
+    JobStatus job;
+    bool duplicate = false;
+  };
+  /// Accepts a job and returns after its row is durable; the scan runs later on the engine's thread. A repeated request
+  /// returns the existing job. Throws Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kMemoryBudget,
+  /// kSeqConflict, kSeqStale, kStorageFull, kDatabase, kShuttingDown.
+  virtual Started start(const JobRequest& request) = 0;
+
+  /// Throws Error kUnknownJob.
+  [[nodiscard]] virtual JobStatus job(const JobKey& key) const = 0;
+
+  /// Asks the job to end; returns at once with its status. No effect on a job that has ended. Throws Error kUnknownJob.
+  virtual JobStatus abort(const JobKey& key) = 0;
+
+  /// Loads and checks a recipe and makes it the prepared one. Throws Error kUnknownRecipe, kBadRecipe, kStageLimit,
+  /// kBusy.
+  virtual void prepare(const std::string& recipe_id) = 0;
+};
+
+/// Results of jobs that ended.
+/// context: as JobService.
+class ResultService {
+ public:
+  virtual ~ResultService() = default;
+
+  /// The JSON text of the job's result.json; empty while there is none. Throws Error kUnknownJob.
+  [[nodiscard]] virtual std::string result_json(const JobKey& key) const = 0;
+  /// The job's result directory; empty while there is none. Throws Error kUnknownJob.
+  [[nodiscard]] virtual std::string result_dir(const JobKey& key) const = 0;
+
+  /// The oldest ended job that was not acknowledged.
+  [[nodiscard]] virtual std::optional<JobStatus> next_unacknowledged() const = 0;
+
+  /// Returns how many remain. Repeating it changes nothing. Throws Error kUnknownJob, kBusy while the job runs.
+  virtual int acknowledge(const JobKey& key) = 0;
+};
+
+/// Commands to the devices between the jobs.
+/// context: every function thread-safe.
+class TaskService {
+ public:
+  virtual ~TaskService() = default;
+
+  /// Has the engine do something with the devices as soon as it can; a job that is started meanwhile ends it. Throws
+  /// Error kBusy while a job runs or another task waits, kNotReady without the devices, kShuttingDown.
+  virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work) = 0;
+  /// As submit(preview_work(settings)); while a job runs, the newest of its slices instead, scaled down.
+  virtual std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) = 0;
+
+  /// What all scans so far say of the stage; nothing before the first.
+  [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
+};
+
+/// The recipes at hand.
+/// context: every function thread-safe; reads files, so never called on the network thread.
+class RecipeService {
+ public:
+  virtual ~RecipeService() = default;
+  [[nodiscard]] virtual std::vector<std::string> recipe_ids() const = 0;
+  /// The recipe file's JSON text. Throws Error kUnknownRecipe.
+  [[nodiscard]] virtual std::string recipe_json(const std::string& recipe_id) const = 0;
+};
+
+/// All that the API is built on; each may be another object.
+struct Services {
+  MachineView& machine;
+  JobService& jobs;
+  ResultService& results;
+  TaskService& tasks;
+  RecipeService& recipes;
+};
+
+}  // namespace fvd

@@ -1,0 +1,128 @@
+#include "daemon/pipeline/measurement.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "core/base/error.hpp"
+#include "core/focus/streaming_focus_stack.hpp"
+#include "core/scan/continuous_scan.hpp"
+
+namespace fvd {
+
+namespace {
+
+double milliseconds_since(const Clock& clock, HostTime start) {
+  return std::chrono::duration<double, std::milli>(clock.now() - start).count();
+}
+
+std::string describe(const CameraInfo& camera, const StageInfo& stage) {
+  return camera.vendor + " " + camera.model + " " + camera.serial + " at " + camera.address + "; " + stage.name +
+         " at " + stage.address;
+}
+
+void copy_books(const ScanReport& report, ResultData& result) {
+  result.steps = report.steps;
+  result.frames = report.frames;
+  result.ramp_frames = report.ramp_frames;
+  result.step_summary = summarize_steps(report.steps);
+}
+
+/// Runs the scan into the stack. What broke the focus thread is the reason to report, not the push it then refused.
+void acquire(const ScanPlan& plan, const CameraSettings& settings, const MeasurementDependencies& deps,
+             const MeasurementObserver& observer, StreamingFocusStack& stack, ResultData& result,
+             std::stop_token stop) {
+  FocusWorker worker(stack, deps.queue_slices, observer.tap);
+  const ScanDependencies scan{deps.camera, deps.stage, deps.clock, worker};
+  ScanReport report;
+  try {
+    if (plan.mode == ScanMode::kContinuous) {
+      ContinuousScan(scan, settings).run(plan, report, observer.on_slice, stop);
+    } else {
+      ScanRunner(scan).run(plan, report, observer.on_slice, stop);
+    }
+  } catch (const Error& error) {
+    copy_books(report, result);
+    observer.on_slice(report);  // the books as they ended
+    if (error.code() == ErrorCode::kSliceLost) worker.finish();
+    throw;
+  }
+  copy_books(report, result);
+  observer.on_acquired();
+  observer.on_phase("computing");
+  worker.finish();
+}
+
+}  // namespace
+
+ScanPlan scan_plan(const Recipe& recipe) {
+  ScanPlan plan;
+  plan.start = Micrometers{recipe.start_um};
+  plan.step = Micrometers{recipe.step_um};
+  plan.slices = recipe.slices;
+  plan.settle = recipe.settle;
+  plan.frame_retries = recipe.frame_retries;
+  plan.allowed_lost_slices = recipe.allowed_lost_slices;
+  plan.mode = recipe.mode;
+  plan.line_trigger = recipe.camera.trigger == TriggerMode::kLine;
+  plan.speed_um_per_s = recipe.speed_um_per_s;
+  plan.max_blur_steps = recipe.max_blur_steps;
+  return plan;
+}
+
+void measure(const Recipe& recipe, const MeasurementDependencies& deps, const MeasurementObserver& observer,
+             ResultData& result, std::stop_token stop) {
+  const HostTime started = deps.clock.now();
+  observer.on_phase("preparing");
+  const CameraInfo camera = deps.camera.info();
+  const StageInfo stage = deps.stage.info();
+  result.source = describe(camera, stage);
+  result.simulated = result.simulated || camera.simulated || stage.simulated;
+  result.slices_planned = recipe.slices;
+  result.scan_mode = recipe.mode;
+  result.speed_um_per_s = recipe.mode == ScanMode::kContinuous ? recipe.speed_um_per_s : 0.0;
+  const CameraSettings settings = deps.camera.configure(recipe.camera);
+  StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe),
+                            deps.pool);
+  result.state_bytes_per_pixel = stack.state_bytes_per_pixel();
+  if (!deps.stage.status().homed) deps.stage.home(stop);
+  result.times.prepare_ms = milliseconds_since(deps.clock, started);
+
+  observer.on_phase("acquiring");
+  const HostTime scan_started = deps.clock.now();
+  MeasurementObserver timed = observer;
+  HostTime acquired{};
+  timed.on_acquired = [&] {
+    acquired = deps.clock.now();
+    observer.on_acquired();
+  };
+  ScanPlan plan = scan_plan(recipe);
+  plan.time_offset = deps.time_offset;
+  acquire(plan, settings, deps, timed, stack, result, stop);
+  result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
+  result.map = stack.finish(recipe.peak);
+  result.times.finish_ms = milliseconds_since(deps.clock, acquired);
+  for (const PeakMethod method : recipe.extra_peaks) result.extra_maps.emplace_back(method, stack.finish(method));
+}
+
+void check_valid_points(const Recipe& recipe, const HeightMap& map) {
+  const auto mask = map.mask.pixels();
+  const auto total = static_cast<double>(mask.size());
+  const auto valid = static_cast<double>(std::count(mask.begin(), mask.end(), 0));
+  if (valid >= recipe.min_valid_fraction * total) return;
+  constexpr unsigned kEnds = mask_reason::kFirstSlice | mask_reason::kLastSlice;
+  const auto at_ends = static_cast<double>(
+      std::count_if(mask.begin(), mask.end(), [](std::uint8_t reasons) { return (reasons & kEnds) != 0; }));
+  std::ostringstream message;
+  message << "only " << 100.0 * valid / total << " % of the points are valid, the recipe asks for "
+          << 100.0 * recipe.min_valid_fraction << " %; ";
+  if (at_ends > (total - valid) / 2) {
+    message << "most of the others are sharpest at an end of the scan: move or widen the range of " << recipe.start_um
+            << ".." << recipe.start_um + (recipe.slices - 1) * recipe.step_um << " um";
+    throw Error(ErrorCode::kFocusRange, message.str());
+  }
+  message << "most of the others have too little texture or are saturated: check light and exposure";
+  throw Error(ErrorCode::kTooFewValid, message.str());
+}
+
+}  // namespace fvd

@@ -1,0 +1,51 @@
+#pragma once
+
+/// One measurement from the recipe to the height maps, on devices that are open.
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <stop_token>
+#include <string_view>
+
+#include "core/base/clock.hpp"
+#include "core/hw/axis.hpp"
+#include "core/hw/camera.hpp"
+#include "core/runtime/worker_pool.hpp"
+#include "core/scan/focus_worker.hpp"
+#include "core/scan/scan_plan.hpp"
+#include "core/scan/scan_runner.hpp"
+#include "daemon/export/result_data.hpp"
+#include "daemon/recipes/recipe.hpp"
+
+namespace fvd {
+
+[[nodiscard]] ScanPlan scan_plan(const Recipe& recipe);
+
+struct MeasurementDependencies {
+  Camera& camera;
+  Axis& stage;
+  Clock& clock;
+  WorkerPool& pool;
+  std::size_t queue_slices;
+  std::chrono::microseconds time_offset{0};  ///< of the stage's clock against the camera's
+};
+
+/// What the caller wants to hear while it runs; each is called on the measurement's thread.
+struct MeasurementObserver {
+  std::function<void(std::string_view phase)> on_phase;  ///< "preparing", "acquiring", "computing"
+  std::function<void(const ScanReport& report)> on_slice;
+  std::function<void()> on_acquired;  ///< the part may be moved
+  FocusWorker::Tap tap;               ///< every slice, on the focus thread; may be empty
+};
+
+/// Configures the camera, homes the stage if it has no reference, scans, and computes. Fills of the result what it
+/// measured: maps, steps, frames, times, source, simulated; `result` holds steps and frames even when it throws.
+/// Throws what camera, stage and scan throw.
+void measure(const Recipe& recipe, const MeasurementDependencies& dependencies, const MeasurementObserver& observer,
+             ResultData& result, std::stop_token stop);
+
+/// Throws Error kFocusRange or kTooFewValid if fewer points are valid than the recipe asks for.
+void check_valid_points(const Recipe& recipe, const HeightMap& map);
+
+}  // namespace fvd

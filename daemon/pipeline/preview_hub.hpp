@@ -1,0 +1,49 @@
+#pragma once
+
+/// The newest picture for whoever looks on, scaled down; older ones are dropped.
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/base/clock.hpp"
+#include "core/image/image.hpp"
+
+namespace fvd {
+
+/// A picture of at most 640 x 480 pixels, 8 bit.
+struct PreviewPicture {
+  std::uint64_t seq = 0;  ///< counts pictures
+  Plane<std::uint8_t> pixels;
+  double z_um = 0.0;
+  double focus = 0.0;  ///< mean modified Laplacian of the central region of the whole image, grey levels
+  double saturated_fraction = 0.0;
+};
+
+/// Scaled by whole numbers, averaging.
+[[nodiscard]] PreviewPicture make_preview(const ImageView& image, double z_um);
+
+/// {"seq", "width_px", "height_px", "z_um", "focus", "saturated_fraction", "png_base64"} as a JSON text.
+[[nodiscard]] std::string preview_json(const PreviewPicture& picture);
+
+/// A measurement offers its slices and never waits: nobody looks, the last picture is younger than 0.2 s, or somebody
+/// reads it just now - the slice is passed over. context: thread-safe.
+class PreviewHub {
+ public:
+  void offer(const ImageView& image, double z_um);
+  /// The newest picture as preview_json(), nothing before the first; from now on for 3 s somebody looks.
+  [[nodiscard]] std::optional<std::string> newest();
+  /// What was seen belongs to the past.
+  void clear();
+
+ private:
+  std::atomic<HostTime> wanted_until_{HostTime{}};
+  std::mutex mutex_;
+  std::optional<PreviewPicture> newest_;  // guarded by mutex_, as are the two below
+  HostTime taken_{};
+  std::uint64_t seq_ = 0;
+};
+
+}  // namespace fvd

@@ -1,0 +1,52 @@
+#pragma once
+
+/// A recipe: how one kind of part is measured.
+
+#include <string>
+#include <vector>
+
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/hw/axis.hpp"
+#include "core/hw/camera.hpp"
+#include "core/scan/scan_plan.hpp"
+
+namespace fvd {
+
+struct Recipe {
+  std::string id;  ///< file name without .json: [A-Za-z0-9_-]{1,32}
+  std::string description;
+  std::string sha256;  ///< hex digest of the recipe's canonical JSON; stamped into results
+
+  double start_um = 0.0;  ///< z of the first slice
+  double step_um = 10.0;  ///< > 0, distance of slices
+  int slices = 21;        ///< 3..65535
+  ScanMode mode = ScanMode::kStep;
+  double speed_um_per_s = 0.0;  ///< continuous: > 0
+  double max_blur_steps = 0.5;  ///< continuous: > 0, way of the stage during an exposure
+  SettleCriterion settle;
+  int frame_retries = 3;        ///< 0..100, further triggers for a slice whose frame was lost
+  int allowed_lost_slices = 0;  ///< 0..slices - 3; more fail the job
+
+  CameraSettings camera;
+  FocusSettings focus;
+  double curve_width_um = 0.0;  ///< full width at half maximum of the focus curve, 0 = unknown
+  int bin_slices = 0;           ///< slices summed to one sample of the curve; 0 = by the curve's width
+  PeakMethod peak = PeakMethod::kFiveSample;
+  std::vector<PeakMethod> extra_peaks;  ///< further height maps from the same scan, height_<method>.tiff
+
+  double pixel_pitch_x_um = 1.0;  ///< > 0, on the object
+  double pixel_pitch_y_um = 1.0;
+  double min_valid_fraction = 0.0;  ///< 0..1; fewer valid points fail the job
+  bool record_slices = false;       ///< also keep the slices (PGM) and their z in the result's folder slices/
+};
+
+/// The focus settings of a scan: recipe.focus with its bins chosen, and no window for the intensity.
+[[nodiscard]] inline FocusSettings focus_settings(const Recipe& recipe) {
+  FocusSettings settings = recipe.focus;
+  settings.bin_slices =
+      recipe.bin_slices > 0 ? recipe.bin_slices : choose_bin_slices(recipe.step_um, recipe.curve_width_um);
+  if (settings.focus_operator == FocusOperator::kIntensity) settings.window_px = 1;
+  return settings;
+}
+
+}  // namespace fvd

@@ -1,0 +1,127 @@
+/// The keys of a recipe: names, ranges, meanings.
+
+#include <chrono>
+
+#include "daemon/recipes/recipe_book.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr int kMaxSidePx = 65535;
+
+void describe_format(Fields& fields, CameraSettings& camera) {
+  std::vector<std::string> names;
+  for (const SensorFormat format : kAllSensorFormats) names.emplace_back(sensor_format_info(format).name);
+  std::string name(sensor_format_info(camera.pixel_format).name);
+  fields.choice("pixel_format", name, names, "PixelFormat by its GenICam name");
+  for (const SensorFormat format : kAllSensorFormats) {
+    if (name == sensor_format_info(format).name) camera.pixel_format = format;
+  }
+  fields.integer("significant_bits", camera.significant_bits, {0, 12},
+                 "of a camera whose Mono16 has its values at the upper end: 10 or 12; 0 = 16");
+  std::string bayer = camera.bayer == BayerUse::kGreen ? "green" : "luminance";
+  fields.choice("bayer", bayer, {"green", "luminance"}, "what of a colour mosaic is measured");
+  camera.bayer = bayer == "green" ? BayerUse::kGreen : BayerUse::kLuminance;
+}
+
+std::vector<std::string> peak_names() {
+  std::vector<std::string> names;
+  for (const PeakMethod method : kAllPeakMethods) names.emplace_back(peak_method_name(method));
+  return names;
+}
+
+void describe_settle(SettleCriterion& settle, Fields& fields) {
+  fields.number("window_um", settle.window.value, positive(1000.0), "largest |measured - target| of an arrived stage");
+  fields.integer("samples", settle.samples, {1, 1000}, "consecutive samples inside the window");
+  auto dwell_ms = settle.dwell.count();
+  fields.integer("dwell_ms", dwell_ms, {0, 10000}, "time those samples span at least");
+  settle.dwell = std::chrono::milliseconds(dwell_ms);
+  auto timeout_ms = settle.timeout.count();
+  fields.integer("timeout_ms", timeout_ms, {10, 600000}, "from the start of the move; later fails the job");
+  settle.timeout = std::chrono::milliseconds(timeout_ms);
+}
+
+void describe_scan(Recipe& recipe, Fields& fields) {
+  fields.number("start_um", recipe.start_um, {-1e6, 1e6}, "z of the first slice");
+  fields.require("start_um");
+  fields.number("step_um", recipe.step_um, positive(1e5), "distance of slices");
+  fields.require("step_um");
+  fields.integer("slices", recipe.slices, {3, 65535}, "number of slices");
+  fields.require("slices");
+  std::string mode = recipe.mode == ScanMode::kContinuous ? "continuous" : "step";
+  fields.choice("mode", mode, {"step", "continuous"},
+                "step = the stage stops for every slice; continuous = it does not");
+  recipe.mode = mode == "continuous" ? ScanMode::kContinuous : ScanMode::kStep;
+  fields.number("speed_um_per_s", recipe.speed_um_per_s, {0.0, 1e6}, "continuous: speed of the stage");
+  fields.number("max_blur_steps", recipe.max_blur_steps, positive(10.0),
+                "continuous: way of the stage during an exposure, in steps; more is refused");
+  std::string trigger = recipe.camera.trigger == TriggerMode::kLine ? "line" : "software";
+  fields.choice("trigger", trigger, {"software", "line"},
+                "step: software, or the camera's line that the drive's in-position output is wired to");
+  recipe.camera.trigger = trigger == "line" ? TriggerMode::kLine : TriggerMode::kSoftware;
+  fields.text("trigger_line", recipe.camera.trigger_line, 64, "TriggerSource of that line");
+  fields.integer("frame_retries", recipe.frame_retries, {0, 100}, "further triggers for a slice whose frame was lost");
+  fields.integer("allowed_lost_slices", recipe.allowed_lost_slices, {0, 65532}, "up to slices - 3; more fail the job");
+  fields.group("settle", "when the stage counts as arrived", [&](Fields& in) { describe_settle(recipe.settle, in); });
+}
+
+void describe_camera(CameraSettings& camera, Fields& fields) {
+  describe_format(fields, camera);
+  fields.integer("width_px", camera.width, {0, kMaxSidePx}, "0 = all the sensor has");
+  fields.integer("height_px", camera.height, {0, kMaxSidePx}, "0 = all the sensor has");
+  fields.integer("offset_x_px", camera.offset_x, {0, kMaxSidePx}, "left edge of the region");
+  fields.integer("offset_y_px", camera.offset_y, {0, kMaxSidePx}, "upper edge of the region");
+  fields.number("exposure_us", camera.exposure_us, positive(6e7), "ExposureTime");
+  fields.number("gain_db", camera.gain_db, {0.0, 100.0}, "Gain");
+}
+
+void describe_focus(Recipe& recipe, Fields& fields) {
+  std::vector<std::string> operators;
+  for (const FocusOperator op : kAllFocusOperators) operators.emplace_back(focus_operator_name(op));
+  std::string op(focus_operator_name(recipe.focus.focus_operator));
+  fields.choice("operator", op, operators, "what is summed over the window as the measure of sharpness");
+  recipe.focus.focus_operator = focus_operator_from_name(op).value_or(recipe.focus.focus_operator);
+  fields.integer("window_px", recipe.focus.window_px, {kMinWindowPx, kMaxWindowPx},
+                 "side of the square window, odd; the intensity has none");
+  fields.integer("distance_px", recipe.focus.distance_px, {1, kMaxDistancePx},
+                 "from a pixel to the neighbours that its operator looks at");
+  fields.number("curve_width_um", recipe.curve_width_um, {0.0, 1e5},
+                "full width at half maximum of the focus curve, as a result tells it; 0 = unknown");
+  fields.integer("bin_slices", recipe.bin_slices, {0, kMaxBinSlices},
+                 "slices summed to one sample of the curve; 0 = by curve_width_um, 1 where that is unknown");
+  std::string peak(peak_method_name(recipe.peak));
+  fields.choice("peak", peak, peak_names(), "how a height is taken from the samples around the sharpest");
+  recipe.peak = peak_method_from_name(peak).value_or(recipe.peak);
+  std::vector<std::string> extra;
+  for (const PeakMethod method : recipe.extra_peaks) extra.emplace_back(peak_method_name(method));
+  fields.choices("extra_peaks", extra, peak_names(), "further height maps of the same scan");
+  recipe.extra_peaks.clear();
+  for (const std::string& name : extra) recipe.extra_peaks.push_back(peak_method_from_name(name).value());
+  fields.number("min_prominence", recipe.focus.min_prominence, {0.0, 1.0},
+                "(peak - minimum) / peak of the focus curve; below it a point is a hole");
+  fields.number("min_significance", recipe.focus.min_significance, {0.0, 1e6},
+                "(peak - minimum) / noise of a sample; below it a point is a hole");
+  fields.boolean("stage_correction", recipe.focus.stage_correction,
+                 "seek the stage's errors in the focus curves and correct heights by them where the surface lets it");
+}
+
+}  // namespace
+
+void describe(Recipe& recipe, Fields& fields) {
+  fields.text("description", recipe.description, 1000, "for people");
+  fields.group("scan", "where the slices lie", [&](Fields& in) { describe_scan(recipe, in); });
+  fields.require("scan");
+  fields.group("camera", "settings of the camera", [&](Fields& in) { describe_camera(recipe.camera, in); });
+  fields.group("focus", "from slices to heights", [&](Fields& in) { describe_focus(recipe, in); });
+  fields.group("lateral", "scale on the object", [&](Fields& in) {
+    in.number("pixel_pitch_x_um", recipe.pixel_pitch_x_um, positive(1e5), "distance of columns on the object");
+    in.number("pixel_pitch_y_um", recipe.pixel_pitch_y_um, positive(1e5), "distance of rows on the object");
+  });
+  fields.group("result", "what is kept and what is good enough", [&](Fields& in) {
+    in.number("min_valid_fraction", recipe.min_valid_fraction, {0.0, 1.0}, "fewer valid points fail the job");
+    in.boolean("record_slices", recipe.record_slices, "also keep the slices, in the result's folder slices/");
+  });
+}
+
+}  // namespace fvd

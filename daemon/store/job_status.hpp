@@ -1,0 +1,43 @@
+#pragma once
+
+/// A job as its client asked for it and as it stands.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "core/base/error.hpp"
+#include "core/scan/frame_ledger.hpp"
+
+namespace fvd {
+
+struct JobRequest {
+  std::int64_t seq = 0;  ///< the client's sequence number, 1..2^53-1; the same number is the same job
+  std::string part_id;   ///< 1..64 printable ASCII characters
+  std::string recipe;    ///< recipe id; empty = the prepared one
+};
+
+/// OPC 40100-1 result states: processing, completed, aborted, failed.
+enum class JobState { kProcessing, kCompleted, kAborted, kFailed };
+[[nodiscard]] std::string_view job_state_name(JobState state) noexcept;
+
+struct JobStatus {
+  std::string job_id;
+  JobRequest request;
+  JobState state = JobState::kProcessing;
+  std::string phase;      ///< "preparing", "acquiring", "computing", "storing", "" when ended
+  bool acquired = false;  ///< the part may be moved
+  int slices_done = 0;
+  int slices_planned = 0;
+  FrameCounts frames;
+  std::optional<ErrorCode> error;  ///< why it failed or was aborted
+  std::string error_message;
+  bool acknowledged = false;  ///< result.ack was received
+};
+
+/// A job by id or by sequence number.
+using JobKey = std::variant<std::string, std::int64_t>;
+
+}  // namespace fvd

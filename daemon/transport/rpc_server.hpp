@@ -1,0 +1,32 @@
+#pragma once
+
+/// JSON-RPC over TCP, one JSON text a line: for PLCs, fvdctl and whoever can open a socket.
+
+#include <filesystem>
+#include <memory>
+
+#include "daemon/config/config.hpp"
+#include "daemon/jobs/services.hpp"
+
+namespace fvd {
+
+/// Lines end with LF, CR, CRLF or NUL; replies end with LF. Requests of one connection are answered in their order.
+/// A line over 64 KiB, a connection too many, one that is silent for idle_timeout_s, or one that does not take its
+/// replies is closed. Owns one network thread; nothing a client does blocks it.
+class RpcServer {
+ public:
+  /// Listens, and writes <runtime_dir>/rpc.json {"address","port","pid"}. Becomes the machine's change listener.
+  /// Throws Error kBadConfig (address), kStorageWrite (rpc.json).
+  /// What services name outlives the server.
+  RpcServer(const RpcConfig& config, const std::filesystem::path& runtime_dir, const Services& services);
+  /// Closes all connections and removes rpc.json.
+  ~RpcServer();
+
+  [[nodiscard]] int port() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fvd

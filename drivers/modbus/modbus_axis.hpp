@@ -1,0 +1,22 @@
+#pragma once
+
+/// A stepper drive on Modbus as a Z stage, driven by its profile.
+
+#include <memory>
+
+#include "core/hw/axis.hpp"
+#include "drivers/common/driver_config.hpp"
+#include "drivers/modbus/modbus_transport.hpp"
+
+namespace fvd {
+
+/// The line a configuration describes.
+[[nodiscard]] ModbusLinkConfig modbus_link_config(const StageConfig& config);
+
+/// Connects, makes sure it is the profile's drive, arms the drive's own watchdog where there is one, and keeps sampling
+/// it: fast while something moves or is measured, slowly else. A drive that stops answering makes every call throw
+/// kStageDisconnected within about a second; the object is dead then. Throws Error kBadConfig (profile, line),
+/// kStageDisconnected, kStageLimit (the drive's own limits are narrower than the configured ones).
+[[nodiscard]] std::unique_ptr<Axis> open_modbus_stage(const StageConfig& config);
+
+}  // namespace fvd

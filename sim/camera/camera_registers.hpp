@@ -1,0 +1,108 @@
+#pragma once
+
+/// The memory of the simulated camera: bootstrap registers, its GenICam XML, and its features.
+
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/sensor_format.hpp"
+#include "sim/camera/gvcp.hpp"
+
+namespace fvd::sim {
+
+/// Registers behind the features of the XML. Widths in the XML: 4 bytes, floats 8.
+namespace feature {
+inline constexpr std::uint32_t kBase = 0x20000;
+inline constexpr std::uint32_t kWidth = kBase + 0x00;
+inline constexpr std::uint32_t kHeight = kBase + 0x04;
+inline constexpr std::uint32_t kOffsetX = kBase + 0x08;
+inline constexpr std::uint32_t kOffsetY = kBase + 0x0C;
+inline constexpr std::uint32_t kSensorWidth = kBase + 0x10;
+inline constexpr std::uint32_t kSensorHeight = kBase + 0x14;
+inline constexpr std::uint32_t kPixelFormat = kBase + 0x18;
+inline constexpr std::uint32_t kPayloadSize = kBase + 0x1C;
+inline constexpr std::uint32_t kAcquisitionStart = kBase + 0x20;
+inline constexpr std::uint32_t kAcquisitionStop = kBase + 0x24;
+inline constexpr std::uint32_t kAcquisitionMode = kBase + 0x28;
+inline constexpr std::uint32_t kTriggerMode = kBase + 0x2C;
+inline constexpr std::uint32_t kTriggerSource = kBase + 0x30;
+inline constexpr std::uint32_t kTriggerSelector = kBase + 0x34;
+inline constexpr std::uint32_t kTriggerSoftware = kBase + 0x38;
+inline constexpr std::uint32_t kFrameRateEnable = kBase + 0x3C;
+inline constexpr std::uint32_t kExposureTime = kBase + 0x40;  // float64, us
+inline constexpr std::uint32_t kGain = kBase + 0x48;          // float64, dB
+inline constexpr std::uint32_t kFrameRate = kBase + 0x50;     // float64, Hz
+inline constexpr std::uint32_t kParametersLocked = kBase + 0x58;
+inline constexpr std::uint32_t kBytes = 0x60;
+}  // namespace feature
+
+inline constexpr double kLargestFrameRate_hz = 5000.0;
+
+/// What the camera does now, as its registers say.
+struct CameraState {
+  SensorFormat format = SensorFormat::kMono8;
+  int width = 0;
+  int height = 0;
+  int offset_x = 0;
+  int offset_y = 0;
+  double exposure_us = 0.0;
+  double gain_db = 0.0;
+  double frame_rate_hz = 0.0;
+  bool triggered = false;
+  bool by_line = false;              ///< TriggerSource Line0, else Software
+  std::uint32_t stream_address = 0;  ///< IPv4, host order; 0 = nobody listens
+  int stream_port = 0;
+  int packet_size = 0;  ///< bytes on the wire: IP, UDP and GVSP headers included
+  std::uint32_t packet_delay_ns = 0;
+};
+
+struct CameraIdentity {
+  std::string vendor = "fvd";
+  std::string model = "SimulatedCamera";
+  std::string version = "1.0";
+  std::string serial = "SIM01";
+  std::uint32_t address = 0x7F000001;  ///< IPv4, host order
+  int sensor_width = 0;
+  int sensor_height = 0;
+};
+
+/// context: thread-safe.
+class CameraRegisters {
+ public:
+  explicit CameraRegisters(const CameraIdentity& identity);
+
+  /// Reads count bytes. kInvalidAddress outside the memory.
+  [[nodiscard]] gvcp::Status read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
+  /// Writes with the checks a camera makes: unknown and read-only registers, ranges, parameters locked while acquiring.
+  [[nodiscard]] gvcp::Status write(std::uint32_t address, std::span<const std::uint8_t> bytes);
+
+  /// All as it was in the beginning, but for what set() wrote to the bootstrap registers of the stream channel.
+  void reset();
+
+  [[nodiscard]] std::uint32_t get(std::uint32_t address) const;
+  void set(std::uint32_t address, std::uint32_t value);
+  [[nodiscard]] CameraState state() const;
+
+ private:
+  [[nodiscard]] std::uint32_t get_locked(std::uint32_t address) const;
+  [[nodiscard]] double get_float_locked(std::uint32_t address) const;
+  void set_locked(std::uint32_t address, std::uint32_t value);
+  void set_float_locked(std::uint32_t address, double value);
+  void set_text(std::uint32_t address, const std::string& text);
+  void initialise_locked();
+  void refresh_payload_locked();
+  [[nodiscard]] gvcp::Status check_locked(std::uint32_t address, std::span<const std::uint8_t> bytes) const;
+  [[nodiscard]] std::uint8_t* locate(std::uint32_t address, std::size_t count);
+  [[nodiscard]] const std::uint8_t* locate(std::uint32_t address, std::size_t count) const;
+
+  const CameraIdentity identity_;
+  mutable std::mutex mutex_;
+  std::vector<std::uint8_t> bootstrap_;  // these three: guarded by mutex_
+  std::vector<std::uint8_t> xml_;
+  std::vector<std::uint8_t> features_;
+};
+
+}  // namespace fvd::sim

@@ -1,0 +1,110 @@
+#pragma once
+
+/// Sensor and stream channel of the simulated camera: exposes on triggers or on its own, reads out and sends while the
+/// next exposure runs.
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+#include "core/base/clock.hpp"
+#include "sim/camera/camera_fault_script.hpp"
+#include "sim/camera/camera_registers.hpp"
+#include "sim/camera/gvsp_sender.hpp"
+#include "sim/world/frame_source.hpp"
+
+namespace fvd::sim {
+
+/// A time until which everything stands still. context: thread-safe.
+class Standstill {
+ public:
+  void until(HostTime time) { time_ = time; }
+  [[nodiscard]] HostTime end() const { return time_; }
+  [[nodiscard]] bool now() const { return HostClock::now() < time_.load(); }
+
+ private:
+  std::atomic<HostTime> time_{HostTime{}};
+};
+
+/// context: thread-safe. Exposes on one thread, renders and sends on another.
+class GigeStreamer {
+ public:
+  /// What a mute, a hang or a restart does is up to the camera: it is told of the step.
+  using Struck = std::function<void(const CameraFaultStep&)>;
+
+  /// source, registers and faults outlive this. mute: nothing leaves; hung: nothing happens at all. Throws Error
+  /// kBadConfig if there is no socket for the stream.
+  GigeStreamer(FrameSource& source, const CameraRegisters& registers, CameraFaultScript& faults, const Standstill& mute,
+               const Standstill& hung, GvspSender& sender, std::uint64_t first_block_id, bool extended_ids,
+               Struck struck);
+  ~GigeStreamer();
+
+  /// AcquisitionStart: block ids start over; AcquisitionStop: a frame under way is abandoned.
+  void set_acquiring(bool on);
+  /// Starts an exposure, unless one runs, or the camera waits for no trigger of this kind. False = refused: busy.
+  bool trigger(bool by_line);
+  /// Registers have changed.
+  void look_again();
+
+  [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
+  [[nodiscard]] std::uint64_t frames_dropped() const noexcept { return dropped_; }
+  /// Camera time of a moment.
+  [[nodiscard]] std::uint64_t timestamp_ns(HostTime time) const;
+
+ private:
+  /// An exposure that is over, or that was lost to its fault.
+  struct Exposure {
+    CameraState state;
+    ExposureRequest request;
+    std::uint64_t block_id = 0;
+    std::uint64_t acquisition = 0;
+    std::optional<CameraFaultStep> fault;
+  };
+
+  void expose(std::stop_token stop);
+  bool expose_one(const CameraState& state, HostTime start, std::uint64_t acquisition, std::stop_token stop);
+  void read_out(std::stop_token stop);
+  void send(const Exposure& exposure, std::stop_token stop);
+  std::shared_ptr<StreamFrame> develop(const Exposure& exposure);
+  StreamFrame header_of(const Exposure& exposure) const;
+  bool wait_until(HostTime time, std::uint64_t acquisition, std::stop_token stop);
+  void stand_still(std::stop_token stop);
+
+  FrameSource& source_;
+  const CameraRegisters& registers_;
+  CameraFaultScript& faults_;
+  const Standstill& mute_;
+  const Standstill& hung_;
+  GvspSender& sender_;
+  const std::uint64_t first_block_id_;
+  const bool extended_ids_;
+  const Struck struck_;
+  const HostTime started_ = HostClock::now();
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  bool acquiring_ = false;  // this and all to exposed_: guarded by mutex_
+  bool triggered_ = false;
+  bool exposing_ = false;
+  std::uint64_t acquisition_ = 0;  // counts starts and stops: tells a frame that it is out of date
+  std::uint64_t next_block_id_ = 1;
+  std::deque<Exposure> exposed_;
+
+  std::uint64_t exposures_ = 0;                // exposing thread only
+  std::shared_ptr<const StreamFrame> before_;  // reading thread only
+  std::vector<std::byte> image_;               // likewise
+  std::atomic<std::uint64_t> frames_{0};
+  std::atomic<std::uint64_t> dropped_{0};
+
+  std::jthread reading_;  // the threads last
+  std::jthread exposing_thread_;
+};
+
+}  // namespace fvd::sim

@@ -1,0 +1,180 @@
+#include "sim/camera/gvsp_sender.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "core/base/error.hpp"
+
+namespace fvd::sim {
+
+namespace {
+
+constexpr std::size_t kBatch = 32;
+/// Pacing need not wake up more often than these take on a gigabit line.
+constexpr std::size_t kBatchBytes = 48 * 1024;
+constexpr std::ptrdiff_t kReordered = 8;
+
+sockaddr_in to_sockaddr(std::uint32_t address, int port) {
+  sockaddr_in result{};
+  result.sin_family = AF_INET;
+  result.sin_addr.s_addr = htonl(address);
+  result.sin_port = htons(static_cast<std::uint16_t>(port));
+  return result;
+}
+
+/// The camera lives on loopback.
+int loopback_mtu(int fd) {
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  return ::ioctl(fd, SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 65536;
+}
+
+}  // namespace
+
+GvspSender::GvspSender(std::uint32_t address, double link_mbps, std::uint64_t seed)
+    : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)),
+      mtu_(loopback_mtu(socket_)),
+      bytes_per_second_(link_mbps * 125000.0),
+      random_(seed) {
+  sockaddr_in own = to_sockaddr(address, 0);
+  socklen_t length = sizeof(own);
+  if (socket_ < 0 || ::bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof(own)) != 0 ||
+      ::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &length) != 0) {
+    const std::string reason = std::strerror(errno);
+    if (socket_ >= 0) ::close(socket_);
+    throw Error(ErrorCode::kBadConfig, "the simulated camera has no socket for its stream: " + reason);
+  }
+  source_port_ = ntohs(own.sin_port);
+}
+
+GvspSender::~GvspSender() { ::close(socket_); }
+
+bool GvspSender::lose_packet() {
+  const double ratio = packet_loss_;
+  if (ratio <= 0.0) return false;
+  const std::lock_guard lock(mutex_);
+  if (std::uniform_real_distribution<double>(0.0, 1.0)(random_) >= ratio) return false;
+  ++packets_lost_;
+  return true;
+}
+
+std::shared_ptr<StreamFrame> GvspSender::spare() {
+  std::shared_ptr<const StreamFrame> frame;
+  {
+    const std::lock_guard lock(mutex_);
+    frame = std::move(spare_);
+  }
+  // Nobody else refers to it: a frame leaves the store for good before it becomes the spare one.
+  if (frame && frame.use_count() == 1) return std::const_pointer_cast<StreamFrame>(frame);
+  return std::make_shared<StreamFrame>();
+}
+
+void GvspSender::forget() {
+  const std::lock_guard lock(mutex_);
+  kept_.clear();
+}
+
+void GvspSender::send(const std::shared_ptr<const StreamFrame>& frame, const Sending& what) {
+  {
+    const std::lock_guard lock(mutex_);
+    kept_.push_back(frame);
+    if (kept_.size() > kKept) {
+      spare_ = std::move(kept_.front());
+      kept_.pop_front();
+    }
+  }
+  std::vector<std::uint32_t> packets(gvsp::trailer_id(*frame) + 1);
+  std::iota(packets.begin(), packets.end(), 0U);
+  if (what.reordered) {
+    for (auto begin = packets.begin() + 1; begin != packets.end() - 1;) {
+      const auto end = begin + std::min(kReordered, packets.end() - 1 - begin);
+      std::reverse(begin, end);
+      begin = end;
+    }
+  }
+  if (what.without != 0) std::erase(packets, what.without);
+  auto first = packets.begin();
+  auto last = packets.end();
+  if (!what.leader) ++first;
+  if (!what.trailer) --last;
+  transmit(*frame, std::span(first, last));
+}
+
+void GvspSender::send_leader(const StreamFrame& frame) { transmit(frame, std::array<std::uint32_t, 1>{0}); }
+
+void GvspSender::resend(std::uint64_t block_id, std::uint32_t first, std::uint32_t last) {
+  std::shared_ptr<const StreamFrame> frame;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::find_if(kept_.rbegin(), kept_.rend(), [&](const auto& kept) { return kept->block_id == block_id; });
+    if (found == kept_.rend()) return;
+    frame = *found;
+  }
+  last = std::min(last, gvsp::trailer_id(*frame));
+  if (first > last) return;
+  std::vector<std::uint32_t> packets(last - first + 1);
+  std::iota(packets.begin(), packets.end(), first);
+  packets_resent_ += packets.size();
+  transmit(*frame, packets);
+}
+
+void GvspSender::transmit(const StreamFrame& frame, std::span<const std::uint32_t> packets) {
+  sockaddr_in to = to_sockaddr(frame.to_address, frame.to_port);
+  std::array<std::vector<std::uint8_t>, kBatch> heads;
+  std::array<std::array<iovec, 2>, kBatch> parts{};
+  std::array<mmsghdr, kBatch> messages{};
+  const HostTime begin = HostClock::now();
+  double due_s = 0.0;
+  for (std::size_t next = 0; next < packets.size();) {
+    unsigned count = 0;
+    std::size_t batch_bytes = 0;
+    for (; next < packets.size() && count < kBatch && batch_bytes < kBatchBytes; ++next) {
+      const std::uint32_t packet = packets[next];
+      const auto pixels = gvsp::body(frame, packet);
+      batch_bytes += static_cast<std::size_t>(gvsp::header_bytes(frame.extended_ids)) + pixels.size();
+      due_s += frame.delay_ns * 1e-9;
+      if (frame.gone.contains(packet) || lose_packet()) continue;
+      heads[count] = gvsp::head(frame, packet);
+      parts[count][0] = {heads[count].data(), heads[count].size()};
+      parts[count][1] = {const_cast<std::byte*>(pixels.data()), pixels.size()};
+      messages[count] = {};
+      messages[count].msg_hdr.msg_name = &to;
+      messages[count].msg_hdr.msg_namelen = sizeof(to);
+      messages[count].msg_hdr.msg_iov = parts[count].data();
+      messages[count].msg_hdr.msg_iovlen = pixels.empty() ? 1 : 2;
+      ++count;
+    }
+    // A receiver that is gone is no concern of a camera.
+    for (unsigned sent = 0; sent < count;) {
+      const int done = ::sendmmsg(socket_, messages.data() + sent, count - sent, MSG_NOSIGNAL);
+      sent += static_cast<unsigned>(std::max(done, 1));  // a packet the network refuses is a packet lost
+    }
+    if (bytes_per_second_ > 0.0) due_s += static_cast<double>(batch_bytes) / bytes_per_second_;
+    if (due_s <= 0.0) continue;
+    std::this_thread::sleep_until(
+        begin + std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(due_s)));
+  }
+}
+
+void GvspSender::send_test_packet(std::uint32_t to_address, int to_port, int size) {
+  if (size > mtu_) return;
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max(0, size - (gvsp::header_bytes(false) - 8))));
+  const sockaddr_in to = to_sockaddr(to_address, to_port);
+  ::sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+}
+
+}  // namespace fvd::sim

@@ -1,0 +1,73 @@
+#pragma once
+
+/// Sends the packets of frames at the speed of a line, and repeats them on request.
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <random>
+#include <span>
+
+#include "core/base/clock.hpp"
+#include "sim/camera/gvsp.hpp"
+
+namespace fvd::sim {
+
+/// Which packets of a frame leave now.
+struct Sending {
+  bool leader = true;
+  bool trailer = true;
+  bool reordered = false;     ///< payload in reverse, eight packets at a time
+  std::uint32_t without = 0;  ///< a payload packet that does not leave, 0 = none
+};
+
+/// context: send() from the readout thread, resend() from the control thread, the rest from any.
+class GvspSender {
+ public:
+  /// Binds a socket of its own to the camera's address. link_mbps: the speed packets leave at, as on the real wire;
+  /// a burst at memory speed overruns every receiver's buffer; 0 = as fast as they go. Throws Error kBadConfig.
+  GvspSender(std::uint32_t address, double link_mbps, std::uint64_t seed);
+  ~GvspSender();
+  GvspSender(const GvspSender&) = delete;
+  GvspSender& operator=(const GvspSender&) = delete;
+
+  [[nodiscard]] int source_port() const { return source_port_; }
+  void set_packet_loss(double ratio) { packet_loss_ = ratio; }
+  [[nodiscard]] std::uint64_t packets_lost() const { return packets_lost_; }
+  [[nodiscard]] std::uint64_t packets_resent() const { return packets_resent_; }
+
+  /// Sends the frame and keeps it for repetition.
+  void send(const std::shared_ptr<const StreamFrame>& frame, const Sending& what);
+  /// Sends the leader alone; its frame is not there yet.
+  void send_leader(const StreamFrame& frame);
+  /// Repeats packets first..last of a block that is still kept.
+  void resend(std::uint64_t block_id, std::uint32_t first, std::uint32_t last);
+  /// One packet of exactly `size` bytes on the wire, unless it would have to be fragmented.
+  void send_test_packet(std::uint32_t to_address, int to_port, int size);
+  /// A frame nobody else refers to, to be filled anew; an empty one if there is none.
+  [[nodiscard]] std::shared_ptr<StreamFrame> spare();
+  /// Forgets the frames kept.
+  void forget();
+
+ private:
+  static constexpr std::size_t kKept = 4;
+
+  void transmit(const StreamFrame& frame, std::span<const std::uint32_t> packets);
+  [[nodiscard]] bool lose_packet();
+
+  int socket_;
+  int source_port_ = 0;
+  int mtu_;
+  double bytes_per_second_;
+  std::atomic<double> packet_loss_{0.0};
+  std::atomic<std::uint64_t> packets_lost_{0};
+  std::atomic<std::uint64_t> packets_resent_{0};
+  std::mutex mutex_;
+  std::deque<std::shared_ptr<const StreamFrame>> kept_;  // this, spare_ and random_: guarded by mutex_
+  std::shared_ptr<const StreamFrame> spare_;
+  std::mt19937_64 random_;
+};
+
+}  // namespace fvd::sim

@@ -1,0 +1,96 @@
+#pragma once
+
+/// What all simulated drives share, whatever their map of registers: the axis, an alarm, faults, the lock.
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <span>
+
+#include "core/base/clock.hpp"
+#include "sim/axis/axis_model.hpp"
+#include "sim/modbus/drive_faults.hpp"
+#include "sim/modbus/register_bank.hpp"
+#include "sim/modbus/register_image.hpp"
+
+namespace fvd::sim {
+
+/// The time as a drive sees it: tests give their own.
+using DriveClock = std::function<HostTime()>;
+
+/// context: thread-safe; a derived class is called under the lock and takes none.
+class SimDrive : public RegisterBank, public DriveFaults {
+ public:
+  [[nodiscard]] ModbusException read(int address, std::span<std::uint16_t> values) final;
+  [[nodiscard]] ModbusException write(int address, std::span<const std::uint16_t> values) final;
+  void idle() final;
+
+  void raise_alarm(int code) final;
+  void limit_hit() final;
+  void emergency_stop() final;
+  void power_cycle() final;
+  void refuse_moves(int count) final;
+  void hold_in_position(HostClock::duration duration) final;
+  [[nodiscard]] bool axis_moves() final;
+
+  [[nodiscard]] int moves() const noexcept { return moves_; }  ///< moves to a target executed so far
+
+ protected:
+  /// axis outlives the drive. The derived constructor lays out the image and calls power_on().
+  SimDrive(AxisModel& axis, DriveClock clock) : axis_(axis), clock_(std::move(clock)) {}
+
+  // What a map of registers is made of. `now` never runs back.
+  virtual void power_on() = 0;                                         ///< defaults into the empty image
+  virtual void refresh(HostTime now) = 0;                              ///< what can be read, into the image
+  virtual void was_written(const Written& written, HostTime now) = 0;  ///< what was written is in the image
+  virtual void was_read(int /*address*/, std::size_t /*count*/) {}     ///< for registers that reading resets
+  virtual void elapse(HostTime /*now*/) {}                             ///< what the drive does on its own up to now
+  virtual void on_alarm(HostTime now) = 0;                             ///< alarm() was set and the axis stopped
+  virtual void on_limit(HostTime now) = 0;                             ///< the axis was stopped on a limit switch
+  virtual void on_torque_off(HostTime now) = 0;                        ///< the axis was stopped
+  /// Beyond the image's areas; both default to "illegal address" where the image refuses.
+  [[nodiscard]] virtual ModbusException may_read(int address, std::size_t count) const;
+  [[nodiscard]] virtual ModbusException may_write(int address, std::span<const std::uint16_t> values) const;
+
+  [[nodiscard]] RegisterImage& image() { return image_; }
+  [[nodiscard]] const RegisterImage& image() const { return image_; }
+  [[nodiscard]] AxisModel& axis() { return axis_; }
+
+  [[nodiscard]] int alarm() const { return alarm_; }
+  void set_alarm(int code) { alarm_ = code; }
+
+  // What the drive reports: a fault may hold it.
+  [[nodiscard]] bool reports_motion(HostTime now) const;
+  [[nodiscard]] bool reports_in_position(HostTime now) const;
+  [[nodiscard]] std::int32_t command_position(HostTime now) const;  ///< steps
+  [[nodiscard]] std::int32_t actual_position(HostTime now) const;   ///< steps, from the encoder
+  /// From now on the axis stands at `position`, whatever it was called before.
+  void preset_position(HostTime now, std::int32_t position);
+
+  /// False if nothing starts: a value that cannot be (speed in steps/s, accelerations in steps/s^2, all > 0), or a
+  /// fault that was asked for.
+  bool start_move(HostTime now, std::int64_t target, double speed, double acceleration, double deceleration);
+  bool start_home(HostTime now);
+
+  /// When the request before this one came; when the drive was switched on if there was none.
+  [[nodiscard]] HostTime last_request() const { return last_request_; }
+
+ private:
+  [[nodiscard]] bool is_held(HostTime now) const { return now < held_until_; }
+  [[nodiscard]] bool refuses_start();
+  HostTime time_passes();
+
+  AxisModel& axis_;
+  DriveClock clock_;
+  std::mutex mutex_;
+  RegisterImage image_;  // this and all below: guarded by mutex_
+  int alarm_ = 0;
+  int refused_starts_ = 0;
+  std::int64_t offset_ = 0;  // what the drive calls a position, minus what the axis calls it
+  HostTime held_until_ = HostTime::min();
+  HostTime last_request_ = HostTime::max();
+  std::atomic<int> moves_{0};
+};
+
+}  // namespace fvd::sim

@@ -1,0 +1,72 @@
+#pragma once
+
+/// The whole simulated microscope: one world, its camera on GigE Vision, its stage on Modbus TCP or RTU.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/axis/axis_model.hpp"
+#include "sim/camera/gige_camera_server.hpp"
+#include "sim/camera/line_trigger.hpp"
+#include "sim/drives/drive_kinds.hpp"
+#include "sim/modbus/fault_script.hpp"
+#include "sim/modbus/modbus_rtu_server.hpp"
+#include "sim/modbus/modbus_tcp_server.hpp"
+#include "sim/world/sim_world.hpp"
+#include "sim/world/world_parameters.hpp"
+
+namespace fvd::sim {
+
+struct PlantOptions {
+  WorldParameters world;
+  AxisParameters axis;
+  std::string camera_address = "auto";  ///< "auto" = a free loopback address
+  std::string stage_address = "127.0.0.1";
+  int stage_port = 0;  ///< 0 = any free port
+  DriveKind drive = DriveKind::kAz;
+  std::filesystem::path stage_pty{};  ///< if given, RTU on a pseudo-terminal linked here instead of TCP
+  LineTiming line_timing{};           ///< of that
+  std::vector<FaultStep> faults{};    ///< what befalls line and drive of the stage
+  std::vector<CameraFaultStep> camera_faults{};
+};
+
+/// Camera and drive can be taken away and brought back at the same address: unplugged cables in tests.
+/// context: one thread.
+class Plant {
+ public:
+  /// Throws Error kBadConfig for what cannot be served or cannot happen.
+  explicit Plant(const PlantOptions& options);
+
+  [[nodiscard]] const std::string& camera_address() const { return camera_address_; }
+  [[nodiscard]] int stage_port() const { return stage_port_; }  ///< as asked for if the stage is on RTU
+  [[nodiscard]] GigeCameraServer& camera() { return *camera_; }
+  [[nodiscard]] ModbusTcpServer& stage() { return *stage_; }                ///< only without stage_pty
+  [[nodiscard]] ModbusRtuServer& serial_stage() { return *serial_stage_; }  ///< only with stage_pty
+  [[nodiscard]] std::uint64_t stage_requests() const;                       ///< of the stage now plugged
+  [[nodiscard]] SimDrive& drive() { return *drive_; }
+  [[nodiscard]] FaultScript& faults() { return faults_; }
+  [[nodiscard]] const SimWorld& world() const { return world_; }
+  [[nodiscard]] AxisModel& axis() { return axis_; }
+
+  void unplug_camera();
+  void plug_camera();
+  void unplug_stage();
+  void plug_stage();
+
+ private:
+  PlantOptions options_;
+  AxisModel axis_;
+  SimWorld world_;
+  std::unique_ptr<SimDrive> drive_;
+  FaultScript faults_;
+  std::string camera_address_;
+  int stage_port_;
+  std::unique_ptr<GigeCameraServer> camera_;
+  std::unique_ptr<LineTrigger> wire_;  // from the drive to the camera
+  std::unique_ptr<ModbusTcpServer> stage_;
+  std::unique_ptr<ModbusRtuServer> serial_stage_;
+};
+
+}  // namespace fvd::sim

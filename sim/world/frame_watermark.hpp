@@ -1,0 +1,41 @@
+#pragma once
+
+/// A mark in the pixels of a frame that tells which exposure it is, so that a test can prove what it got.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "core/image/image.hpp"
+#include "sim/world/frame_source.hpp"
+
+namespace fvd::sim {
+
+struct Watermark {
+  std::uint64_t exposure_index = 0;
+  double z_um = 0.0;  ///< true position at the middle of the exposure, to a nanometre
+};
+
+/// Nothing if the checksum over all other pixels or the mark itself is wrong. Images have at least 24 pixels a row.
+[[nodiscard]] std::optional<Watermark> read_watermark(const ImageView& image);
+
+/// Marks what another source renders: in the first 20 pixels of row 0 lie index, z in nm, and the CRC-32 of everything
+/// after and of the two, one byte a pixel, in the lower 8 bits of wider ones. Frames that are packed or mosaics on the
+/// wire lose their mark. context: as its source.
+class WatermarkedSource final : public FrameSource {
+ public:
+  /// z_um: true position at a moment; may be called for the past. source outlives this.
+  WatermarkedSource(FrameSource& source, std::function<double(HostTime)> z_um)
+      : source_(source), z_um_(std::move(z_um)) {}
+
+  [[nodiscard]] int sensor_width() const override { return source_.sensor_width(); }
+  [[nodiscard]] int sensor_height() const override { return source_.sensor_height(); }
+  void render(const ExposureRequest& request, std::span<std::byte> out) override;
+
+ private:
+  FrameSource& source_;
+  std::function<double(HostTime)> z_um_;
+};
+
+}  // namespace fvd::sim

@@ -1,0 +1,33 @@
+#pragma once
+
+/// The one world that camera and drive share: a surface, optics, and where the stage truly is.
+
+#include "core/image/image.hpp"
+#include "sim/axis/axis_model.hpp"
+#include "sim/world/defocus_renderer.hpp"
+#include "sim/world/frame_source.hpp"
+#include "sim/world/surface.hpp"
+#include "sim/world/world_parameters.hpp"
+
+namespace fvd::sim {
+
+class SimWorld final : public FrameSource {
+ public:
+  /// axis outlives the world. Throws what make_surface throws.
+  SimWorld(const WorldParameters& parameters, const AxisModel& axis);
+
+  [[nodiscard]] int sensor_width() const override { return surface_.height_um.width(); }
+  [[nodiscard]] int sensor_height() const override { return surface_.height_um.height(); }
+  /// Renders at the mean true position of the axis over the exposure.
+  void render(const ExposureRequest& request, std::span<std::byte> out) override;
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] std::size_t memory_bytes() const { return renderer_.memory_bytes(); }
+
+ private:
+  const AxisModel& axis_;
+  Surface surface_;
+  DefocusRenderer renderer_;
+};
+
+}  // namespace fvd::sim

@@ -1,0 +1,145 @@
+#include "sim/world/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/error.hpp"
+#include "sim/world/gsf_reader.hpp"
+
+namespace fvd::sim {
+
+namespace {
+
+struct Rectangle {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
+void fill(Plane<std::uint8_t>& plane, const Rectangle& r, std::uint8_t value) {
+  for (int y = r.y; y < r.y + r.height; ++y) std::fill_n(plane.row(y) + r.x, r.width, value);
+}
+
+Rectangle grown(const Rectangle& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by, r.height + 2 * by}; }
+
+Surface blank(int width, int height) {
+  return {Plane<float>(width, height), Plane<std::uint8_t>(width, height), Plane<std::uint8_t>(width, height)};
+}
+
+/// The whole image but its margin is one region.
+void mark_surface(Surface& surface) {
+  const int width = surface.height_um.width() - 2 * kRegionMargin_px;
+  const int height = surface.height_um.height() - 2 * kRegionMargin_px;
+  if (width <= 0 || height <= 0) return;
+  fill(surface.region, {kRegionMargin_px, kRegionMargin_px, width, height},
+       static_cast<std::uint8_t>(Region::kSurface));
+}
+
+/// Plateaus of 0, 50 and 100 um, each a quarter of the width, then a ramp from 100 to 160 um; 60 x 110 pixels of the
+/// middle plateau have hardly any texture.
+Surface chapter(const WorldParameters& world) {
+  constexpr int kWidth = 480;
+  constexpr int kHeight = 360;
+  constexpr int kStrip = 120;
+  constexpr double kRise_um = 60.0;
+  if (world.width_px != kWidth || world.height_px != kHeight) {
+    throw Error(ErrorCode::kBadConfig, "the chapter's surface is 480 x 360 pixels, not " +
+                                           std::to_string(world.width_px) + " x " + std::to_string(world.height_px));
+  }
+  Surface surface = blank(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const double ramp = 100.0 + kRise_um * (x - 3 * kStrip) / (kStrip - 1);
+      surface.height_um.at(x, y) = static_cast<float>(x < 3 * kStrip ? 50.0 * (x / kStrip) : ramp);
+    }
+  }
+  const Rectangle poor{150, 125, 60, 110};
+  for (int strip = 0; strip < 4; ++strip) {
+    const Rectangle whole{strip * kStrip, 0, kStrip, kHeight};
+    fill(surface.region, grown(whole, -kRegionMargin_px), static_cast<std::uint8_t>(strip + 1));
+  }
+  fill(surface.region, grown(poor, kRegionMargin_px), static_cast<std::uint8_t>(Region::kNone));
+  fill(surface.region, poor, static_cast<std::uint8_t>(Region::kPoor));
+  fill(surface.poor, poor, 1);
+  return surface;
+}
+
+Surface tilted(const WorldParameters& world) {
+  Surface surface = blank(world.width_px, world.height_px);
+  for (int y = 0; y < world.height_px; ++y) {
+    for (int x = 0; x < world.width_px; ++x) {
+      surface.height_um.at(x, y) =
+          static_cast<float>(world.base_um + world.tilt_x_um_per_px * (x - 0.5 * (world.width_px - 1)) +
+                             world.tilt_y_um_per_px * (y - 0.5 * (world.height_px - 1)));
+    }
+  }
+  return surface;
+}
+
+Surface sphere(const WorldParameters& world) {
+  Surface surface = blank(world.width_px, world.height_px);
+  const double centre_um = world.base_um + world.cap_height_um - world.radius_um;
+  for (int y = 0; y < world.height_px; ++y) {
+    for (int x = 0; x < world.width_px; ++x) {
+      const double dx = (x - 0.5 * (world.width_px - 1)) * world.pixel_pitch_um;
+      const double dy = (y - 0.5 * (world.height_px - 1)) * world.pixel_pitch_um;
+      const double square = world.radius_um * world.radius_um - dx * dx - dy * dy;
+      const double height = square > 0 ? centre_um + std::sqrt(square) : world.base_um;
+      surface.height_um.at(x, y) = static_cast<float>(std::max(height, world.base_um));
+    }
+  }
+  return surface;
+}
+
+Surface rough(const WorldParameters& world) {
+  Surface surface = blank(world.width_px, world.height_px);
+  cv::Mat heights(world.height_px, world.width_px, CV_32F, surface.height_um.row(0));
+  std::mt19937_64 random(world.seed + 77);
+  std::normal_distribution<float> normal;
+  for (float& height : surface.height_um.pixels()) height = normal(random);
+  cv::GaussianBlur(heights, heights, {}, world.correlation_px, world.correlation_px, cv::BORDER_REFLECT);
+  cv::Scalar mean;
+  cv::Scalar sd;
+  cv::meanStdDev(heights, mean, sd);
+  heights = (heights - mean[0]) * (world.sq_um / sd[0]) + world.base_um;
+  return surface;
+}
+
+Surface from_file(const WorldParameters& world) {
+  Surface surface;
+  surface.height_um = read_gsf_um(world.height_map_file);
+  surface.poor = Plane<std::uint8_t>(surface.height_um.width(), surface.height_um.height());
+  surface.region = Plane<std::uint8_t>(surface.height_um.width(), surface.height_um.height());
+  return surface;
+}
+
+}  // namespace
+
+Surface make_surface(const WorldParameters& world) {
+  if (world.surface == SurfaceKind::kChapter) return chapter(world);
+  Surface surface;
+  switch (world.surface) {
+    case SurfaceKind::kTilted:
+      surface = tilted(world);
+      break;
+    case SurfaceKind::kSphere:
+      surface = sphere(world);
+      break;
+    case SurfaceKind::kRough:
+      surface = rough(world);
+      break;
+    case SurfaceKind::kHeightMap:
+      surface = from_file(world);
+      break;
+    case SurfaceKind::kChapter:
+      break;
+  }
+  mark_surface(surface);
+  return surface;
+}
+
+}  // namespace fvd::sim

@@ -1,0 +1,106 @@
+#include "core/focus/measure/peak_accumulator.hpp"
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "core/focus/measure/slice_binner.hpp"
+#include "gtest/gtest.h"
+
+namespace fvd {
+namespace {
+
+/// One slice of a row; few distinct values, so that equal maxima are frequent, and now and then one of full range.
+template <typename Texture>
+struct SliceRow {
+  SliceRow(int width, std::mt19937& random) {
+    for (int x = 0; x < width; ++x) {
+      const auto draw = static_cast<std::uint32_t>(random());
+      codes.push_back(static_cast<std::uint16_t>(draw % 16 == 0 ? 0xFFF0U + draw / 16 % 16 : draw / 16 % 5 * 64));
+      saturated.push_back(static_cast<std::uint8_t>(draw >> 31U));
+      pixels.push_back(static_cast<Texture>(draw >> 8U));
+    }
+  }
+  std::vector<std::uint16_t> codes;
+  std::vector<std::uint8_t> saturated;
+  std::vector<Texture> pixels;
+};
+
+template <typename Texture>
+class APeakAccumulator : public testing::Test {};
+using Textures = testing::Types<std::uint8_t, std::uint16_t>;
+TYPED_TEST_SUITE(APeakAccumulator, Textures);
+
+TYPED_TEST(APeakAccumulator, KeepsWhatTheWholeCurveSays) {
+  std::mt19937 random(4);
+  for (int width = 1; width <= 100; ++width) {
+    PeakAccumulator<TypeParam> accumulator(width, 2, false);
+    SliceBinner<TypeParam> binner(width, 1);
+    for (int y = 0; y < 2; ++y) {
+      const auto row = accumulator.row(y);
+      std::vector<SliceRow<TypeParam>> slices;
+      for (int k = 0; k < 12; ++k) {
+        const auto& slice = slices.emplace_back(width, random);
+        const Sample<TypeParam> sample{slice.codes.data(), slice.saturated.data(), slice.pixels.data()};
+        binner.add(row, std::span(&sample, 1), k);
+      }
+      for (int x = 0; x < width; ++x) {
+        const auto i = static_cast<std::size_t>(x);
+        std::vector<std::uint16_t> curve;
+        for (const auto& slice : slices) curve.push_back(slice.codes[i]);
+        const auto peak = static_cast<std::size_t>(std::max_element(curve.begin(), curve.end()) - curve.begin());
+        const auto at = [&](std::size_t index) { return index < curve.size() ? curve[index] : std::uint16_t{0}; };
+        ASSERT_EQ(row.curve.peak_index[x], peak) << "the first of equal maxima; width " << width << ", x " << x;
+        ASSERT_EQ(row.curve.peak[x], curve[peak]);
+        ASSERT_EQ(row.curve.left[x], at(peak - 1));
+        ASSERT_EQ(row.curve.left2[x], at(peak - 2));
+        ASSERT_EQ(row.curve.right[x], at(peak + 1));
+        ASSERT_EQ(row.curve.right2[x], at(peak + 2));
+        ASSERT_EQ(row.curve.minimum[x], *std::min_element(curve.begin(), curve.end()));
+        ASSERT_EQ(row.curve.previous[x], curve.back());
+        ASSERT_EQ(row.texture[x], slices[peak].pixels[i]);
+        ASSERT_EQ(row.curve.saturated[x], slices[peak].saturated[i]);
+      }
+    }
+  }
+}
+
+TYPED_TEST(APeakAccumulator, SumsTheSlicesOfABin) {
+  constexpr int kWidth = 37;
+  std::mt19937 random(5);
+  for (const int bin : {2, 3, 4, 7}) {
+    PeakAccumulator<TypeParam> accumulator(kWidth, 1, true);
+    SliceBinner<TypeParam> binner(kWidth, bin);
+    const auto row = accumulator.row(0);
+    std::vector<SliceRow<TypeParam>> slices;
+    for (int k = 0; k < 3 * bin; ++k) {
+      const auto& slice = slices.emplace_back(kWidth, random);
+      const Sample<TypeParam> sample{slice.codes.data(), slice.saturated.data(), slice.pixels.data()};
+      binner.add(row, std::span(&sample, 1), k);
+    }
+    const int shift = bin_shift(bin);
+    for (int x = 0; x < kWidth; ++x) {
+      std::vector<unsigned> sums(3);
+      for (int k = 0; k < 3 * bin; ++k) {
+        sums[static_cast<std::size_t>(k / bin)] +=
+            (slices[static_cast<std::size_t>(k)].codes[static_cast<std::size_t>(x)] + (1U << (shift - 1))) >> shift;
+      }
+      const auto peak = std::max_element(sums.begin(), sums.end()) - sums.begin();
+      ASSERT_EQ(row.curve.peak_index[x], peak) << bin;
+      ASSERT_EQ(row.curve.peak[x], *std::max_element(sums.begin(), sums.end()));
+      ASSERT_EQ(row.curve.minimum[x], *std::min_element(sums.begin(), sums.end()));
+      const auto middle = static_cast<std::size_t>(peak * bin + (bin - 1) / 2);
+      ASSERT_EQ(row.texture[x], slices[middle].pixels[static_cast<std::size_t>(x)]);
+    }
+  }
+}
+
+TEST(PeakAccumulator, TakesTheStatedBytesPerPixelWhereRowsFillTheirBlocks) {
+  EXPECT_EQ(PeakAccumulator<std::uint8_t>::memory_bytes(2448, 2048, false), 20U * 2448 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint8_t>::memory_bytes(2448, 2048, true), 24U * 2448 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint16_t>::memory_bytes(2048, 2048, false), 21U * 2048 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint16_t>::memory_bytes(2048, 2048, true), 26U * 2048 * 2048);
+}
+
+}  // namespace
+}  // namespace fvd

@@ -1,0 +1,179 @@
+#include "core/focus/measure/sharpness_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "gtest/gtest.h"
+
+namespace fvd {
+namespace {
+
+constexpr std::ptrdiff_t kPadding = 5;
+
+/// An image in exactly as much memory as it needs, rows padded, pixels random up to full scale.
+template <typename Pixel>
+struct PaddedImage {
+  PaddedImage(int width, int height, unsigned seed) : view{nullptr, width, height, width + kPadding} {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> level(0, sizeof(Pixel) == 1 ? 255 : 65535);
+    storage.resize(static_cast<std::size_t>(view.row_stride * (height - 1) + width));
+    for (auto& pixel : storage) pixel = static_cast<Pixel>(level(random));
+    view.data = storage.data();
+  }
+  std::vector<Pixel> storage;
+  PlaneView<Pixel> view;
+};
+
+template <typename Pixel>
+class SharpnessRowsOf : public testing::Test {};
+using Pixels = testing::Types<std::uint8_t, std::uint16_t>;
+TYPED_TEST_SUITE(SharpnessRowsOf, Pixels);
+
+constexpr PixelFormat format_of(std::uint8_t) { return PixelFormat::kMono8; }
+constexpr PixelFormat format_of(std::uint16_t) { return PixelFormat::kMono16; }
+
+TYPED_TEST(SharpnessRowsOf, EqualTheReferenceForEverySizeWindowOperatorAndStart) {
+  for (const int width : {1, 2, 3, 4, 7, 8, 16, 31, 33, 64, 100}) {
+    for (const int height : {1, 2, 3, 5, 9, 20}) {
+      const PaddedImage<TypeParam> image(width, height, static_cast<unsigned>(width * 100 + height));
+      const PixelFormat format = format_of(TypeParam{});
+      for (const int window : {1, 3, 5, 9, 31, 63}) {
+        for (const FocusOperator op : kAllFocusOperators) {
+          if (window == 1 && op != FocusOperator::kIntensity) continue;
+          const FocusSettings settings{
+              .focus_operator = op, .window_px = window, .distance_px = 1 + (width + window) % 7};
+          const auto expected = sharpness_reference(image_view(image.view, format), settings);
+          SharpnessRows<TypeParam> rows(width, settings, format);
+          for (const int first : {0, height / 2, height - 1}) {
+            rows.begin(image.view, first);
+            for (int y = first; y < height; ++y) {
+              rows.next();
+              ASSERT_TRUE(std::equal(rows.codes(), rows.codes() + width, expected.row(y)))
+                  << focus_operator_name(op) << ' ' << width << " x " << height << " window " << window << " from row "
+                  << first << " at row " << y;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TYPED_TEST(SharpnessRowsOf, MarkEveryWindowThatHoldsASaturatedPixel) {
+  constexpr int kWidth = 40;
+  constexpr int kHeight = 30;
+  const int full = sizeof(TypeParam) == 1 ? 255 : 65535;
+  PaddedImage<TypeParam> image(kWidth, kHeight, 3);
+  for (auto& pixel : image.storage) pixel = static_cast<TypeParam>(std::min<int>(pixel, full - 1));
+  image.view.at(8, 8) = static_cast<TypeParam>(full);
+  image.view.at(20, 15) = static_cast<TypeParam>(full);
+  image.view.at(1, 28) = static_cast<TypeParam>(full);
+  SharpnessRows<TypeParam> rows(kWidth, {}, format_of(TypeParam{}));
+  for (const int first : {0, 14, 17}) {
+    rows.begin(image.view, first);
+    for (int y = first; y < kHeight; ++y) {
+      rows.next();
+      for (int x = 0; x < kWidth; ++x) {
+        const WindowReach columns(x, 4, kWidth);
+        const WindowReach lines(y, 4, kHeight);
+        bool expected = false;
+        for (const auto& [u, v] : {std::pair{8, 8}, {20, 15}, {1, 28}}) {
+          expected = expected || (columns.first <= u && u <= columns.last && lines.first <= v && v <= lines.last);
+        }
+        ASSERT_EQ(rows.saturated()[x] != 0, expected) << x << ", " << y << " from row " << first;
+      }
+    }
+  }
+}
+
+/// F of the reference at a pixel.
+double sharpness(const ImageView& image, const FocusSettings& settings, int x, int y) {
+  return sharpness_code(settings, image.format).decode(sharpness_reference(image, settings).at(x, y));
+}
+
+TEST(SharpnessReference, IsTheModifiedLaplacianOnAKnownImage) {
+  Plane<std::uint8_t> image(7, 7, 10);
+  image.at(3, 3) = 20;  // ML 40 there, 10 at its four neighbours
+  const FocusSettings settings{.window_px = 3, .distance_px = 1};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  EXPECT_EQ(sharpness(view, settings, 3, 3), 80.0);
+  EXPECT_EQ(sharpness(view, settings, 2, 2), 40.0 + 10.0 + 10.0);
+  EXPECT_EQ(sharpness(view, settings, 0, 0), 0.0);
+}
+
+TEST(SharpnessReference, LooksAtNeighboursAtItsDistance) {
+  Plane<std::uint8_t> image(9, 9, 10);
+  image.at(4, 4) = 20;  // ML 40 there, 10 three pixels up, down, left and right of it, nothing in between
+  const FocusSettings settings{.window_px = 3, .distance_px = 3};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  EXPECT_EQ(sharpness(view, settings, 4, 4), 40.0);
+  EXPECT_EQ(sharpness(view, settings, 4, 1), 10.0);
+  EXPECT_EQ(sharpness(view, settings, 2, 2), 0.0);
+}
+
+TEST(SharpnessReference, KeepsTheWindowCentredAtTheBorder) {
+  for (const auto& [centre, first, last] : {std::array{0, 0, 2},
+                                            {1, 0, 3},
+                                            {2, 0, 4},
+                                            {3, 0, 6},
+                                            {4, 0, 8},
+                                            {5, 1, 9},
+                                            {16, 13, 19},
+                                            {18, 16, 19},
+                                            {19, 17, 19}}) {
+    const WindowReach reach(centre, 4, 20);
+    EXPECT_EQ(reach.first, first) << centre;
+    EXPECT_EQ(reach.last, last) << centre;
+  }
+  const WindowReach whole(1, 31, 3);
+  EXPECT_EQ(whole.first, 0);
+  EXPECT_EQ(whole.last, 2);
+}
+
+TEST(SharpnessReference, IsTheSobelGradientSquared) {
+  Plane<std::uint8_t> image(9, 9, 10);
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 5; x < 9; ++x) image.at(x, y) = 30;  // a vertical edge: gx = 4 * 20 on both sides of it
+  }
+  const FocusSettings settings{.focus_operator = FocusOperator::kTenengrad, .window_px = 3, .distance_px = 1};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  EXPECT_NEAR(sharpness(view, settings, 4, 4), 2 * 3 * 6400.0, 40.0);
+  EXPECT_EQ(sharpness(view, settings, 2, 4), 0.0);
+}
+
+TEST(SharpnessReference, IsTheGreyLevelItselfForTheIntensity) {
+  Plane<std::uint16_t> image(5, 5, 700);
+  image.at(2, 2) = 4000;
+  const FocusSettings settings{.focus_operator = FocusOperator::kIntensity, .window_px = 1};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono12);
+  EXPECT_NEAR(sharpness(view, settings, 2, 2), 4000.0, 1.0);
+  EXPECT_NEAR(sharpness(view, settings, 0, 0), 700.0, 1.0);
+}
+
+TEST(SharpnessReference, HoldsItsRangeAtFullContrast) {
+  Plane<std::uint16_t> wide(65, 65);
+  Plane<std::uint8_t> narrow(65, 65);
+  for (int y = 0; y < 65; ++y) {
+    for (int x = 0; x < 65; ++x) {
+      wide.at(x, y) = (x + y) % 2 == 0 ? 65535 : 0;
+      narrow.at(x, y) = (x + y) % 2 == 0 ? 255 : 0;
+    }
+  }
+  for (int window = 3; window <= 63; window += 2) {
+    const FocusSettings settings{.window_px = window, .distance_px = 1};
+    const double area = window * window;
+    const double expected_wide = area * 4 * 65535.0;
+    EXPECT_NEAR(sharpness(image_view(wide.view(), PixelFormat::kMono16), settings, 32, 32), expected_wide,
+                1e-3 * expected_wide)
+        << window;
+    EXPECT_NEAR(sharpness(image_view(narrow.view(), PixelFormat::kMono8), settings, 32, 32), area * 1020.0,
+                1e-3 * area * 1020.0)
+        << window;
+  }
+}
+
+}  // namespace
+}  // namespace fvd

@@ -1,0 +1,249 @@
+/// JSON-RPC 2.0 to the letter, and the refusals a PLC programmer will meet.
+
+#include "daemon/api/dispatcher.hpp"
+
+#include <set>
+
+#include "core/base/error.hpp"
+#include "daemon/api/rpc_errors.hpp"
+#include "gtest/gtest.h"
+#include "tests/daemon/api/fake_job_service.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+
+class ADispatcher : public testing::Test {
+ protected:
+  /// The reply to a line as JSON; a discarded value where there is none.
+  json reply(const std::string& line) {
+    const Handled handled = dispatcher_.handle(line);
+    return handled.reply ? json::parse(*handled.reply) : json(json::value_t::discarded);
+  }
+  int error_of(const std::string& line) {
+    const json answer = reply(line);
+    EXPECT_TRUE(answer.contains("error")) << answer.dump();
+    EXPECT_FALSE(answer.contains("result"));
+    return answer.contains("error") ? answer["error"]["code"].get<int>() : 0;
+  }
+  json result_of(const std::string& method, const json& params = json::object()) {
+    const json answer = reply(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump());
+    EXPECT_TRUE(answer.contains("result")) << answer.dump();
+    return answer.value("result", json());
+  }
+
+  FakeJobService service_;
+  Dispatcher dispatcher_{service_.services()};
+};
+
+TEST_F(ADispatcher, RefusesWhatIsNoJson) {
+  for (const char* line :
+       {"{", "nonsense", "{\"a\":1}x", "\xff\xfe", "[1,", "{\"jsonrpc\":\"2.0\",\"id\":1,\"id\":2}", "{/**/}"}) {
+    EXPECT_EQ(error_of(line), json_rpc::kParseError) << line;
+    EXPECT_TRUE(reply(line)["id"].is_null());
+  }
+}
+
+TEST_F(ADispatcher, RefusesDeepNestingBeforeAnythingRecurses) {
+  EXPECT_EQ(error_of(std::string(33, '[') + std::string(33, ']')), json_rpc::kParseError);
+  EXPECT_EQ(error_of(std::string(60000, '[')), json_rpc::kParseError);
+  std::string object = R"({"jsonrpc":"2.0","id":1,"method":"system.ping","params":{"t":)";
+  EXPECT_EQ(error_of(object + std::string(40, '[') + std::string(40, ']') + "}}"), json_rpc::kParseError);
+}
+
+TEST_F(ADispatcher, RefusesWhatIsNoRequest) {
+  for (const char* line :
+       {"1", "null", "\"text\"", "{}", R"({"jsonrpc":2.0,"id":1,"method":"system.ping"})",
+        R"({"jsonrpc":"1.0","id":1,"method":"system.ping"})", R"({"jsonrpc":"2.0","id":1})",
+        R"({"jsonrpc":"2.0","id":1,"method":5})", R"({"jsonrpc":"2.0","id":1.5,"method":"system.ping"})",
+        R"({"jsonrpc":"2.0","id":true,"method":"system.ping"})", R"({"jsonrpc":"2.0","id":[],"method":"system.ping"})",
+        R"({"jsonrpc":"2.0","id":12345678901234567890123,"method":"system.ping"})",
+        R"({"jsonrpc":"2.0","id":9007199254740992,"method":"system.ping"})",
+        R"({"jsonrpc":"2.0","id":1,"method":"system.ping","params":"bar"})"}) {
+    EXPECT_EQ(error_of(line), json_rpc::kInvalidRequest) << line;
+    EXPECT_TRUE(reply(line)["id"].is_null()) << line;
+  }
+}
+
+TEST_F(ADispatcher, EchoesTheIdAsItCame) {
+  for (const json& id : {json(1), json("1"), json(nullptr), json(-5), json("abc"), json(9007199254740991)}) {
+    EXPECT_EQ(reply(json{{"jsonrpc", "2.0"}, {"id", id}, {"method", "system.ping"}}.dump())["id"], id);
+  }
+}
+
+TEST_F(ADispatcher, NeverAnswersANotification) {
+  for (const char* line : {R"({"jsonrpc":"2.0","method":"system.ping"})", R"({"jsonrpc":"2.0","method":"no.such"})",
+                           R"({"jsonrpc":"2.0","method":"job.start","params":{"wrong":1}})",
+                           R"([{"jsonrpc":"2.0","method":"system.ping"}])"}) {
+    EXPECT_FALSE(dispatcher_.handle(line).reply.has_value()) << line;
+  }
+}
+
+TEST_F(ADispatcher, AnswersBatchesInOrder) {
+  const json answer =
+      reply(R"([{"jsonrpc":"2.0","id":1,"method":"system.ping"},{"jsonrpc":"2.0","method":"system.ping"},5,
+                                {"jsonrpc":"2.0","id":2,"method":"no.such"}])");
+  ASSERT_TRUE(answer.is_array());
+  ASSERT_EQ(answer.size(), 3U);
+  EXPECT_EQ(answer[0]["id"], 1);
+  EXPECT_EQ(answer[1]["error"]["code"], json_rpc::kInvalidRequest);
+  EXPECT_EQ(answer[2]["error"]["code"], json_rpc::kMethodNotFound);
+  EXPECT_EQ(error_of("[]"), json_rpc::kInvalidRequest);
+}
+
+TEST_F(ADispatcher, LimitsBatches) {
+  const json ping{{"jsonrpc", "2.0"}, {"id", 1}, {"method", "system.ping"}};
+  EXPECT_EQ(error_of(json(std::vector<json>(17, ping)).dump()), json_rpc::kInvalidRequest);
+  const json start{{"jsonrpc", "2.0"}, {"id", 1}, {"method", "job.start"}, {"params", {{"seq", 1}, {"part_id", "p"}}}};
+  EXPECT_EQ(error_of(json{start, start}.dump()), json_rpc::kInvalidRequest);
+  EXPECT_EQ(service_.starts, 0);
+}
+
+TEST_F(ADispatcher, RefusesUnknownMethodsAndParametersByName) {
+  EXPECT_EQ(error_of(R"({"jsonrpc":"2.0","id":1,"method":"job.begin"})"), json_rpc::kMethodNotFound);
+  const json answer =
+      reply(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":{"seq":1,"part_id":"p","recip":"x"}})");
+  EXPECT_EQ(answer["error"]["code"], json_rpc::kInvalidParams);
+  EXPECT_NE(answer["error"]["message"].get<std::string>().find("recip"), std::string::npos);
+  EXPECT_EQ(service_.starts, 0);
+}
+
+TEST_F(ADispatcher, RefusesWrongTypesAndRanges) {
+  for (const char* params :
+       {R"({"seq":"1","part_id":"p"})", R"({"seq":1,"part_id":2})", R"({"seq":1})", R"({"part_id":"p"})",
+        R"({"seq":0,"part_id":"p"})", R"({"seq":-1,"part_id":"p"})", R"({"seq":1.5,"part_id":"p"})",
+        R"({"seq":9007199254740992,"part_id":"p"})", R"({"seq":1,"part_id":""})", R"({"seq":1,"part_id":"umläut"})",
+        "[1,\"p\",\"chapter\",4]"}) {
+    EXPECT_EQ(error_of(std::string(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":)") + params + "}"),
+              json_rpc::kInvalidParams)
+        << params;
+  }
+  EXPECT_EQ(service_.starts, 0);
+}
+
+TEST_F(ADispatcher, TakesParametersByPositionAndNullForNone) {
+  const json started =
+      reply(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[7,"part","chapter"]})")["result"];
+  EXPECT_EQ(started["seq"], 7);
+  EXPECT_EQ(started["job_id"], "job-7");
+  EXPECT_TRUE(reply(R"({"jsonrpc":"2.0","id":1,"method":"system.ping","params":null})").contains("result"));
+}
+
+TEST_F(ADispatcher, ReturnsTheSameJobForTheSameSequenceNumber) {
+  EXPECT_EQ(result_of("job.start", {{"seq", 3}, {"part_id", "p"}})["duplicate"], false);
+  EXPECT_EQ(result_of("job.start", {{"seq", 3}, {"part_id", "p"}})["duplicate"], true);
+}
+
+TEST_F(ADispatcher, CarriesTheNameTheRetryAndTheStateOfAnError) {
+  service_.refusal = ErrorCode::kNotReady;
+  const json error = reply(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[1,"p"]})")["error"];
+  EXPECT_EQ(error["code"], 1001);
+  EXPECT_EQ(error["data"]["error"], "not_ready");
+  EXPECT_EQ(error["data"]["retry"], true);
+  EXPECT_EQ(error["data"]["state"], "ready");
+}
+
+TEST_F(ADispatcher, NamesAJobByIdOrBySequenceNumberNotByBoth) {
+  result_of("job.start", {{"seq", 3}, {"part_id", "p"}});
+  EXPECT_EQ(result_of("job.status", {{"seq", 3}})["job_id"], "job-3");
+  EXPECT_EQ(result_of("job.status", {{"job_id", "job-3"}})["seq"], 3);
+  EXPECT_EQ(error_of(R"({"jsonrpc":"2.0","id":1,"method":"job.status"})"), json_rpc::kInvalidParams);
+  EXPECT_EQ(error_of(R"({"jsonrpc":"2.0","id":1,"method":"job.status","params":{"seq":3,"job_id":"job-3"}})"),
+            json_rpc::kInvalidParams);
+  EXPECT_EQ(error_of(R"({"jsonrpc":"2.0","id":1,"method":"job.status","params":{"seq":99}})"), 1007);
+}
+
+TEST_F(ADispatcher, WaitsForAJobToEnd) {
+  result_of("job.start", {{"seq", 3}, {"part_id", "p"}});
+  const Handled handled =
+      dispatcher_.handle(R"({"jsonrpc":"2.0","id":9,"method":"job.wait","params":{"seq":3,"timeout_ms":100}})");
+  ASSERT_TRUE(handled.waiting.has_value());
+  EXPECT_FALSE(handled.reply.has_value());
+  EXPECT_FALSE(dispatcher_.resume(*handled.waiting, false).has_value());
+  const json late = json::parse(dispatcher_.resume(*handled.waiting, true).value());
+  EXPECT_EQ(late["result"]["done"], false);
+  service_.change(3, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  const json ended = json::parse(dispatcher_.resume(*handled.waiting, false).value());
+  EXPECT_EQ(ended["id"], 9);
+  EXPECT_EQ(ended["result"]["done"], true);
+}
+
+TEST_F(ADispatcher, RefusesWaitsItCannotKeep) {
+  result_of("job.start", {{"seq", 3}, {"part_id", "p"}});
+  for (const char* params :
+       {R"({"seq":3,"timeout_ms":30001})", R"({"seq":3,"timeout_ms":-1})", R"({"seq":3,"until":"noon"})"}) {
+    EXPECT_EQ(error_of(std::string(R"({"jsonrpc":"2.0","id":1,"method":"job.wait","params":)") + params + "}"),
+              json_rpc::kInvalidParams);
+  }
+  EXPECT_EQ(error_of(R"({"jsonrpc":"2.0","id":1,"method":"job.wait","params":{"seq":4}})"), 1007);
+}
+
+TEST_F(ADispatcher, KeepsRepliesWithinWhatPlcsCanTake) {
+  result_of("job.start", {{"seq", 3}, {"part_id", std::string(64, 'p')}});
+  service_.change(3, [](JobStatus& job) {
+    job.state = JobState::kCompleted;
+    job.error_message = std::string(5000, 'x');
+  });
+  const auto size = [&](const char* method, const json& params) {
+    return dispatcher_.handle(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump())
+        .reply->size();
+  };
+  EXPECT_LE(size("result.get", {{"seq", 3}}), 440U);
+  EXPECT_LE(size("result.next", json::object()), 440U);
+  EXPECT_LE(size("result.get", {{"seq", 3}, {"format", "full"}}), 1400U);
+  EXPECT_LE(size("job.status", {{"seq", 3}}), 1400U);
+  EXPECT_LE(size("system.state", json::object()), 1400U);
+}
+
+TEST_F(ADispatcher, HandsOutResultsUntilTheyAreAcknowledged) {
+  EXPECT_EQ(result_of("result.next")["job_id"], "");
+  result_of("job.start", {{"seq", 3}, {"part_id", "p"}});
+  service_.change(3, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  const json result = result_of("result.next");
+  EXPECT_EQ(result["seq"], 3);
+  EXPECT_EQ(result["valid_fraction"], 0.97);
+  EXPECT_EQ(result["height_min_um"], -1.25);
+  EXPECT_EQ(result_of("result.ack", {{"seq", 3}})["remaining"], 0);
+  EXPECT_EQ(result_of("result.next")["job_id"], "");
+}
+
+TEST_F(ADispatcher, AnswersInAscii) {
+  const auto answer = dispatcher_.handle("{\"jsonrpc\":\"2.0\",\"id\":\"\xc3\xa4\",\"method\":\"system.ping\"}").reply;
+  ASSERT_TRUE(answer.has_value());
+  for (const char c : *answer) EXPECT_GE(c, ' ');
+}
+
+TEST_F(ADispatcher, DescribesEveryMethod) {
+  const json methods = result_of("rpc.discover")["methods"];
+  std::set<std::string> names;
+  for (const auto& method : methods) names.insert(method["name"]);
+  for (const char* name :
+       {"system.ping", "system.info", "system.state", "stage.accuracy", "recipe.list", "recipe.get", "recipe.prepare",
+        "job.start", "job.status", "job.wait", "job.abort", "result.get", "result.next", "result.ack"}) {
+    EXPECT_TRUE(names.contains(name)) << name;
+  }
+}
+
+TEST_F(ADispatcher, KnowsRecipes) {
+  EXPECT_EQ(result_of("recipe.list")["recipes"][0], "chapter");
+  EXPECT_EQ(result_of("recipe.get", {{"id", "chapter"}})["recipe"]["scan"]["slices"], 21);
+  EXPECT_EQ(result_of("recipe.prepare", {{"id", "chapter"}})["recipe"], "chapter");
+  EXPECT_EQ(error_of(R"({"jsonrpc":"2.0","id":1,"method":"recipe.prepare","params":{"id":"nope"}})"), 1005);
+}
+
+TEST(RpcErrors, GivesEveryErrorItsOwnPositiveCode) {
+  std::set<int> codes;
+  for (int i = 0; i <= static_cast<int>(kLastErrorCode); ++i) {
+    const auto code = static_cast<ErrorCode>(i);
+    if (code == ErrorCode::kInternal) continue;
+    const int wire = rpc_error(code).code;
+    EXPECT_GT(wire, 1000) << error_name(code);
+    EXPECT_TRUE(codes.insert(wire).second) << error_name(code) << " shares " << wire;
+    EXPECT_EQ(error_from_name(error_name(code)), code);
+  }
+  EXPECT_EQ(rpc_error(ErrorCode::kInternal).code, json_rpc::kInternalError);
+}
+
+}  // namespace
+}  // namespace fvd

@@ -1,0 +1,160 @@
+#include "daemon/transport/rpc_server.hpp"
+
+#include <chrono>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.hpp"
+#include "gtest/gtest.h"
+#include "tests/daemon/api/fake_job_service.hpp"
+#include "tests/support/line_client.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+
+const std::string kPing = R"({"jsonrpc":"2.0","id":1,"method":"system.ping"})";
+
+class AnRpcServer : public testing::Test {
+ protected:
+  static RpcConfig config(int max_connections = 4, int idle_timeout_s = 60) {
+    RpcConfig config;
+    config.port = 0;
+    config.max_connections = max_connections;
+    config.idle_timeout_s = idle_timeout_s;
+    return config;
+  }
+  void serve(const RpcConfig& with) {
+    server_.reset();
+    server_ = std::make_unique<RpcServer>(with, runtime_.path(), service_.services());
+  }
+  static bool answers(LineClient& client) { return client.ask(kPing).find("\"result\"") != std::string::npos; }
+
+  test::ScratchDir runtime_;
+  FakeJobService service_;
+  std::unique_ptr<RpcServer> server_;
+};
+
+TEST_F(AnRpcServer, WritesItsAddressAndRemovesIt) {
+  serve(config());
+  const json file = json::parse(test::read_text(runtime_.path() / "rpc.json"));
+  EXPECT_EQ(file["port"], server_->port());
+  EXPECT_EQ(file["address"], "127.0.0.1");
+  server_.reset();
+  EXPECT_FALSE(std::filesystem::exists(runtime_.path() / "rpc.json"));
+}
+
+TEST_F(AnRpcServer, TakesEveryTerminatorAndLinesInPieces) {
+  serve(config());
+  LineClient client(server_->port());
+  for (const std::string& end : {std::string("\n"), std::string("\r\n"), std::string("\r"), std::string(1, '\0')}) {
+    client.send(kPing.substr(0, 10));
+    client.send(kPing.substr(10) + end);
+    EXPECT_TRUE(client.line().has_value()) << "terminator " << static_cast<int>(end[0]);
+  }
+  client.send("\n\r\n  \n" + kPing + "\n" + kPing + "\n");
+  EXPECT_TRUE(client.line().has_value());
+  EXPECT_TRUE(client.line().has_value());
+}
+
+TEST_F(AnRpcServer, RefusesALineOver64KiBAndCloses) {
+  serve(config());
+  LineClient client(server_->port());
+  client.send(std::string(70000, 'x'));
+  const auto line = client.line();
+  ASSERT_TRUE(line.has_value());
+  EXPECT_EQ(json::parse(*line)["error"]["code"], -32600);
+  EXPECT_TRUE(client.closes());
+  LineClient other(server_->port());
+  EXPECT_TRUE(answers(other));
+}
+
+TEST_F(AnRpcServer, ClosesASilentConnectionAlsoWithHalfALine) {
+  serve(config(4, 1));
+  LineClient half(server_->port());
+  half.send("{\"jsonrpc\":");
+  EXPECT_TRUE(half.closes(milliseconds(5000)));
+}
+
+TEST_F(AnRpcServer, SurvivesClientsThatVanish) {
+  serve(config());
+  for (int i = 0; i < 20; ++i) {
+    LineClient client(server_->port());
+    client.send(i % 2 == 0 ? kPing + "\n" : R"({"jsonrpc":"2.0","id":1,"met)");
+  }
+  // Those that are gone no longer count, once the server has noticed.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  bool answered = false;
+  while (!answered && std::chrono::steady_clock::now() < deadline) {
+    LineClient client(server_->port());
+    answered = answers(client);
+  }
+  EXPECT_TRUE(answered);
+}
+
+TEST_F(AnRpcServer, TurnsAwayAConnectionTooMany) {
+  serve(config(1));
+  LineClient first(server_->port());
+  ASSERT_TRUE(answers(first));
+  LineClient second(server_->port());
+  const auto line = second.line();
+  ASSERT_TRUE(line.has_value());
+  EXPECT_EQ(json::parse(*line)["error"]["data"]["error"], "too_many_connections");
+  EXPECT_TRUE(second.closes());
+  EXPECT_TRUE(answers(first));
+}
+
+TEST_F(AnRpcServer, AnswersAWaitWhenTheJobEndsAndLaterRequestsAfterIt) {
+  serve(config());
+  LineClient client(server_->port());
+  LineClient other(server_->port());
+  client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
+  client.send(R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})" + std::string("\n") + kPing + "\n");
+  EXPECT_TRUE(answers(other)) << "a wait blocks nobody else";
+  EXPECT_FALSE(client.line(milliseconds(50)).has_value());
+  service_.change(5, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  const auto ended = client.line();
+  ASSERT_TRUE(ended.has_value());
+  EXPECT_EQ(json::parse(*ended)["id"], 2);
+  EXPECT_EQ(json::parse(*ended)["result"]["done"], true);
+  EXPECT_TRUE(client.line().has_value()) << "the ping behind it";
+}
+
+TEST_F(AnRpcServer, EndsAWaitAtItsTimeout) {
+  serve(config());
+  LineClient client(server_->port());
+  client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
+  const json answer =
+      json::parse(client.ask(R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5,"timeout_ms":30}})"));
+  EXPECT_EQ(answer["result"]["done"], false);
+}
+
+TEST_F(AnRpcServer, StopsWhileClientsWait) {
+  serve(config());
+  LineClient client(server_->port());
+  client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
+  client.send(R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})" + std::string("\n"));
+  server_.reset();
+  EXPECT_TRUE(client.closes());
+}
+
+TEST_F(AnRpcServer, SaysWhereItCannotListen) {
+  serve(config());
+  RpcConfig taken = config();
+  taken.port = server_->port();
+  const test::ScratchDir other;
+  try {
+    const RpcServer second(taken, other.path(), service_.services());
+    FAIL() << "listened twice on one port";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadConfig);
+    EXPECT_NE(std::string(error.what()).find(std::to_string(taken.port)), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace fvd
