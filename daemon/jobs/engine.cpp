@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -11,13 +10,12 @@
 
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
-#include "core/focus/streaming_focus_stack.hpp"
-#include "core/image/unpack.hpp"
 #include "daemon/base/systemd_notify.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/jobs/device_commands.hpp"
+#include "daemon/pipeline/job_memory.hpp"
 #include "daemon/recipes/recipe_book.hpp"
 
 namespace fvd {
@@ -129,19 +127,8 @@ void Engine::require_acceptable_locked(const Recipe& recipe) const {
   check_plan(scan_plan(recipe), facts_->stage);
   const int width = recipe.camera.width > 0 ? recipe.camera.width : facts_->sensor_width;
   const int height = recipe.camera.height > 0 ? recipe.camera.height : facts_->sensor_height;
-  const auto maps = 1 + recipe.extra_peaks.size();
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  const PixelFormat format = recipe.camera.slice_format();
-  const std::size_t frames =
-      pixels * static_cast<std::size_t>(bytes_per_pixel(format)) * static_cast<std::size_t>(recipe.camera.pool_frames);
-  const std::size_t needed =
-      maps * StreamingFocusStack::memory_bytes(width, height, format, focus_settings(recipe), pool_.threads()) + frames;
   const std::size_t budget = static_cast<std::size_t>(config_.compute.memory_budget_mib) << 20U;
-  if (needed <= budget) return;
-  std::ostringstream message;
-  message << "the job needs " << (needed >> 20U) << " MiB for " << width << " x " << height << " pixels, the budget is "
-          << config_.compute.memory_budget_mib << " MiB: use a smaller region or raise compute.memory_budget_mib";
-  throw Error(ErrorCode::kMemoryBudget, message.str());
+  require_memory(job_memory(recipe, width, height, pool_.threads()), width, height, budget);
 }
 
 JobStatus Engine::job(const JobKey& key) const {

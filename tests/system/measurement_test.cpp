@@ -27,6 +27,9 @@ void expect_chapter_figures(const json& figures) {
   EXPECT_LE(figures["plateau_rms_um"]["parabola"].get<double>(), 0.65);
   EXPECT_LE(figures["plateau_rms_um"]["log_parabola"].get<double>(), 0.40);
   EXPECT_LE(figures["ramp_rms_um"]["log_parabola"].get<double>(), 0.40);
+  // The default of recipes: both sides, so that a gain is noticed and written down too.
+  EXPECT_NEAR(figures["plateau_rms_um"]["five_sample"].get<double>(), 0.192, 0.25 * 0.192);
+  EXPECT_NEAR(figures["ramp_rms_um"]["five_sample"].get<double>(), 0.231, 0.25 * 0.231);
   EXPECT_NEAR(figures["steps_um"][0].get<double>(), 50.0, 0.1);
   EXPECT_NEAR(figures["steps_um"][1].get<double>(), 50.0, 0.1);
   EXPECT_NEAR(figures["steps_um"][2].get<double>(), 100.0, 0.1);

@@ -1,0 +1,49 @@
+#include "daemon/pipeline/job_memory.hpp"
+
+#include <cstdint>
+#include <sstream>
+
+#include "core/base/error.hpp"
+#include "core/base/large_array.hpp"
+#include "core/focus/streaming_focus_stack.hpp"
+
+namespace fvd {
+
+namespace {
+
+/// A map beside the first: heights, errors, prominence, reasons, texture.
+constexpr std::size_t kMapBytesPerPixel = 3 * sizeof(float) + sizeof(std::uint8_t) + sizeof(std::uint16_t);
+/// The preview's picture is drawn and encoded while the largest file of four bytes a point is made beside it.
+constexpr std::size_t kEncodingBytesPerPixel = 12;
+
+std::size_t mebibytes(std::size_t bytes) { return bytes >> 20U; }
+
+}  // namespace
+
+JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const PixelFormat format = recipe.camera.slice_format();
+  const std::size_t stack = StreamingFocusStack::memory_bytes(width, height, format, focus_settings(recipe), threads);
+  JobMemory needed;
+  needed.state_bytes = stack - pixels * kMapBytesPerPixel;
+  needed.maps_bytes = (1 + recipe.extra_peaks.size()) * pixels * kMapBytesPerPixel;
+  needed.frames_bytes =
+      pixels * static_cast<std::size_t>(bytes_per_pixel(format)) * static_cast<std::size_t>(recipe.camera.pool_frames);
+  needed.encoding_bytes = pixels * kEncodingBytesPerPixel;
+  return needed;
+}
+
+void require_memory(const JobMemory& needed, int width, int height, std::size_t budget_bytes) {
+  if (needed.total_bytes() > budget_bytes) {
+    std::ostringstream message;
+    message << "the job needs " << mebibytes(needed.total_bytes()) << " MiB for " << width << " x " << height
+            << " pixels (state " << mebibytes(needed.state_bytes) << ", maps " << mebibytes(needed.maps_bytes)
+            << ", frames " << mebibytes(needed.frames_bytes) << ", files " << mebibytes(needed.encoding_bytes)
+            << "), the budget is " << mebibytes(budget_bytes)
+            << " MiB: use a smaller region, fewer extra_peaks or frames, or raise compute.memory_budget_mib";
+    throw Error(ErrorCode::kMemoryBudget, message.str());
+  }
+  if (needed.total_bytes() + detail::kMostKeptBytes > budget_bytes) release_kept_memory();
+}
+
+}  // namespace fvd

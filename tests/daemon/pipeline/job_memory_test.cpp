@@ -1,0 +1,45 @@
+#include "daemon/pipeline/job_memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/base/large_array.hpp"
+#include "core/focus/streaming_focus_stack.hpp"
+#include "tests/support/expect_error.hpp"
+
+namespace fvd {
+namespace {
+
+constexpr int kWidth = 2448;
+constexpr int kHeight = 2048;
+constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
+
+TEST(JobMemory, CountsStateMapsFramesAndFiles) {
+  Recipe recipe;
+  recipe.camera.pool_frames = 4;
+  const JobMemory plain = job_memory(recipe, kWidth, kHeight, 2);
+  EXPECT_GE(plain.state_bytes, 20 * kPixels);
+  EXPECT_EQ(plain.frames_bytes, 4 * kPixels);
+  EXPECT_EQ(plain.encoding_bytes, 12 * kPixels);
+  EXPECT_EQ(plain.state_bytes + plain.maps_bytes,
+            StreamingFocusStack::memory_bytes(kWidth, kHeight, PixelFormat::kMono8, focus_settings(recipe), 2));
+}
+
+TEST(JobMemory, ASecondMethodTakesAnotherMapAndNoOtherState) {
+  Recipe recipe;
+  const JobMemory one = job_memory(recipe, kWidth, kHeight, 2);
+  recipe.extra_peaks = {PeakMethod::kParabola};
+  const JobMemory two = job_memory(recipe, kWidth, kHeight, 2);
+  EXPECT_EQ(two.maps_bytes, 2 * one.maps_bytes);
+  EXPECT_EQ(two.state_bytes, one.state_bytes);
+}
+
+TEST(JobMemory, RefusesWhatOnlyItsFilesTakeOverTheBudget) {
+  const JobMemory needed = job_memory({}, kWidth, kHeight, 2);
+  require_memory(needed, kWidth, kHeight, needed.total_bytes());
+  test::expect_error(ErrorCode::kMemoryBudget, {"2448 x 2048", "files", "compute.memory_budget_mib"}, [&] {
+    require_memory(needed, kWidth, kHeight, needed.total_bytes() - needed.encoding_bytes / 2);
+  });
+}
+
+}  // namespace
+}  // namespace fvd
