@@ -1,10 +1,11 @@
 #include "daemon/store/job_store.hpp"
 
 #include <array>
+#include <atomic>
 #include <chrono>
-#include <mutex>
 
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_id.hpp"
 #include "daemon/store/job_schema.hpp"
@@ -28,14 +29,6 @@ JobState state_from_name(const std::string& name) {
   return JobState::kFailed;
 }
 
-std::optional<ErrorCode> error_from_name(const std::string& name) {
-  if (name.empty()) return std::nullopt;
-  for (int code = 0; code <= static_cast<int>(ErrorCode::kDatabase); ++code) {
-    if (error_name(static_cast<ErrorCode>(code)) == name) return static_cast<ErrorCode>(code);
-  }
-  return ErrorCode::kInternal;
-}
-
 StoredJob read_row(const Statement& row) {
   StoredJob job;
   int column = 0;
@@ -48,7 +41,7 @@ StoredJob read_row(const Statement& row) {
   status.request.part_id = text();
   status.request.recipe = text();
   status.state = state_from_name(text());
-  status.error = error_from_name(text());
+  if (const std::string name = text(); !name.empty()) status.error = error_from_name(name);
   status.error_message = text();
   status.acknowledged = integer() != 0;
   status.slices_done = static_cast<int>(integer());
@@ -96,6 +89,8 @@ struct JobStore::Impl {
   explicit Impl(const std::filesystem::path& file) : database(with_folder(file)) {}
 
   void count_start() {
+    const MutexLock lock(mutex);
+    prepare_job_schema(database);
     Transaction transaction(database);
     database.execute("UPDATE starts SET epoch = epoch + 1");
     Statement(database,
@@ -108,9 +103,11 @@ struct JobStore::Impl {
         .run();
     epoch = scalar(database, "SELECT epoch FROM starts");
     transaction.commit();
+    // From here on every job that is not acknowledged has ended, until one is accepted.
+    waiting = static_cast<int>(scalar(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0"));
   }
 
-  [[nodiscard]] StoredJob find_locked(const JobKey& key) const {
+  [[nodiscard]] StoredJob find_locked(const JobKey& key) const FVD_REQUIRES(mutex) {
     const auto* id = std::get_if<std::string>(&key);
     Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
                                             : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE seq = ?");
@@ -123,7 +120,7 @@ struct JobStore::Impl {
     return read_row(query);
   }
 
-  [[nodiscard]] std::optional<JobStatus> find_repeated_locked(const JobRequest& request) const {
+  [[nodiscard]] std::optional<JobStatus> find_repeated_locked(const JobRequest& request) const FVD_REQUIRES(mutex) {
     Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE seq = ?");
     query.bind(request.seq);
     auto known = first_status(query);
@@ -145,31 +142,25 @@ struct JobStore::Impl {
     return known;
   }
 
-  [[nodiscard]] int waiting_locked() const {
-    Statement query(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0 AND state <> ?");
-    query.bind(job_state_name(JobState::kProcessing));
-    return query.step() ? static_cast<int>(query.integer(0)) : 0;
-  }
-
-  mutable std::mutex mutex;
-  Database database;  // guarded by mutex
-  std::int64_t epoch = 0;
+  mutable Mutex mutex;
+  Database database FVD_GUARDED_BY(mutex);
+  std::int64_t epoch = 0;       // set before the store is used
+  std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
 
 JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) {
-  prepare_job_schema(impl_->database);
   impl_->count_start();
 }
 
 JobStore::~JobStore() = default;
 
 std::optional<JobStatus> JobStore::find_repeated(const JobRequest& request) const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   return impl_->find_repeated_locked(request);
 }
 
 JobStatus JobStore::accept(const JobRequest& request) {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   Transaction transaction(impl_->database);
   if (const auto known = impl_->find_repeated_locked(request)) {
     throw Error(ErrorCode::kSeqConflict,
@@ -195,8 +186,9 @@ JobStatus JobStore::accept(const JobRequest& request) {
 
 void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json) {
   const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   Transaction transaction(impl_->database);
+  const bool was_running = impl_->find_locked(ended.job_id).status.state == JobState::kProcessing;
   Statement(impl_->database,
             "UPDATE jobs SET state = ?, error = ?, error_message = ?, slices_done = ?, slices_planned = ?, "
             "frames_expected = ?, frames_ok = ?, frames_incomplete = ?, frames_missing = ?, frames_stale = ?, "
@@ -217,44 +209,42 @@ void JobStore::finish(const JobStatus& ended, const std::string& result_dir, con
       .bind(result_json)
       .bind(ended.job_id)
       .run();
-  if (sqlite3_changes(impl_->database.handle()) == 0) {
-    throw Error(ErrorCode::kUnknownJob, "no job " + key_text(ended.job_id) + " is known");
-  }
   transaction.commit();
+  if (was_running) ++impl_->waiting;
 }
 
 StoredJob JobStore::find(const JobKey& key) const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   return impl_->find_locked(key);
 }
 
 std::optional<JobStatus> JobStore::latest() const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
   return first_status(query);
 }
 
 std::optional<JobStatus> JobStore::next_unacknowledged() const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   Statement query(impl_->database,
                   "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE acknowledged = 0 AND state <> ? ORDER BY number LIMIT 1");
   query.bind(job_state_name(JobState::kProcessing));
   return first_status(query);
 }
 
-int JobStore::unacknowledged_count() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->waiting_locked();
-}
+int JobStore::unacknowledged_count() const noexcept { return impl_->waiting; }
 
 int JobStore::acknowledge(const JobKey& key) {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   const JobStatus job = impl_->find_locked(key).status;
   if (job.state == JobState::kProcessing) {
     throw Error(ErrorCode::kBusy, "job " + job.job_id + " is still running; acknowledge it when it has ended");
   }
-  Statement(impl_->database, "UPDATE jobs SET acknowledged = 1 WHERE job_id = ?").bind(job.job_id).run();
-  return impl_->waiting_locked();
+  if (!job.acknowledged) {
+    Statement(impl_->database, "UPDATE jobs SET acknowledged = 1 WHERE job_id = ?").bind(job.job_id).run();
+    --impl_->waiting;
+  }
+  return impl_->waiting;
 }
 
 std::int64_t JobStore::epoch() const noexcept { return impl_->epoch; }

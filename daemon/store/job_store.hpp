@@ -52,9 +52,10 @@ class JobStore {
   /// The job accepted last.
   [[nodiscard]] std::optional<JobStatus> latest() const;
 
-  /// The oldest ended job that was not acknowledged, and how many there are.
+  /// The oldest ended job that was not acknowledged.
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const;
-  [[nodiscard]] int unacknowledged_count() const;
+  /// How many there are. Kept in memory: reads no database and waits for nobody.
+  [[nodiscard]] int unacknowledged_count() const noexcept;
   /// Returns how many remain; repeating it changes nothing. Throws Error kUnknownJob, kBusy if the job has not ended.
   int acknowledge(const JobKey& key);
 

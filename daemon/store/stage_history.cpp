@@ -112,7 +112,7 @@ void StageHistory::move_aside(const std::string& why) {
 }
 
 void StageHistory::add(FeedbackSource feedback, const StepLog& log) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (history_ && history_->state().feedback != feedback) {
     move_aside("the stage has another kind of feedback now");
     history_.reset();
@@ -132,7 +132,7 @@ void StageHistory::add(FeedbackSource feedback, const StepLog& log) {
 }
 
 std::optional<StepHistorySummary> StageHistory::summary() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return history_ ? std::optional(history_->summary()) : std::nullopt;
 }
 

@@ -3,10 +3,10 @@
 /// The stage's errors over all scans, kept in a file so that years of them can be looked at.
 
 #include <filesystem>
-#include <mutex>
 #include <optional>
 #include <string>
 
+#include "core/base/mutex.hpp"
 #include "core/stage/step_history.hpp"
 
 namespace fvd {
@@ -32,8 +32,8 @@ class StageHistory {
   void move_aside(const std::string& why);
 
   const std::filesystem::path file_;
-  mutable std::mutex mutex_;
-  std::optional<StepHistory> history_;
+  mutable Mutex mutex_;
+  std::optional<StepHistory> history_ FVD_GUARDED_BY(mutex_);
 };
 
 }  // namespace fvd

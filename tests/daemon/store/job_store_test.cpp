@@ -1,5 +1,6 @@
 #include "daemon/store/job_store.hpp"
 
+#include <chrono>
 #include <set>
 #include <string>
 #include <thread>
@@ -8,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/store/database.hpp"
 #include "tests/daemon/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -149,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Ended, EveryJobState,
                          ::testing::Values(JobState::kCompleted, JobState::kAborted, JobState::kFailed));
 
 TEST_F(AJobStore, KeepsEveryErrorCode) {
-  for (int code = 0; code <= static_cast<int>(ErrorCode::kDatabase); ++code) {
+  for (int code = 0; code <= static_cast<int>(kLastErrorCode); ++code) {
     JobStatus job = store_->accept(request(code + 1));
     job.error = static_cast<ErrorCode>(code);
     job.state = JobState::kFailed;
@@ -182,6 +184,30 @@ TEST_F(AJobStore, HandsOutUnacknowledgedJobsOldestFirst) {
   EXPECT_EQ(store_->next_unacknowledged()->job_id, second.job_id);
   EXPECT_EQ(store_->acknowledge(std::int64_t{5}), 0);
   EXPECT_FALSE(store_->next_unacknowledged());
+}
+
+TEST_F(AJobStore, CountsEndedJobsOnceHoweverOftenTheyEnd) {
+  const JobStatus job = store_->accept(request(1));
+  (void)store_->accept(request(2));
+  finish(job, JobState::kFailed);
+  finish(job, JobState::kCompleted);
+  EXPECT_EQ(store_->unacknowledged_count(), 1);
+  reopen();
+  EXPECT_EQ(store_->unacknowledged_count(), 2) << "the one that was running was ended";
+}
+
+TEST_F(AJobStore, CountsAHundredThousandResultsWithoutReadingThem) {
+  store_.reset();
+  Database(file_).execute(
+      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 100000) "
+      "INSERT INTO jobs (job_id, seq, part_id, recipe, state) SELECT 'job-' || i, i, 'p', 'r', 'completed' FROM n");
+  store_ = std::make_unique<JobStore>(file_);
+
+  const auto begin = std::chrono::steady_clock::now();
+  for (int call = 0; call < 1000; ++call) EXPECT_EQ(store_->unacknowledged_count(), 100000);
+  // Counting the rows takes milliseconds a call.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  EXPECT_EQ(store_->acknowledge(std::int64_t{500}), 99999);
 }
 
 TEST_F(AJobStore, RefusesToAcknowledgeARunningJob) {
