@@ -1,21 +1,35 @@
-// The kernels' one source. Included inside a namespace of its own by one file a target, never by anything else.
-//
-// Loops without branches over plain arrays: the shape g++ turns into vector code. Look at the code that runs (objdump),
-// not at the source: a conditional too many, and the loop is scalar.
+#pragma once
 
-// The first is what the others are made of.
+// The kernels' one source: all fragments and the table of their functions. One file a target includes it, once, after
+// it has defined
+//   FVD_KERNEL_NAME       what FVD_FORCE_KERNEL calls it
+//   FVD_KERNEL_NAMESPACE  where its functions live, so that the four compilations do not meet in the linker
+//   FVD_KERNEL_AVX2       if AVX2 may be used; the file has set it as its target
+//   FVD_KERNEL_AVX512     if AVX-512 may be used as well, where it pays; the target is set here
+//
+// A fragment includes what it needs and opens the namespace itself. Its functions are loops without branches over plain
+// arrays: the shape g++ turns into vector code, which a conditional too many undoes. The test kernels_are_vector_code
+// looks at the instructions.
+
+// The order is the target's: what goes over slices is compiled for AVX2 in any case, for it loses by AVX-512 on
+// processors that halve 512-bit instructions, and what makes the map gains a tenth by it.
 // clang-format off
-#include "core/focus/kernels/kernel_vectors-inl.hpp"
+#include "core/focus/kernels/focus_kernels_common.hpp"
 #include "core/focus/kernels/kernel_operators-inl.hpp"
 #include "core/focus/kernels/kernel_windows-inl.hpp"
 #include "core/focus/kernels/kernel_update-inl.hpp"
 #include "core/focus/kernels/kernel_noise-inl.hpp"
-#if defined(FVD_KERNEL_AVX512)  // what makes the map gains a tenth by it; what goes over slices loses as much
+#if defined(FVD_KERNEL_AVX512) && defined(__clang__)
+#pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx2,avx512f,avx512bw,avx512dq,avx512vl"))), apply_to = function)
+#elif defined(FVD_KERNEL_AVX512)
 #pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,prefer-vector-width=512")
 #endif
 #include "core/focus/kernels/kernel_fit-inl.hpp"
 #include "core/focus/kernels/kernel_neighbours-inl.hpp"
 // clang-format on
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
 
 constexpr FocusKernels kKernels{
     .name = FVD_KERNEL_NAME,
@@ -39,3 +53,5 @@ constexpr FocusKernels kKernels{
     .raise_amplitudes = raise_amplitudes,
     .finish_sigma = finish_sigma,
 };
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE

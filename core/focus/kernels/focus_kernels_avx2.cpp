@@ -1,14 +1,18 @@
+#define FVD_KERNEL_NAME "avx2"
+#define FVD_KERNEL_NAMESPACE kernels_avx2
+#define FVD_KERNEL_AVX2
 #include "core/focus/kernels/focus_kernels_common.hpp"
 
+// After the standard library's headers and before the kernels: see focus_kernels_common.hpp.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
 #pragma GCC target("avx2")
-
-namespace fvd::kernels_avx2 {
-
-#define FVD_KERNEL_NAME "avx2"
-#define FVD_KERNEL_AVX2
+#endif
 #include "core/focus/kernels/focus_kernels-inl.hpp"
-
-}  // namespace fvd::kernels_avx2
+#if defined(__clang__)
+#pragma clang attribute pop
+#endif
 
 namespace fvd {
 

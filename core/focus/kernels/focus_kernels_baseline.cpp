@@ -1,11 +1,7 @@
-#include "core/focus/kernels/focus_kernels_common.hpp"
-
-namespace fvd::kernels_baseline {
-
 #define FVD_KERNEL_NAME "baseline"
+#define FVD_KERNEL_NAMESPACE kernels_baseline
 #include "core/focus/kernels/focus_kernels-inl.hpp"
-
-}  // namespace fvd::kernels_baseline
+#include "core/focus/kernels/focus_kernels_common.hpp"
 
 namespace fvd {
 

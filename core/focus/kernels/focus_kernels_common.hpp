@@ -1,7 +1,11 @@
 #pragma once
 
 /// What every compilation of the kernels includes before its target is set: nothing of the standard library may be
-/// compiled for a processor that the rest of the program does not need.
+/// compiled for a processor that the rest of the program does not need. The intrinsics carry targets of their own.
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #include <cmath>
 #include <cstddef>
@@ -12,6 +16,13 @@
 #include "core/focus/kernels/five_sample_fit.hpp"
 #include "core/focus/kernels/focus_kernels.hpp"
 #include "core/surface/mask_reason.hpp"
+
+/// Name and namespace of one compilation, defined by its file before it includes anything. A fragment that is compiled
+/// alone, by a check or an editor, is the baseline's.
+#ifndef FVD_KERNEL_NAMESPACE
+#define FVD_KERNEL_NAME "baseline"
+#define FVD_KERNEL_NAMESPACE kernels_baseline
+#endif
 
 /// Before a loop: no iteration reads what another writes. g++ 12 checks many pointers against each other otherwise, and
 /// then gives the vector code up.

@@ -1,11 +1,7 @@
-#include "core/focus/kernels/focus_kernels_common.hpp"
-
-namespace fvd::kernels_scalar {
-
 #define FVD_KERNEL_NAME "scalar"
+#define FVD_KERNEL_NAMESPACE kernels_scalar
 #include "core/focus/kernels/focus_kernels-inl.hpp"
-
-}  // namespace fvd::kernels_scalar
+#include "core/focus/kernels/focus_kernels_common.hpp"
 
 namespace fvd {
 

@@ -1,4 +1,15 @@
-// From condensed curves to heights. Part of focus_kernels-inl.hpp.
+#pragma once
+
+// From condensed curves to heights.
+//
+// Given: a row of the curves' state, the table of what each sample's number says of z, the noise. Left: height,
+// variance, prominence, mask of each point. The formula is in five_sample_fit.hpp; here its sums, Cramer's rule and
+// their derivatives are spread over short loops, see kFitPixels, each of which takes one stage for all the pixels.
+
+#include "core/focus/kernels/focus_kernels_common.hpp"
+#include "core/focus/kernels/kernel_vectors-inl.hpp"
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
 
 /// The fit goes over so many pixels at once, in short loops one after the other: one long loop would wait for its own
 /// divisions and roots, of short ones the processor has several passes under way. What they hand on stays in the
@@ -63,7 +74,6 @@ inline void decode(const CurveRow& row, int first, int count, FitPixels& at) {
 }
 
 using Four = float __attribute__((vector_size(16), may_alias));
-using FourPlaces = std::int32_t __attribute__((vector_size(16)));
 
 /// Number n of each of four rows goes to columns[n].
 inline __attribute__((always_inline)) void transpose(const float* row0, const float* row1, const float* row2,
@@ -74,18 +84,14 @@ inline __attribute__((always_inline)) void transpose(const float* row0, const fl
   load(row1, rows[1]);
   load(row2, rows[2]);
   load(row3, rows[3]);
-  constexpr FourPlaces kLow{0, 4, 1, 5};
-  constexpr FourPlaces kHigh{2, 6, 3, 7};
-  constexpr FourPlaces kFirst{0, 1, 4, 5};
-  constexpr FourPlaces kSecond{2, 3, 6, 7};
-  const Four low01 = __builtin_shuffle(rows[0], rows[1], kLow);
-  const Four high01 = __builtin_shuffle(rows[0], rows[1], kHigh);
-  const Four low23 = __builtin_shuffle(rows[2], rows[3], kLow);
-  const Four high23 = __builtin_shuffle(rows[2], rows[3], kHigh);
-  store(__builtin_shuffle(low01, low23, kFirst), column0);
-  store(__builtin_shuffle(low01, low23, kSecond), column1);
-  store(__builtin_shuffle(high01, high23, kFirst), column2);
-  store(__builtin_shuffle(high01, high23, kSecond), column3);
+  const Four low01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+  const Four high01 = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+  const Four low23 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+  const Four high23 = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+  store(__builtin_shufflevector(low01, low23, 0, 1, 4, 5), column0);
+  store(__builtin_shufflevector(low01, low23, 2, 3, 6, 7), column1);
+  store(__builtin_shufflevector(high01, high23, 0, 1, 4, 5), column2);
+  store(__builtin_shufflevector(high01, high23, 2, 3, 6, 7), column3);
 }
 
 /// For 4 pixels from x on.
@@ -365,3 +371,5 @@ void fit_five(const CurveRow& row, HeightTable table, const float* noise, const 
     for (int x = 0; x < count; ++x) mask[x] = static_cast<std::uint8_t>(at.mask[x]);
   }
 }
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE

@@ -1,4 +1,14 @@
-// What points say of those near them. Part of focus_kernels-inl.hpp.
+#pragma once
+
+// What points say of those near them.
+//
+// Given: rows of peaks, or of heights with those `reach` above and below. Left: the largest rise of a column so far,
+// and sigma with the slope's share in it. A missing neighbour (NaN) is a selection, not a branch: both sides are
+// computed.
+
+#include "core/focus/kernels/focus_kernels_common.hpp"
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
 
 void raise_amplitudes(const std::uint16_t* peak, const std::uint16_t* minimum, bool root_code, int width,
                       std::uint32_t* highest) noexcept {
@@ -27,3 +37,5 @@ void finish_sigma(const float* height, const float* upper, const float* lower, i
   }
   for (int x = end; x < width; ++x) sigma[x] = std::sqrt(sigma[x]);
 }
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE

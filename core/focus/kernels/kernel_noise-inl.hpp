@@ -1,4 +1,14 @@
-// What an image's second differences say of its noise. Part of focus_kernels-inl.hpp.
+#pragma once
+
+// What an image's second differences say of its noise.
+//
+// Given: three neighbouring rows. Left: the sum over the row of the sizes of Immerkaer's operator. Partial sums are as
+// narrow as they can be without overflow, for the narrower the lane, the more of them are in a register.
+
+#include "core/focus/kernels/focus_kernels_common.hpp"
+#include "core/focus/kernels/kernel_vectors-inl.hpp"
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
 
 template <typename Pixel, typename Wide>
 inline __attribute__((always_inline)) std::uint64_t noise(const Pixel* above, const Pixel* row, const Pixel* below,
@@ -58,3 +68,5 @@ std::uint64_t noise_u16(const std::uint16_t* above, const std::uint16_t* row, co
                         int width) noexcept {
   return noise<std::uint16_t, std::int32_t>(above, row, below, width);
 }
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE

@@ -1,4 +1,16 @@
-// How sharp a pixel is. Part of focus_kernels-inl.hpp.
+#pragma once
+
+// How sharp a pixel is.
+//
+// Given: the pixel's row and those `distance` above and below. Left: the operator's value of each pixel but those
+// within `distance` of an end. Plain loops in 32 bits, of which g++ makes vector code; the 8-bit Laplacian, which is
+// the one that is used by default, in 16-bit lanes and at once with the column sums, so that its values are never
+// stored to be loaded again.
+
+#include "core/focus/kernels/focus_kernels_common.hpp"
+#include "core/focus/kernels/kernel_vectors-inl.hpp"
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
 
 void laplacian_u16(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                    int distance, std::uint32_t* out) noexcept {
@@ -34,11 +46,6 @@ void tenengrad_u8(const std::uint8_t* above, const std::uint8_t* row, const std:
 void tenengrad_u16(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                    int distance, int shift, std::uint32_t* out) noexcept {
   tenengrad(above, row, below, width, distance, 3, shift, out);
-}
-
-/// v / 2^shift rounded, without overflow at the top of the range. shift >= 1.
-inline std::uint16_t rounded_shift(std::uint16_t value, int shift) {
-  return static_cast<std::uint16_t>((value >> shift) + ((value >> (shift - 1)) & 1));
 }
 
 // Laplacian and column sums in one pass. The differences lie within -510..510, so 16-bit lanes do.
@@ -84,3 +91,5 @@ void enter_laplacian_u8(const std::uint8_t* above, const std::uint8_t* row, cons
     scaled[x] = shift > 0 ? rounded_shift(columns[x], shift) : columns[x];
   }
 }
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE

@@ -1,4 +1,16 @@
-// The condensed curve takes samples in. Part of focus_kernels-inl.hpp.
+#pragma once
+
+// The condensed curve takes samples in.
+//
+// Given: a row of the curves' state and successive samples of it. Left: the state after these samples, as if they had
+// come one by one. 16 columns at a time, all samples after each other, so that the state is loaded and stored once;
+// that memory traffic is what the speed hangs on. Where no lane has a new peak, half of the work is passed over by
+// the only branch.
+
+#include "core/focus/kernels/focus_kernels_common.hpp"
+#include "core/focus/kernels/kernel_vectors-inl.hpp"
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
 
 template <typename Pixel>
 inline __attribute__((always_inline)) Pixel maximum(const Pixel* row, int width) {
@@ -28,8 +40,7 @@ void widen_u8(const std::uint8_t* values, std::ptrdiff_t pitch_bytes, int width,
 /// Whether all lanes are set; each is 0 or -1.
 inline __attribute__((always_inline)) bool all(const CodeMask& mask) {
 #if defined(FVD_KERNEL_AVX2)
-  using Bytes = char __attribute__((vector_size(32)));
-  return __builtin_ia32_pmovmskb256(reinterpret_cast<const Bytes&>(mask)) == -1;
+  return _mm256_movemask_epi8(reinterpret_cast<const __m256i&>(mask)) == -1;
 #else
   std::uint64_t words[4];
   __builtin_memcpy(words, &mask, sizeof words);
@@ -41,10 +52,9 @@ using FlagMask = std::int8_t __attribute__((vector_size(16), may_alias));
 
 inline __attribute__((always_inline)) void narrow_mask(const CodeMask& wide, FlagMask& narrow) {
 #if defined(FVD_KERNEL_AVX2)
-  using Half = short __attribute__((vector_size(16), may_alias));
-  Half halves[2];
+  __m128i halves[2];
   __builtin_memcpy(halves, &wide, sizeof halves);
-  const auto packed = __builtin_ia32_packsswb128(halves[0], halves[1]);
+  const __m128i packed = _mm_packs_epi16(halves[0], halves[1]);
   narrow = reinterpret_cast<const FlagMask&>(packed);
 #else
   narrow = __builtin_convertvector(wide, FlagMask);
@@ -112,7 +122,7 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
         texture = stays ? texture : pixels;
       }
     }
-    ++age;
+    age += 1;
     previous2 = previous;
     previous = value;
   }
@@ -159,3 +169,5 @@ void update_u16(const CurveRow& row, const Sample<std::uint16_t>* samples, int c
                 int first_index) noexcept {
   update<std::uint16_t, Codes>(row, samples, count, texture, width, first_index);
 }
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE

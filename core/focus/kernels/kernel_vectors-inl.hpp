@@ -1,12 +1,21 @@
-// The compiler's own vectors, where loops over plain arrays do not do, and what to fetch. Part of
-// focus_kernels-inl.hpp.
+#pragma once
 
-/// 16 pixels at once, in the compiler's own vectors, for loops that g++ makes poor vector code of by itself.
+// 16 pixels at once, and fetching ahead: what the other fragments are made of where a loop over plain arrays does not
+// do.
+//
+// Given: pointers to at least 16 values, of any alignment. Left: vectors of 16 lanes, by reference, for a vector wider
+// than the target's own is not to be returned. Lanes are 16 bits wide, as codes are; what is 8 bits wide is widened
+// when it is loaded. Written in the vectors that g++ and clang share, which work on every target, in two halves where
+// its registers are narrower; as intrinsics only where g++ 12 makes more instructions than one of the operator.
+
+#include "core/focus/kernels/focus_kernels_common.hpp"
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
+
 using Codes = std::uint16_t __attribute__((vector_size(32), may_alias));
 using Flags = std::uint8_t __attribute__((vector_size(16), may_alias));
 using CodeMask = std::int16_t __attribute__((vector_size(32), may_alias));
 
-// By reference: a vector wider than the target's own is not to be returned.
 template <typename Vector, typename T>
 inline __attribute__((always_inline)) void load(const T* from, Vector& vector) {
   __builtin_memcpy(&vector, from, sizeof vector);
@@ -29,8 +38,7 @@ inline __attribute__((always_inline)) void load_wide(const std::uint8_t* from, C
   Flags narrow;
   load(from, narrow);
 #if defined(FVD_KERNEL_AVX2)  // g++ 12 converts in two halves
-  using Bytes = char __attribute__((vector_size(16)));
-  const auto wide = __builtin_ia32_pmovzxbw256(reinterpret_cast<const Bytes&>(narrow));
+  const __m256i wide = _mm256_cvtepu8_epi16(reinterpret_cast<const __m128i&>(narrow));
   vector = reinterpret_cast<const Codes&>(wide);
 #else
   vector = __builtin_convertvector(narrow, Codes);
@@ -40,8 +48,7 @@ inline __attribute__((always_inline)) void load_wide(const std::uint8_t* from, C
 /// sum += |difference|, the difference taken as signed.
 inline __attribute__((always_inline)) void add_size(const Codes& difference, Codes& sum) {
 #if defined(FVD_KERNEL_AVX2)
-  using Words = short __attribute__((vector_size(32)));
-  const auto size = __builtin_ia32_pabsw256(reinterpret_cast<const Words&>(difference));
+  const __m256i size = _mm256_abs_epi16(reinterpret_cast<const __m256i&>(difference));
 #else
   const CodeMask signs = reinterpret_cast<const CodeMask&>(difference) >> 15;
   const CodeMask size = (reinterpret_cast<const CodeMask&>(difference) ^ signs) - signs;
@@ -52,12 +59,16 @@ inline __attribute__((always_inline)) void add_size(const Codes& difference, Cod
 /// value / 2 rounded up.
 inline __attribute__((always_inline)) void halve(Codes& value) {
 #if defined(FVD_KERNEL_AVX2)
-  using Words = short __attribute__((vector_size(32)));
-  const auto half = __builtin_ia32_pavgw256(reinterpret_cast<const Words&>(value), Words{});
+  const __m256i half = _mm256_avg_epu16(reinterpret_cast<const __m256i&>(value), _mm256_setzero_si256());
   value = reinterpret_cast<const Codes&>(half);
 #else
   value = (value >> 1) + (value & 1);
 #endif
+}
+
+/// v / 2^shift rounded, without overflow at the top of the range. shift >= 1.
+inline std::uint16_t rounded_shift(std::uint16_t value, int shift) {
+  return static_cast<std::uint16_t>((value >> shift) + ((value >> (shift - 1)) & 1));
 }
 
 /// What lies `pitch_bytes` behind `from`, so that it is there when its turn comes: a row's fields are far apart, and
@@ -75,3 +86,5 @@ inline __attribute__((always_inline)) void fetch(const T* from, std::ptrdiff_t p
     }
   }
 }
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE

@@ -1,4 +1,14 @@
-// From operator values to window sums and codes. Part of focus_kernels-inl.hpp.
+#pragma once
+
+// From operator values to window sums and codes.
+//
+// Given: rows of operator values or of column sums. Left: column sums moved on by a row, sums over a window of columns,
+// codes. A running sum would make every pixel wait for the one before; here a window is put together from sums over
+// powers of three, each an addition of whole rows.
+
+#include "core/focus/kernels/focus_kernels_common.hpp"
+
+namespace fvd::FVD_KERNEL_NAMESPACE {
 
 void slide_u32(std::uint32_t* columns, const std::uint32_t* entering, std::uint32_t* leaving, int width) noexcept {
   FVD_NO_ALIASING
@@ -109,3 +119,5 @@ void root_code(const std::uint32_t* sums, float gain, int width, std::uint16_t* 
     out[x] = static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
   }
 }
+
+}  // namespace fvd::FVD_KERNEL_NAMESPACE
