@@ -291,6 +291,7 @@ Handled Dispatcher::handle(std::string_view line) {
   const auto document = parse_strict_json(line, problems, JsonComments::kRefused);
   if (!document) {
     handled.reply = to_line(failure(nullptr, json_rpc::kParseError, "parse error: " + problems.front().message));
+    handled.is_parse_error = true;
     return handled;
   }
   const auto reply = document->is_array() ? handle_batch(*document) : handle_request(*document, false, handled);
@@ -445,6 +446,17 @@ std::string Dispatcher::too_long() {
   return to_line(
       failure(nullptr, json_rpc::kInvalidRequest,
               "the line is longer than " + std::to_string(kMaxLineBytes) + " bytes; the connection is closed"));
+}
+
+std::string Dispatcher::foreign_protocol() {
+  return to_line(
+      failure(nullptr, json_rpc::kInvalidRequest,
+              "this port takes JSON-RPC, one JSON text a line, no HTTP and no TLS; the connection is closed"));
+}
+
+std::string Dispatcher::no_json() {
+  return to_line(failure(nullptr, json_rpc::kParseError,
+                         "parse error: too many lines in a row are no JSON; the connection is closed"));
 }
 
 std::string Dispatcher::too_many_connections() {

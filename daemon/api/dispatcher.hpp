@@ -31,6 +31,7 @@ struct WaitingRequest {
 struct Handled {
   std::optional<std::string> reply;       ///< one line without terminator; absent = nothing to say
   std::optional<WaitingRequest> waiting;  ///< the answer comes later, through Dispatcher::resume
+  bool is_parse_error = false;            ///< the line was no JSON
 };
 
 /// context: one thread at a time.
@@ -49,6 +50,10 @@ class Dispatcher {
 
   /// The reply to a line that is too long to be read.
   [[nodiscard]] static std::string too_long();
+  /// The reply to a line of another protocol.
+  [[nodiscard]] static std::string foreign_protocol();
+  /// The reply to the last of too many lines that are no JSON.
+  [[nodiscard]] static std::string no_json();
   /// The reply to a connection too many.
   [[nodiscard]] static std::string too_many_connections();
 

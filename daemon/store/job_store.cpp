@@ -148,9 +148,7 @@ struct JobStore::Impl {
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
 
-JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) {
-  impl_->count_start();
-}
+JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) { impl_->count_start(); }
 
 JobStore::~JobStore() = default;
 

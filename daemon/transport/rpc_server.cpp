@@ -22,6 +22,7 @@
 
 #include "core/base/error.hpp"
 #include "daemon/api/dispatcher.hpp"
+#include "daemon/transport/foreign_protocol.hpp"
 
 namespace fvd {
 
@@ -33,6 +34,8 @@ namespace {
 
 /// A client that lets this much pile up does not read; it is dropped rather than the memory filled.
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
+/// Whoever sends so many lines that are no JSON speaks another language; what it sends next may be JSON by accident.
+constexpr int kMaxParseErrorsInARow = 3;
 /// A refused client has so long to read why.
 constexpr std::chrono::seconds kFarewell{1};
 
@@ -178,8 +181,11 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
       begin = end + 1;
       if (line.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
       if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+      if (begins_foreign_protocol(line)) return refuse_with(Dispatcher::foreign_protocol());
       watch_idle();
       Handled handled = server_.dispatcher.handle(line);
+      parse_errors_in_a_row_ = handled.is_parse_error ? parse_errors_in_a_row_ + 1 : 0;
+      if (parse_errors_in_a_row_ == kMaxParseErrorsInARow) return refuse_with(Dispatcher::no_json());
       if (handled.reply) send(std::move(*handled.reply));
       if (handled.waiting) begin_wait(std::move(*handled.waiting));
     }
@@ -261,6 +267,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;
   bool refused_ = false;
+  int parse_errors_in_a_row_ = 0;
 };
 
 void RpcServer::Impl::accept() {

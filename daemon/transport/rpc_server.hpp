@@ -11,8 +11,9 @@
 namespace fvd {
 
 /// Lines end with LF, CR, CRLF or NUL; replies end with LF. Requests of one connection are answered in their order.
-/// A line over 64 KiB, a connection too many, one that is silent for idle_timeout_s, or one that does not take its
-/// replies is closed. Owns one network thread; nothing a client does blocks it.
+/// A connection is closed after a line over 64 KiB, one that begins as HTTP or TLS does (nothing behind it is read), or
+/// the third line in a row that is no JSON; also one too many, one that is silent for idle_timeout_s, and one that does
+/// not take its replies. Owns one network thread; nothing a client does blocks it.
 class RpcServer {
  public:
   /// Listens, and writes <runtime_dir>/rpc.json {"address","port","pid"}. Becomes the machine's change listener.

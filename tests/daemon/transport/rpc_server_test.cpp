@@ -73,6 +73,47 @@ TEST_F(AnRpcServer, RefusesALineOver64KiBAndCloses) {
   EXPECT_TRUE(answers(other));
 }
 
+/// What `curl -X POST -H 'Content-Type: text/plain' --data ...` sends, and so any web page.
+std::string http_post(const std::string& first_line, const std::string& body) {
+  return first_line + "\r\nHost: 127.0.0.1:4711\r\nUser-Agent: curl/7.88.1\r\nAccept: */*\r\n" +
+         "Content-Type: text/plain\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
+TEST_F(AnRpcServer, ExecutesNothingThatAWebPageSends) {
+  serve(config());
+  const std::string move = R"({"jsonrpc":"2.0","id":1,"method":"stage.move","params":{"z_um":100}})"
+                           "\n";
+  const std::string start = R"({"jsonrpc":"2.0","id":2,"method":"job.start","params":[1,"p"]})"
+                            "\n";
+  for (const char* first_line : {"POST / HTTP/1.1", "GET / HTTP/1.1", "OPTIONS * HTTP/1.1", "made-up / HTTP/1.1",
+                                 "PRI * HTTP/2.0", "\x16\x03\x01", "whatever comes, three lines are no JSON"}) {
+    LineClient page(server_->port());
+    page.send(http_post(first_line, move + start));
+    EXPECT_TRUE(page.closes()) << first_line;
+  }
+  LineClient polite_first(server_->port());
+  ASSERT_TRUE(answers(polite_first));
+  polite_first.send(http_post("POST / HTTP/1.1", move + start));
+  EXPECT_TRUE(polite_first.closes());
+
+  LineClient other(server_->port());
+  EXPECT_TRUE(answers(other)) << "all that was sent before is done with";
+  EXPECT_EQ(service_.task, nullptr);
+  EXPECT_EQ(service_.starts, 0);
+}
+
+TEST_F(AnRpcServer, ClosesAfterThreeParseErrorsInARowAndSaysWhy) {
+  serve(config());
+  LineClient client(server_->port());
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(json::parse(client.ask("nonsense"))["error"]["code"], -32700);
+  EXPECT_TRUE(answers(client)) << "a good line in between counts anew";
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(json::parse(client.ask("nonsense"))["error"]["code"], -32700);
+  const json last = json::parse(client.ask("nonsense"));
+  EXPECT_EQ(last["error"]["code"], -32700);
+  EXPECT_NE(last["error"]["message"].get<std::string>().find("closed"), std::string::npos);
+  EXPECT_TRUE(client.closes());
+}
+
 TEST_F(AnRpcServer, ClosesASilentConnectionAlsoWithHalfALine) {
   serve(config(4, 1));
   LineClient half(server_->port());
