@@ -20,6 +20,8 @@ using std::chrono::milliseconds;
 
 /// How long a frame is waited for before the stage is looked at.
 constexpr milliseconds kLook{20};
+/// So many steps behind its way the scan has lost frames: half a step of phase, and one that the ends may cost.
+constexpr double kFramesBehind = 1.5;
 /// A queue that takes no slice for so long has no room in time.
 constexpr std::chrono::seconds kComputePatience{10};
 
@@ -108,6 +110,7 @@ class SliceSorter {
       book_lost(static_cast<int>(began_inside && ends_inside ? skipped : std::clamp(std::floor(room), 0.0, skipped)),
                 now);
     }
+    if (place != Place::kBefore) book_missed_places(way_um, place == Place::kAfter, !gap, now);
     underruns_ = now.underruns;
     last_id_ = id;
     last_way_um_ = way_um;
@@ -133,6 +136,30 @@ class SliceSorter {
   }
 
  private:
+  /// A camera that exposes too seldom counts on without a gap: what it left out shows in the positions alone. One frame
+  /// more or less at the ends is no loss, as frames lie anywhere between two targets.
+  void book_missed_places(double way_um, bool after, bool ids_follow, Circumstances now) {
+    const double step_um = plan_.step.value;
+    const double last_target_um = (plan_.slices - 1) * step_um;
+    const bool began_inside = last_id_ && last_way_um_ >= -0.5 * step_um;
+    int missed = 0;
+    if (ids_follow && began_inside && way_um - last_way_um_ >= 1.5 * step_um) {
+      const double leap = (std::min(way_um, last_target_um + step_um) - last_way_um_) / step_um;
+      missed = std::max(0, static_cast<int>(std::lround(leap)) - 1);
+    }
+    const int open = plan_.slices - taken_ - lost_;
+    if (after) {
+      if (open - missed > 1 || places_missed_ + missed > 0) missed = open;
+    } else {
+      const double behind = way_um / step_um - (taken_ + lost_ + missed);  // -0.5..0.5 if every frame came
+      if (behind >= kFramesBehind) missed += static_cast<int>(behind);
+      missed = std::min(missed, open - 1);  // this frame is a slice
+    }
+    if (missed <= 0) return;
+    places_missed_ += missed;
+    book_lost(missed, now);
+  }
+
   void book_lost(int count, Circumstances now) {
     for (int i = 0; i < count; ++i) {
       if (now.incomplete > 0) {
@@ -154,6 +181,7 @@ class SliceSorter {
   std::uint64_t underruns_ = 0;
   int taken_ = 0;
   int lost_ = 0;
+  int places_missed_ = 0;  // of the lost: those that no gap in the ids shows
 };
 
 Error too_many_lost(const SliceSorter& sorter, const ScanPlan& plan, const FrameCounts& frames) {
@@ -161,7 +189,7 @@ Error too_many_lost(const SliceSorter& sorter, const ScanPlan& plan, const Frame
   message << sorter.lost() << " of " << plan.slices << " slices were lost in the motion (" << frames.missing
           << " missing, " << frames.incomplete << " incomplete, " << frames.underrun
           << " for want of a buffer), the recipe allows " << plan.allowed_lost_slices
-          << ": check the camera's link, use a lower scan.speed_um_per_s, or scan.mode step";
+          << ": check the camera's link and frame rate, use a lower scan.speed_um_per_s, or scan.mode step";
   return {ErrorCode::kCameraFramesLost, message.str()};
 }
 

@@ -12,8 +12,9 @@ namespace fvd {
 
 /// Frames are taken as they come; one whose position is not known yet waits for it while the next are taken. Slices are
 /// the frames exposed from half a step before the first target to half a step after the last; all others belong to
-/// the ramps. A gap in the frame ids between them is a lost slice.
-/// context: run() on one thread; stop requests from any. The stage is moved by a thread of its own meanwhile.
+/// the ramps. A gap in the frame ids between them is a lost slice, and so is a place that no frame was exposed at, but
+/// for one at the ends. context: run() on one thread; stop requests from any. The stage is moved by a thread of its own
+/// meanwhile.
 class ContinuousScan {
  public:
   /// The camera is configured with `settings` already, but triggered by software.

@@ -102,7 +102,7 @@ auto answering(Command run) {
 
 class AravisCamera final : public Camera {
  public:
-  explicit AravisCamera(const CameraConfig& config) : config_(config) {
+  AravisCamera(const CameraConfig& config, milliseconds clock_renewal) : config_(config), clock_(clock_renewal) {
     require_presence();
     GErrorSlot error;
     camera_.reset(arv_camera_new(config.address.c_str(), error.out()));
@@ -500,8 +500,9 @@ class AravisCamera final : public Camera {
   }
 
   void renew_clock_if_due() {
-    if (!latches_ || !clock_.due(HostClock::now())) return;
+    // First: until the renewal is done, the device's thread writes latches_.
     if (renewal_.valid() && renewal_.wait_for(milliseconds(0)) != std::future_status::ready) return;
+    if (!latches_ || !clock_.due(HostClock::now())) return;
     renewal_ = device_->post([this] { renew_clock(); });
   }
 
@@ -597,7 +598,7 @@ class AravisCamera final : public Camera {
   std::uint64_t ignored_packets_ = 0;  // by Aravis, up to the last good frame
 
   CameraClock clock_;
-  bool latches_ = true;  // its clock for us
+  bool latches_ = true;  // its clock for us; the renewal writes it, the caller reads it when that is done
   std::uint64_t frames_complete_ = 0;
   std::uint64_t frames_failed_ = 0;
   std::uint64_t failed_since_good_ = 0;
@@ -611,8 +612,8 @@ class AravisCamera final : public Camera {
 
 }  // namespace
 
-std::unique_ptr<Camera> open_aravis_camera(const CameraConfig& config) {
-  return std::make_unique<AravisCamera>(config);
+std::unique_ptr<Camera> open_aravis_camera(const CameraConfig& config, std::chrono::milliseconds clock_renewal) {
+  return std::make_unique<AravisCamera>(config, clock_renewal);
 }
 
 }  // namespace fvd

@@ -2,6 +2,7 @@
 
 /// A GigE Vision or USB3 Vision camera through Aravis.
 
+#include <chrono>
 #include <memory>
 
 #include "core/hw/camera.hpp"
@@ -11,6 +12,8 @@ namespace fvd {
 
 /// Opens the camera and takes control of it. Throws Error kCameraDisconnected if it does not answer or another program
 /// controls it, kCameraSettings if it refuses the packet size.
-[[nodiscard]] std::unique_ptr<Camera> open_aravis_camera(const CameraConfig& config);
+/// clock_renewal: age at which what is known of the camera's clock is renewed; tests make it short.
+[[nodiscard]] std::unique_ptr<Camera> open_aravis_camera(
+    const CameraConfig& config, std::chrono::milliseconds clock_renewal = std::chrono::seconds(5));
 
 }  // namespace fvd

@@ -69,7 +69,7 @@ std::optional<ClockPair> latch_clock(ArvDevice* device) {
 }
 
 void CameraClock::add(const ClockPair& pair) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool follows = first_ && pair.camera_ns > latest_->camera_ns && pair.host > latest_->host &&
                        std::abs(rate_between(*latest_, pair) - 1.0) <=
                            kLargestRateError + nanoseconds(pair.bound + latest_->bound) /
@@ -83,17 +83,17 @@ void CameraClock::add(const ClockPair& pair) {
 }
 
 bool CameraClock::known() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return latest_.has_value();
 }
 
 bool CameraClock::due(HostTime now) const {
-  const std::lock_guard lock(mutex_);
-  return !latest_ || now - latest_->host > kRenewAfter;
+  const MutexLock lock(mutex_);
+  return !latest_ || now - latest_->host > renew_after_;
 }
 
 std::optional<HostTime> CameraClock::to_host(std::uint64_t camera_ns) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!latest_) return std::nullopt;
   const double rate = latest_->host - first_->host >= kRateBase ? rate_between(*first_, *latest_) : 1.0;
   const auto since = static_cast<double>(static_cast<std::int64_t>(camera_ns) - latest_->camera_ns);

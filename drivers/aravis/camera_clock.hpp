@@ -2,13 +2,14 @@
 
 /// The camera's clock seen from the host's.
 
+#include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 
 #include <arv.h>
 
 #include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
 
 namespace fvd {
 
@@ -27,8 +28,8 @@ struct ClockPair {
 /// context: thread-safe.
 class CameraClock {
  public:
-  /// A pair this old should be followed by another.
-  static constexpr std::chrono::seconds kRenewAfter{5};
+  /// renew_after: a pair this old should be followed by another.
+  explicit CameraClock(std::chrono::milliseconds renew_after) : renew_after_(renew_after) {}
 
   void add(const ClockPair& pair);
   [[nodiscard]] bool known() const;
@@ -38,9 +39,10 @@ class CameraClock {
   [[nodiscard]] std::optional<HostTime> to_host(std::uint64_t camera_ns) const;
 
  private:
-  mutable std::mutex mutex_;
-  std::optional<ClockPair> first_;  // of the present rate; guarded by mutex_, as is latest_
-  std::optional<ClockPair> latest_;
+  const std::chrono::milliseconds renew_after_;
+  mutable Mutex mutex_;
+  std::optional<ClockPair> first_ FVD_GUARDED_BY(mutex_);  // of the present rate
+  std::optional<ClockPair> latest_ FVD_GUARDED_BY(mutex_);
 };
 
 }  // namespace fvd

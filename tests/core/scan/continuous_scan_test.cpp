@@ -130,7 +130,7 @@ class SweepingStage final : public Axis {
   mutable std::mutex mutex_;
 };
 
-enum class Fate { kGood, kNothing, kUnderrun, kIncomplete, kGone };
+enum class Fate { kGood, kNothing, kUnderrun, kIncomplete, kNotExposed, kGone };
 
 /// Free-running; the fate of a frame is told by the position it is exposed at. Pixels: none, only times and ids count.
 class FreeCamera final : public Camera, private FrameRecycler {
@@ -149,8 +149,8 @@ class FreeCamera final : public Camera, private FrameRecycler {
       clock_.advance_to(deadline);
       return std::nullopt;
     }
-    const auto period =
-        duration_cast<HostClock::duration>(std::chrono::duration<double>(1.0 / settings_.frame_rate_hz));
+    const auto period = duration_cast<HostClock::duration>(
+        std::chrono::duration<double>(1.0 / (settings_.frame_rate_hz * rate_factor)));
     for (;;) {
       const HostTime arrival = next_ + std::chrono::milliseconds(5);
       if (arrival > deadline) {
@@ -159,8 +159,9 @@ class FreeCamera final : public Camera, private FrameRecycler {
       }
       const HostTime start = next_;
       next_ += period;
-      const std::uint64_t id = ++id_;
       const Fate fate = fate_of(stage_.true_um(start + exposure() / 2));
+      if (fate == Fate::kNotExposed) continue;  // the camera counts on without a gap
+      const std::uint64_t id = ++id_;
       if (fate == Fate::kGone) throw Error(ErrorCode::kCameraDisconnected, "the camera was unplugged");
       clock_.advance_to(arrival);
       if (fate == Fate::kUnderrun) ++health_.underruns;
@@ -183,6 +184,8 @@ class FreeCamera final : public Camera, private FrameRecycler {
 
   /// Frames exposed within so many um of a position have that fate.
   void plan(double from_um, double to_um, Fate fate) { fates_.push_back({from_um, to_um, fate}); }
+
+  double rate_factor = 1.0;  ///< frames taken over frames asked for
 
  private:
   struct Planned {
@@ -313,6 +316,62 @@ TEST_F(AContinuousScan, CountsWhatIsLostAtTheEnds) {
   EXPECT_TRUE(report_.frames.balanced());
   EXPECT_GE(report_.frames.missing, 3U);
   EXPECT_LE(report_.frames.missing, 5U);
+}
+
+TEST_F(AContinuousScan, FailsIfTheCameraIsTooSlowWithoutAGapInItsIds) {
+  plan_.slices = 101;
+  plan_.allowed_lost_slices = 3;
+  camera_.rate_factor = 0.9;  // 91 frames come
+  test::expect_error(ErrorCode::kCameraFramesLost, {"4 of 101 slices were lost"}, [this] { run(); });
+  EXPECT_TRUE(report_.frames.balanced());
+  EXPECT_EQ(report_.frames.missing, 4U);
+}
+
+TEST_F(AContinuousScan, BooksAsManySlicesAsWerePlannedIfTheCameraIsTooSlow) {
+  plan_.slices = 101;
+  plan_.allowed_lost_slices = 20;
+  camera_.rate_factor = 0.9;
+  run();
+  EXPECT_EQ(report_.frames.expected, 101U);
+  EXPECT_NEAR(static_cast<double>(report_.frames.ok), 91.0, 1.0);
+  EXPECT_EQ(report_.frames.ok, sink_.z_um.size());
+  EXPECT_EQ(report_.frames.ok + report_.frames.missing, 101U);
+  for (std::size_t i = 0; i < report_.steps.size(); ++i) {
+    EXPECT_NEAR(report_.steps[i].index, report_.steps[i].measured_um / 2.0, 2.0) << "slices keep their place " << i;
+  }
+}
+
+TEST_F(AContinuousScan, BooksASliceThatWasNotExposed) {
+  camera_.plan(49.0, 51.0, Fate::kNotExposed);
+  test::expect_error(ErrorCode::kCameraFramesLost, {"1 of 51 slices were lost"}, [this] { run(); });
+  EXPECT_EQ(report_.frames.missing, 1U);
+}
+
+TEST_F(AContinuousScan, BooksWhatWasNotExposedAtTheEnds) {
+  camera_.plan(-3.0, 3.0, Fate::kNotExposed);
+  camera_.plan(97.0, 105.0, Fate::kNotExposed);
+  plan_.allowed_lost_slices = 10;
+  run();
+  EXPECT_TRUE(report_.frames.balanced());
+  EXPECT_EQ(report_.frames.expected, 51U);
+  EXPECT_GE(report_.frames.missing, 3U);
+  EXPECT_LE(report_.frames.missing, 5U);
+}
+
+/// Frames lie anywhere between two targets, and no clock is exact: one more or less at the ends is no loss.
+TEST_F(AContinuousScan, LosesNothingToAFrameMoreOrLessAtTheEnds) {
+  for (const double rate : {0.995, 1.0, 1.005}) {
+    for (const double start_um : {0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8}) {
+      camera_.rate_factor = rate;
+      plan_.start = Micrometers{start_um};
+      report_ = {};
+      sink_.z_um.clear();
+      run();
+      EXPECT_EQ(report_.frames.missing, 0U) << rate << " from " << start_um;
+      EXPECT_GE(sink_.z_um.size(), 50U) << rate << " from " << start_um;
+      EXPECT_LE(sink_.z_um.size(), 51U) << rate << " from " << start_um;
+    }
+  }
 }
 
 TEST_F(AContinuousScan, FailsWithoutAnyFrame) {

@@ -50,12 +50,13 @@ class AnAravisCamera : public testing::Test {
         source_, sim::GigeCameraOptions{.address = address_, .first_block_id = first_block_id});
   }
 
-  [[nodiscard]] std::unique_ptr<Camera> open(int packet_size = 1500) const {
+  [[nodiscard]] std::unique_ptr<Camera> open(int packet_size = 1500,
+                                             milliseconds clock_renewal = std::chrono::seconds(5)) const {
     CameraConfig config;
     config.address = address_;
     config.packet_socket = false;
     config.packet_size_bytes = packet_size;
-    return open_aravis_camera(config);
+    return open_aravis_camera(config, clock_renewal);
   }
 
   static CameraSettings settings() {
@@ -133,6 +134,26 @@ TEST_F(AnAravisCamera, DeliversEveryTriggeredFrameInOrder) {
     last_id = frame->id;
   }
   EXPECT_EQ(camera->health().underruns, 0U);
+}
+
+/// The device's thread renews what is known of the clock while frames are taken; the thread sanitizer watches.
+TEST_F(AnAravisCamera, RenewsItsClockWhileFramesAreTaken) {
+  serve();
+  const auto camera = open(1500, milliseconds(1));
+  CameraSettings running = settings();
+  (void)camera->configure(running);
+  running.trigger = TriggerMode::kFreeRun;
+  running.frame_rate_hz = 200.0;
+  (void)camera->configure(running);
+  HostTime last = HostTime::min();
+  for (int i = 0; i < 300; ++i) {
+    const auto frame = camera->next_frame(HostClock::now() + camera->frame_deadline());
+    ASSERT_TRUE(frame.has_value()) << i;
+    ASSERT_EQ(frame->status, FrameStatus::kOk) << i;
+    EXPECT_GT(frame->exposure_start, last) << i;
+    EXPECT_LE(frame->exposure_end, HostClock::now() + milliseconds(1)) << i;
+    last = frame->exposure_start;
+  }
 }
 
 TEST_F(AnAravisCamera, DeliversSixteenBitAndRegionsWithLargePackets) {
