@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/focus/fit/height_map.hpp"
-#include "daemon/export/height_summary.hpp"
+#include "core/surface/statistics.hpp"
 
 namespace fvd {
 

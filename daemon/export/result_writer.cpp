@@ -5,7 +5,6 @@
 #include <string>
 
 #include "daemon/export/gsf.hpp"
-#include "daemon/export/height_summary.hpp"
 #include "daemon/export/height_tiff.hpp"
 #include "daemon/export/image_png.hpp"
 #include "daemon/export/preview.hpp"
@@ -68,7 +67,7 @@ HeightSummary write_result(AtomicDirectory& directory, const ResultData& data) {
   const auto start = std::chrono::steady_clock::now();
   // What takes longest runs beside the rest, on one thread.
   auto drawing = std::async(std::launch::async, [&data] {
-    Preview preview{summarize_heights(data.map), {}};
+    Preview preview{summarize_heights(data.map.height_m, data.map.sigma_m, data.map.mask), {}};
     preview.png = encode_preview_png(data.map, preview.summary, preview_text(data, preview.summary));
     return preview;
   });

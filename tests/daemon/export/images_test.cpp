@@ -84,7 +84,7 @@ TEST(TexturePng, KeepsTheGreyLevelsOfTheCamera) {
 }
 
 cv::Mat preview_of(const HeightMap& map) {
-  return decode(encode_preview_png(map, summarize_heights(map), {"title", "subtitle", true, 2.0}));
+  return decode(encode_preview_png(map, test::summary_of(map), {"title", "subtitle", true, 2.0}));
 }
 
 TEST(Preview, PaintsHolesInNeutralGreyAndHeightsInColour) {
