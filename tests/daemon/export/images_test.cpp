@@ -8,8 +8,9 @@
 
 #include "daemon/export/axis_ticks.hpp"
 #include "daemon/export/height_tiff.hpp"
-#include "daemon/export/image_png.hpp"
+#include "daemon/export/mask_png.hpp"
 #include "daemon/export/preview.hpp"
+#include "daemon/export/texture_png.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 
 namespace fvd {
