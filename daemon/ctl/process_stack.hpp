@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/focus/measure/focus_settings.hpp"
-#include "daemon/export/height_summary.hpp"
+#include "core/surface/statistics.hpp"
 #include "drivers/replay/slice_heights.hpp"
 
 namespace fvd::ctl {

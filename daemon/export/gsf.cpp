@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "core/base/units.hpp"
+#include "daemon/export/export_input.hpp"
 
 namespace fvd {
 
@@ -22,6 +23,22 @@ std::string one_line(std::string text) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   }
   return text;
+}
+
+GsfHeader gsf_header(const ResultData& data) {
+  GsfHeader header{result_title(data), data.pixel_pitch_x_um, data.pixel_pitch_y_um, {}};
+  const auto add = [&header](const char* key, const std::string& value) {
+    if (!value.empty()) header.metadata.emplace_back(key, value);
+  };
+  add("PartId", data.part_id);
+  add("JobId", data.job_id);
+  add("Recipe", data.recipe_id);
+  add("RecipeSha256", data.recipe_sha256);
+  add("Peak", std::string(peak_method_name(data.peak)));
+  add("Software", data.software_version);
+  add("Source", data.source);
+  add("Simulated", data.simulated ? "true" : "false");
+  return header;
 }
 
 }  // namespace
@@ -49,5 +66,7 @@ std::string encode_gsf(const Plane<float>& height_m, const GsfHeader& header) {
   file.append(reinterpret_cast<const char*>(pixels.data()), pixels.size());
   return file;
 }
+
+std::string gsf_file(const ExportInput& input) { return encode_gsf(input.map.height_m, gsf_header(input.data)); }
 
 }  // namespace fvd

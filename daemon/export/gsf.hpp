@@ -12,6 +12,8 @@
 
 namespace fvd {
 
+struct ExportInput;
+
 struct GsfHeader {
   std::string title;
   std::optional<double> pitch_x_um;  ///< both absent: lateral unit is px
@@ -21,5 +23,8 @@ struct GsfHeader {
 
 /// The bytes of the file. height_m: metres. Line breaks and control characters in texts become spaces.
 [[nodiscard]] std::string encode_gsf(const Plane<float>& height_m, const GsfHeader& header);
+
+/// The exporter: encode_gsf() of the input's heights, with where they come from.
+[[nodiscard]] std::string gsf_file(const ExportInput& input);
 
 }  // namespace fvd

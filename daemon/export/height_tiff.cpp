@@ -9,6 +9,7 @@
 #include <tiffio.h>
 
 #include "core/base/error.hpp"
+#include "daemon/export/export_input.hpp"
 
 namespace fvd {
 
@@ -77,6 +78,14 @@ void set_tags(TIFF* tiff, const Plane<float>& height_m, const TiffTags& tags) {
   }
 }
 
+TiffTags tiff_tags(const ExportInput& input, const std::string& quantity) {
+  const ResultData& data = input.data;
+  return {data.software_version,
+          result_title(data) + ": " + quantity + " in metres, NaN where invalid, peak " +
+              std::string(peak_method_name(input.peak)) + (data.simulated ? ", SIMULATED" : ""),
+          data.pixel_pitch_x_um, data.pixel_pitch_y_um};
+}
+
 }  // namespace
 
 std::string encode_height_tiff(const Plane<float>& height_m, const TiffTags& tags) {
@@ -95,6 +104,14 @@ std::string encode_height_tiff(const Plane<float>& height_m, const TiffTags& tag
   }
   if (TIFFFlush(tiff.get()) != 1) throw Error(ErrorCode::kInternal, "libtiff could not finish the height map");
   return std::move(file.bytes);
+}
+
+std::string height_tiff_file(const ExportInput& input) {
+  return encode_height_tiff(input.map.height_m, tiff_tags(input, "height"));
+}
+
+std::string sigma_tiff_file(const ExportInput& input) {
+  return encode_height_tiff(input.map.sigma_m, tiff_tags(input, "standard error"));
 }
 
 }  // namespace fvd

@@ -9,6 +9,8 @@
 
 namespace fvd {
 
+struct ExportInput;
+
 struct TiffTags {
   std::string software;
   std::string description;
@@ -18,5 +20,9 @@ struct TiffTags {
 
 /// The bytes of an uncompressed one-page TIFF: 32-bit IEEE float, metres, NaN = hole. Throws Error kInternal.
 [[nodiscard]] std::string encode_height_tiff(const Plane<float>& height_m, const TiffTags& tags);
+
+/// The exporters: heights and standard errors of the input's map.
+[[nodiscard]] std::string height_tiff_file(const ExportInput& input);
+[[nodiscard]] std::string sigma_tiff_file(const ExportInput& input);
 
 }  // namespace fvd

@@ -9,6 +9,7 @@
 #include "core/base/error.hpp"
 #include "core/base/units.hpp"
 #include "daemon/export/axis_ticks.hpp"
+#include "daemon/export/export_input.hpp"
 #include "daemon/export/page_text.hpp"
 #include "daemon/export/png_bytes.hpp"
 
@@ -148,6 +149,19 @@ void draw_footer(cv::Mat& page, const cv::Rect& map, const PreviewText& text, do
   put_text(page, label, {left + length_px + 8, y}, 0.45, kInk);
 }
 
+PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
+  const auto tenths = static_cast<long>(summary.valid_fraction() * 1000);  // rounded down: 100 % means all
+  PreviewText text;
+  text.title = result_title(data);
+  text.subtitle = (data.recipe_id.empty() ? "" : "recipe " + data.recipe_id + ", ") +
+                  std::to_string(data.steps.size()) + " slices, window " + std::to_string(data.focus.window_px) +
+                  " px, " + std::string(peak_method_name(data.peak)) + ", " + std::to_string(tenths / 10) + "." +
+                  std::to_string(tenths % 10) + " % valid";
+  text.simulated = data.simulated;
+  text.pitch_x_um = data.pixel_pitch_x_um.value_or(0.0);
+  return text;
+}
+
 }  // namespace
 
 std::string encode_preview_png(const HeightMap& map, const HeightSummary& summary, const PreviewText& text) {
@@ -169,6 +183,11 @@ std::string encode_preview_png(const HeightMap& map, const HeightSummary& summar
   } catch (const cv::Exception& failure) {
     throw Error(ErrorCode::kInternal, std::string("the preview could not be drawn: ") + failure.what());
   }
+}
+
+std::string preview_file(const ExportInput& input) {
+  const HeightSummary& summary = input.summary.get();
+  return encode_preview_png(input.map, summary, preview_text(input.data, summary));
 }
 
 }  // namespace fvd

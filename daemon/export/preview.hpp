@@ -5,9 +5,11 @@
 #include <string>
 
 #include "core/focus/fit/height_map.hpp"
-#include "daemon/export/height_summary.hpp"
+#include "core/surface/statistics.hpp"
 
 namespace fvd {
+
+struct ExportInput;
 
 struct PreviewText {
   std::string title;
@@ -21,5 +23,8 @@ struct PreviewText {
 /// down by the mean of the valid points, small ones enlarged by a whole factor. Throws Error kInternal.
 [[nodiscard]] std::string encode_preview_png(const HeightMap& map, const HeightSummary& summary,
                                              const PreviewText& text);
+
+/// The exporter: encode_preview_png() of the input's map under the result's name.
+[[nodiscard]] std::string preview_file(const ExportInput& input);
 
 }  // namespace fvd

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/export/height_summary.hpp"
 #include "daemon/export/json_values.hpp"
 
 namespace fvd {
@@ -61,7 +60,8 @@ Json focus(const ResultData& data) {
   json["peak"] = peak_method_name(data.peak);
   Json extra = Json::array();
   for (const auto& [method, map] : data.extra_maps) {
-    extra.push_back({{"peak", peak_method_name(method)}, {"height", height_values(summarize_heights(map))}});
+    extra.push_back({{"peak", peak_method_name(method)},
+                     {"height", height_values(summarize_heights(map.height_m, map.sigma_m, map.mask))}});
   }
   json["extra_peaks"] = std::move(extra);
   json["state_bytes_per_pixel"] = rounded(data.state_bytes_per_pixel, 3);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/surface/statistics.hpp"
 #include "daemon/export/atomic_directory.hpp"
-#include "daemon/export/height_summary.hpp"
 #include "daemon/export/result_data.hpp"
 
 namespace fvd {

@@ -1,92 +1,108 @@
 #include "daemon/export/result_writer.hpp"
 
+#include <algorithm>
 #include <chrono>
-#include <future>
+#include <functional>
+#include <numeric>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "daemon/export/gsf.hpp"
-#include "daemon/export/height_summary.hpp"
-#include "daemon/export/height_tiff.hpp"
-#include "daemon/export/image_png.hpp"
-#include "daemon/export/preview.hpp"
+#include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
+#include "core/runtime/worker_pool.hpp"
 #include "daemon/export/result_json.hpp"
-#include "daemon/export/step_csv.hpp"
 
 namespace fvd {
 
 namespace {
 
-std::string title(const ResultData& data) {
-  if (!data.part_id.empty()) return data.part_id;
-  return data.job_id.empty() ? "height map" : data.job_id;
+/// One file in memory beside another: more would need more memory than the jobs reserve for it.
+constexpr int kExportersAtOnce = 2;
+
+/// A file to be made.
+struct Task {
+  std::string name;
+  ExportCost cost;
+  std::string (*encode)(const ExportInput& input);
+  ExportInput input;
+};
+
+std::string with_method(std::string_view name, PeakMethod method) {
+  std::string text(name);
+  const auto place = text.find('*');
+  return place == std::string::npos ? text : text.replace(place, 1, peak_method_name(method));
 }
 
-TiffTags tiff_tags(const ResultData& data, PeakMethod method, const std::string& quantity = "height") {
-  return {data.software_version,
-          title(data) + ": " + quantity + " in metres, NaN where invalid, peak " +
-              std::string(peak_method_name(method)) + (data.simulated ? ", SIMULATED" : ""),
-          data.pixel_pitch_x_um, data.pixel_pitch_y_um};
-}
-
-GsfHeader gsf_header(const ResultData& data) {
-  GsfHeader header{title(data), data.pixel_pitch_x_um, data.pixel_pitch_y_um, {}};
-  const auto add = [&header](const char* key, const std::string& value) {
-    if (!value.empty()) header.metadata.emplace_back(key, value);
+std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ResultData& data,
+                           const std::shared_future<HeightSummary>& summary) {
+  std::vector<Task> tasks;
+  const auto add = [&](const Exporter& exporter, const HeightMap& map, PeakMethod peak) {
+    tasks.push_back({with_method(exporter.name, peak), exporter.cost, exporter.encode, {data, map, peak, summary}});
   };
-  add("PartId", data.part_id);
-  add("JobId", data.job_id);
-  add("Recipe", data.recipe_id);
-  add("RecipeSha256", data.recipe_sha256);
-  add("Peak", std::string(peak_method_name(data.peak)));
-  add("Software", data.software_version);
-  add("Source", data.source);
-  add("Simulated", data.simulated ? "true" : "false");
-  return header;
+  for (const Exporter& exporter : exporters) {
+    if (exporter.need == ExportNeed::kResult) {
+      add(exporter, data.map, data.peak);
+    } else {
+      for (const auto& [method, map] : data.extra_maps) add(exporter, map, method);
+    }
+  }
+  return tasks;
 }
 
-PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
-  const auto tenths = static_cast<long>(summary.valid_fraction() * 1000);  // rounded down: 100 % means all
-  PreviewText text;
-  text.title = title(data);
-  text.subtitle = (data.recipe_id.empty() ? "" : "recipe " + data.recipe_id + ", ") +
-                  std::to_string(data.steps.size()) + " slices, window " + std::to_string(data.focus.window_px) +
-                  " px, " + std::string(peak_method_name(data.peak)) + ", " + std::to_string(tenths / 10) + "." +
-                  std::to_string(tenths % 10) + " % valid";
-  text.simulated = data.simulated;
-  text.pitch_x_um = data.pixel_pitch_x_um.value_or(0.0);
-  return text;
+/// Indices of the tasks as they are begun.
+std::vector<std::size_t> order_of(const std::vector<Task>& tasks) {
+  std::vector<std::size_t> order(tasks.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_partition(order.begin(), order.end(),
+                        [&tasks](std::size_t index) { return tasks[index].cost == ExportCost::kSlow; });
+  return order;
 }
 
-struct Preview {
-  HeightSummary summary;
-  std::string png;
+/// The directory, for exporters that run beside each other.
+class SharedDirectory {
+ public:
+  explicit SharedDirectory(AtomicDirectory& directory) : directory_(directory) {}
+
+  /// Makes the file of the task. Throws Error that begins with the file's name.
+  AtomicDirectory::File write(const Task& task) {
+    try {
+      const std::string bytes = task.encode(task.input);
+      MutexLock lock(mutex_);
+      directory_.add_file(task.name, bytes);
+      return {task.name, bytes.size()};
+    } catch (const Error& error) {
+      throw Error(error.code(), task.name + ": " + error.what());
+    } catch (const std::exception& error) {
+      throw Error(ErrorCode::kInternal, task.name + ": " + error.what());
+    }
+  }
+
+ private:
+  Mutex mutex_;
+  AtomicDirectory& directory_ FVD_GUARDED_BY(mutex_);
 };
 
 }  // namespace
 
-HeightSummary write_result(AtomicDirectory& directory, const ResultData& data) {
+HeightSummary write_result(AtomicDirectory& directory, const ResultData& data, std::span<const Exporter> exporters) {
   const auto start = std::chrono::steady_clock::now();
-  // What takes longest runs beside the rest, on one thread.
-  auto drawing = std::async(std::launch::async, [&data] {
-    Preview preview{summarize_heights(data.map), {}};
-    preview.png = encode_preview_png(data.map, preview.summary, preview_text(data, preview.summary));
-    return preview;
-  });
-  directory.add_file("height.tiff", encode_height_tiff(data.map.height_m, tiff_tags(data, data.peak)));
-  for (const auto& [method, map] : data.extra_maps) {
-    directory.add_file("height_" + std::string(peak_method_name(method)) + ".tiff",
-                       encode_height_tiff(map.height_m, tiff_tags(data, method)));
-  }
-  directory.add_file("sigma.tiff", encode_height_tiff(data.map.sigma_m, tiff_tags(data, data.peak, "standard error")));
-  directory.add_file("height.gsf", encode_gsf(data.map.height_m, gsf_header(data)));
-  directory.add_file("mask.png", encode_mask_png(data.map));
-  directory.add_file("texture.png", encode_texture_png(data.map));
-  const Preview preview = drawing.get();
-  directory.add_file("preview.png", preview.png);
-  directory.add_file("step_log.csv", step_csv(data.steps));
+  const std::shared_future<HeightSummary> summary = std::async(
+      std::launch::deferred, [&data] { return summarize_heights(data.map.height_m, data.map.sigma_m, data.map.mask); });
+  std::vector<AtomicDirectory::File> files = directory.files();
+  const std::vector<Task> tasks = tasks_of(exporters, data, summary);
+  const std::vector<std::size_t> order = order_of(tasks);
+  const std::size_t before = files.size();
+  files.resize(before + tasks.size());
+  SharedDirectory shared(directory);
+  const auto write = [&](int turn) {
+    const std::size_t index = order[static_cast<std::size_t>(turn)];
+    files[before + index] = shared.write(tasks[index]);
+  };
+  WorkerPool(kExportersAtOnce).run(static_cast<int>(order.size()), std::ref(write));
   const double write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  directory.add_file("result.json", result_json_text(data, preview.summary, WriteReport{directory.files(), write_ms}));
-  return preview.summary;
+  directory.add_file("result.json", result_json_text(data, summary.get(), WriteReport{std::move(files), write_ms}));
+  return summary.get();
 }
 
 HeightSummary write_result(const std::filesystem::path& final_dir, const ResultData& data) {

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "daemon/export/csv_row.hpp"
+#include "daemon/export/export_input.hpp"
 
 namespace fvd {
 
@@ -32,5 +33,7 @@ std::string step_csv(const StepLog& log) {
   }
   return out;
 }
+
+std::string step_csv_file(const ExportInput& input) { return step_csv(input.data.steps); }
 
 }  // namespace fvd

@@ -8,8 +8,9 @@
 
 #include "daemon/export/axis_ticks.hpp"
 #include "daemon/export/height_tiff.hpp"
-#include "daemon/export/image_png.hpp"
+#include "daemon/export/mask_png.hpp"
 #include "daemon/export/preview.hpp"
+#include "daemon/export/texture_png.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 
 namespace fvd {
@@ -84,7 +85,7 @@ TEST(TexturePng, KeepsTheGreyLevelsOfTheCamera) {
 }
 
 cv::Mat preview_of(const HeightMap& map) {
-  return decode(encode_preview_png(map, summarize_heights(map), {"title", "subtitle", true, 2.0}));
+  return decode(encode_preview_png(map, test::summary_of(map), {"title", "subtitle", true, 2.0}));
 }
 
 TEST(Preview, PaintsHolesInNeutralGreyAndHeightsInColour) {

@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 using test::ScratchDir;
 
-std::string json_of(const ResultData& data) { return result_json_text(data, summarize_heights(data.map)); }
+std::string json_of(const ResultData& data) { return result_json_text(data, test::summary_of(data.map)); }
 
 TEST(ResultWriter, WritesEveryFileAndNothingElse) {
   const ScratchDir scratch;

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "core/base/units.hpp"
+#include "core/surface/mask_reason.hpp"
+#include "core/surface/statistics.hpp"
 #include "daemon/export/result_data.hpp"
 
 namespace fvd::test {
@@ -32,6 +34,8 @@ inline void make_hole(HeightMap& map, int x, int y, unsigned reasons) {
   map.height_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
   map.sigma_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
 }
+
+inline HeightSummary summary_of(const HeightMap& map) { return summarize_heights(map.height_m, map.sigma_m, map.mask); }
 
 inline ResultData sample_result() {
   ResultData data;

@@ -1,11 +1,12 @@
 #pragma once
 
-/// A height map in a few numbers.
+/// The heights of a surface in a few numbers.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
-#include "core/focus/fit/height_map.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 
@@ -42,7 +43,9 @@ struct HeightSummary {
   }
 };
 
-/// Needs 4 bytes a pixel for the time of the call.
-[[nodiscard]] HeightSummary summarize_heights(const HeightMap& map);
+/// height_m, sigma_m: metres, NaN exactly where mask != 0. mask: 0 valid, else mask_reason bits. All of one shape
+/// [height][width]. Needs 4 bytes per pixel for the time of the call.
+[[nodiscard]] HeightSummary summarize_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
+                                              const Plane<std::uint8_t>& mask);
 
 }  // namespace fvd

@@ -1,4 +1,4 @@
-#include "daemon/export/height_summary.hpp"
+#include "core/surface/statistics.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/units.hpp"
+#include "core/surface/mask_reason.hpp"
 
 namespace fvd {
 
@@ -40,29 +41,30 @@ float quantile(Values& values, double fraction) {
   return rank < middle ? ranked(values, 0, rank, middle) : ranked(values, middle, rank, values.size());
 }
 
-void count_reasons(std::uint8_t mask, std::size_t points, HoleCounts& holes) {
-  if ((mask & mask_reason::kLowProminence) != 0) holes.low_prominence += points;
-  if ((mask & mask_reason::kFirstSlice) != 0) holes.first_slice += points;
-  if ((mask & mask_reason::kLastSlice) != 0) holes.last_slice += points;
-  if ((mask & mask_reason::kNotBracketed) != 0) holes.not_bracketed += points;
-  if ((mask & mask_reason::kSaturated) != 0) holes.saturated += points;
-  if ((mask & mask_reason::kInsignificant) != 0) holes.insignificant += points;
-  if ((mask & mask_reason::kEdgeBleeding) != 0) holes.edge_bleeding += points;
+void count_reasons(std::uint8_t reasons, std::size_t points, HoleCounts& holes) {
+  if ((reasons & mask_reason::kLowProminence) != 0) holes.low_prominence += points;
+  if ((reasons & mask_reason::kFirstSlice) != 0) holes.first_slice += points;
+  if ((reasons & mask_reason::kLastSlice) != 0) holes.last_slice += points;
+  if ((reasons & mask_reason::kNotBracketed) != 0) holes.not_bracketed += points;
+  if ((reasons & mask_reason::kSaturated) != 0) holes.saturated += points;
+  if ((reasons & mask_reason::kInsignificant) != 0) holes.insignificant += points;
+  if ((reasons & mask_reason::kEdgeBleeding) != 0) holes.edge_bleeding += points;
 }
 
 }  // namespace
 
-HeightSummary summarize_heights(const HeightMap& map) {
+HeightSummary summarize_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
+                                const Plane<std::uint8_t>& mask) {
   HeightSummary summary;
-  summary.points = map.mask.pixels().size();
+  summary.points = mask.pixels().size();
   std::array<std::size_t, 256> points_of{};
-  for (const std::uint8_t mask : map.mask.pixels()) ++points_of[mask];
-  for (std::size_t mask = 0; mask < points_of.size(); ++mask) {
-    count_reasons(static_cast<std::uint8_t>(mask), points_of[mask], summary.holes);
+  for (const std::uint8_t reasons : mask.pixels()) ++points_of[reasons];
+  for (std::size_t reasons = 0; reasons < points_of.size(); ++reasons) {
+    count_reasons(static_cast<std::uint8_t>(reasons), points_of[reasons], summary.holes);
   }
   Values valid;
   valid.reserve(summary.points);
-  std::copy_if(map.height_m.pixels().begin(), map.height_m.pixels().end(), std::back_inserter(valid),
+  std::copy_if(height_m.pixels().begin(), height_m.pixels().end(), std::back_inserter(valid),
                [](float height) { return std::isfinite(height); });
   summary.valid = valid.size();
   if (valid.empty()) return summary;
@@ -76,7 +78,7 @@ HeightSummary summarize_heights(const HeightMap& map) {
   values.high_um = um(quantile(valid, 0.995));
   summary.height = values;
   valid.clear();
-  std::copy_if(map.sigma_m.pixels().begin(), map.sigma_m.pixels().end(), std::back_inserter(valid),
+  std::copy_if(sigma_m.pixels().begin(), sigma_m.pixels().end(), std::back_inserter(valid),
                [](float sigma) { return std::isfinite(sigma); });
   if (!valid.empty()) summary.sigma_median_um = median_um(valid);
   return summary;

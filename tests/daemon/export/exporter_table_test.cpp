@@ -1,0 +1,137 @@
+#include "daemon/export/exporter_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <set>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.hpp"
+#include "daemon/export/result_writer.hpp"
+#include "tests/daemon/export/sample_result.hpp"
+#include "tests/support/expect_error.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+using test::ScratchDir;
+using testing::ElementsAreArray;
+
+ResultData result_with_extra_map() {
+  ResultData data = test::sample_result();
+  data.extra_maps.emplace_back(PeakMethod::kNearest, test::sample_map(7, 2));
+  return data;
+}
+
+/// The file that a row makes of result_with_extra_map().
+std::string file_of(const Exporter& exporter) {
+  std::string name(exporter.name);
+  if (exporter.need == ExportNeed::kEachExtraMap) name.replace(name.find('*'), 1, "nearest");
+  return name;
+}
+
+void write_with(const std::filesystem::path& target, std::span<const Exporter> exporters) {
+  AtomicDirectory directory(target);
+  write_result(directory, result_with_extra_map(), exporters);
+  directory.commit();
+}
+
+TEST(ExporterTable, HasOneNameARow) {
+  std::set<std::string_view> names;
+  for (const Exporter& exporter : exporter_table()) {
+    EXPECT_TRUE(names.insert(exporter.name).second) << exporter.name;
+    EXPECT_EQ(exporter.need == ExportNeed::kEachExtraMap, exporter.name.find('*') != std::string_view::npos)
+        << exporter.name;
+  }
+}
+
+TEST(ExporterTable, GivesTheBytesThatTheDirectoryHolds) {
+  const ScratchDir scratch;
+  const ResultData data = result_with_extra_map();
+  write_with(scratch / "job", exporter_table());
+  std::promise<HeightSummary> summary;
+  summary.set_value(test::summary_of(data.map));
+  const std::shared_future<HeightSummary> shared(summary.get_future());
+  std::vector<std::string> names;
+  for (const Exporter& exporter : exporter_table()) {
+    const bool extra = exporter.need == ExportNeed::kEachExtraMap;
+    const ExportInput input{data, extra ? data.extra_maps[0].second : data.map,
+                            extra ? PeakMethod::kNearest : data.peak, shared};
+    names.push_back(file_of(exporter));
+    const std::string written = test::read_text(scratch / ("job/" + names.back()));
+    EXPECT_FALSE(written.empty()) << exporter.name;
+    EXPECT_TRUE(written == exporter.encode(input)) << exporter.name;
+  }
+  std::vector<std::string> listed;
+  const auto json = nlohmann::json::parse(test::read_text(scratch / "job/result.json"));
+  for (const auto& file : json["files"]) listed.push_back(file["name"]);
+  EXPECT_THAT(listed, ElementsAreArray(names)) << "in the order of the table, whatever was done first";
+}
+
+TEST(ExporterTable, FailsTheResultWithTheNameOfTheRowThatFailed) {
+  for (std::size_t broken = 0; broken < exporter_table().size(); ++broken) {
+    const ScratchDir scratch;
+    std::vector<Exporter> exporters(exporter_table().begin(), exporter_table().end());
+    exporters[broken].encode = [](const ExportInput&) -> std::string {
+      throw Error(ErrorCode::kStorageFull, "No space left");
+    };
+    test::expect_error(ErrorCode::kStorageFull, {file_of(exporters[broken]), "No space left"},
+                       [&] { write_with(scratch / "job", exporters); });
+    EXPECT_THAT(scratch.entries(), testing::IsEmpty()) << exporters[broken].name;
+  }
+}
+
+TEST(ExporterTable, NamesTheRowAlsoForAnExceptionOfALibrary) {
+  const ScratchDir scratch;
+  const std::array exporters{Exporter{"odd.bin", ExportNeed::kResult, ExportCost::kQuick,
+                                      [](const ExportInput&) -> std::string { throw std::length_error("too long"); }}};
+  test::expect_error(ErrorCode::kInternal, {"odd.bin", "too long"}, [&] { write_with(scratch / "job", exporters); });
+}
+
+TEST(ExporterTable, RefusesTwoRowsOfOneName) {
+  const ScratchDir scratch;
+  const Exporter row{"a.bin", ExportNeed::kResult, ExportCost::kQuick,
+                     [](const ExportInput&) { return std::string("a"); }};
+  const std::array exporters{row, row};
+  test::expect_error(ErrorCode::kStorageWrite, {"a.bin", "exists"}, [&] { write_with(scratch / "job", exporters); });
+}
+
+/// Exporters that see how many of them run.
+struct Meeting {
+  std::atomic<int> running{0};
+  std::atomic<int> most{0};
+  std::promise<void> second_came;
+  std::shared_future<void> met{second_came.get_future()};
+};
+Meeting* meeting = nullptr;
+
+std::string meet(const ExportInput& /*input*/) {
+  const int now = ++meeting->running;
+  if (now == 2 && meeting->most.exchange(2) < 2) meeting->second_came.set_value();
+  if (now > 2) meeting->most = now;
+  meeting->met.wait_for(std::chrono::seconds(20));  // ends at once where two run side by side
+  --meeting->running;
+  return "x";
+}
+
+TEST(ExporterTable, RunsTwoExportersSideBySideAndNeverThree) {
+  const ScratchDir scratch;
+  Meeting here;
+  meeting = &here;
+  using enum ExportNeed;
+  const std::array exporters{
+      Exporter{"1", kResult, ExportCost::kQuick, meet}, Exporter{"2", kResult, ExportCost::kSlow, meet},
+      Exporter{"3", kResult, ExportCost::kQuick, meet}, Exporter{"4", kResult, ExportCost::kQuick, meet}};
+  write_with(scratch / "job", exporters);
+  EXPECT_EQ(here.most, 2);
+}
+
+}  // namespace
+}  // namespace fvd
