@@ -1,5 +1,6 @@
 /// What must never happen, counted: the axis moves while a client is told that the part is free; the machine is ready
-/// between a device's loss and the error. Beside each zero stands how often it could have happened.
+/// between a device's loss and the error. And how long a heartbeat takes beside a slow disk. Beside each zero stands
+/// how often it could have happened.
 ///
 /// bench_structure FVD [KILLS] [LOSSES]: the program to be looked at, e.g. build/daemon/fvd.
 
@@ -11,9 +12,11 @@
 #include <thread>
 
 #include <nlohmann/json.hpp>
+#include <sqlite3.h>
 
 #include "sim/plant/plant.hpp"
 #include "tests/bench/motion_watch.hpp"
+#include "tests/bench/ping_load.hpp"
 #include "tests/bench/watched_daemon.hpp"
 #include "tests/support/line_client.hpp"
 #include "tests/support/scratch_dir.hpp"
@@ -32,13 +35,14 @@ class Bench {
   Bench(std::filesystem::path program, const sim::PlantOptions& options)
       : program_(std::move(program)), plant_(options), watch_(plant_.axis()) {}
 
-  [[nodiscard]] std::unique_ptr<WatchedDaemon> start() {
+  [[nodiscard]] std::unique_ptr<WatchedDaemon> start(const std::vector<std::string>& environment = {}) {
     const std::filesystem::path runtime_dir = folder_.path() / "run";
     auto daemon = std::make_unique<WatchedDaemon>(
         program_, runtime_dir,
         std::vector<std::string>{"camera.address=" + plant_.camera_address(),
                                  "stage.port=" + std::to_string(plant_.stage_port()), "rpc.port=0",
-                                 "paths.state_dir=" + (folder_.path() / "state").string()});
+                                 "paths.state_dir=" + state_dir().string()},
+        environment);
     port_ = daemon->await_port();
     return daemon;
   }
@@ -79,6 +83,10 @@ class Bench {
     return false;
   }
 
+  [[nodiscard]] std::filesystem::path state_dir() const { return folder_.path() / "state"; }
+  [[nodiscard]] int port() const { return port_; }
+  [[nodiscard]] int seq() const { return seq_; }
+  void set_seq(int seq) { seq_ = seq; }
   sim::Plant& plant() { return plant_; }
   MotionWatch& watch() { return watch_; }
 
@@ -167,6 +175,44 @@ json ready_before_error(const std::filesystem::path& program, int losses) {
   return {{"ready_before_error", ready}, {"losses_seen", seen}};
 }
 
+/// As if that many results had been made and never fetched.
+void fill_store(const std::filesystem::path& file, int jobs) {
+  sqlite3* database = nullptr;
+  const std::string fill = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
+                           std::to_string(jobs) +
+                           ") INSERT INTO jobs (job_id, seq, part_id, recipe, state) "
+                           "SELECT 'bench-' || i, i, 'bench', 'chapter', 'completed' FROM n";
+  const bool filled = sqlite3_open(file.c_str(), &database) == SQLITE_OK &&
+                      sqlite3_exec(database, fill.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK;
+  const std::string why = filled ? "" : sqlite3_errmsg(database);
+  sqlite3_close(database);
+  if (!filled) throw std::runtime_error("cannot fill " + file.string() + ": " + why);
+}
+
+/// Heartbeats of eight clients while jobs start, end and are acknowledged on a disk that takes 500 ms to sync.
+json ping_beside_a_slow_disk(const std::filesystem::path& program) {
+  constexpr int kResults = 100'000;
+  Bench bench(program, microscope());
+  bench.start()->kill();
+  fill_store(bench.state_dir() / "fvd.sqlite", kResults);
+  bench.set_seq(kResults);
+  auto daemon = bench.start({"LD_PRELOAD=" FVD_SLOW_SYNC, "FVD_SLOW_SYNC_MS=500"});
+  (void)bench.await_ready();
+  int jobs = 0;
+  const auto working = start_thread("bench-jobs", [&](const std::stop_token& stop) {
+    while (!stop.stop_requested() && bench.begin("chapter_continuous")) {
+      ++jobs;
+      (void)bench.ask("job.wait", {{"seq", bench.seq()}});
+      (void)bench.ask("result.ack", {{"seq", bench.seq()}});
+    }
+  });
+  const auto times = ping_times_ms(bench.port(), {});
+  return {{"ping_p99_ms_100k_unacked", percentile(times, 0.99)},
+          {"ping_median_ms", percentile(times, 0.5)},
+          {"ping_calls", times.size()},
+          {"jobs_beside_pings", jobs}};
+}
+
 int run(int argc, char** argv) {
   if (argc < 2) {
     std::cerr << "usage: bench_structure FVD [KILLS] [LOSSES]\n";
@@ -176,6 +222,8 @@ int run(int argc, char** argv) {
   json figures = moving_while_released(program, argc > 2 ? std::atoi(argv[2]) : 20);
   std::cerr << figures.dump() << '\n';
   figures.update(ready_before_error(program, argc > 3 ? std::atoi(argv[3]) : 50));
+  std::cerr << figures.dump() << '\n';
+  figures.update(ping_beside_a_slow_disk(program));
   std::cout << figures.dump() << std::endl;
   return 0;
 }

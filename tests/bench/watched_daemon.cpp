@@ -15,8 +15,11 @@ namespace fvd::bench {
 namespace {
 
 std::vector<std::string> command_of(const std::filesystem::path& program, const std::filesystem::path& runtime_dir,
-                                    const std::vector<std::string>& settings) {
-  std::vector<std::string> command{program.string(), "--config", FVD_SOURCE_DIR "/config/fvd-sim.json"};
+                                    const std::vector<std::string>& settings,
+                                    const std::vector<std::string>& environment) {
+  std::vector<std::string> command{"env"};
+  command.insert(command.end(), environment.begin(), environment.end());
+  command.insert(command.end(), {program.string(), "--config", FVD_SOURCE_DIR "/config/fvd-sim.json"});
   for (const std::string& setting : settings) {
     command.emplace_back("--set");
     command.push_back(setting);
@@ -38,9 +41,9 @@ WallTime time_of(const std::string& text) {
 }  // namespace
 
 WatchedDaemon::WatchedDaemon(const std::filesystem::path& program, const std::filesystem::path& runtime_dir,
-                             const std::vector<std::string>& settings)
+                             const std::vector<std::string>& settings, const std::vector<std::string>& environment)
     : port_file_(runtime_dir / "rpc.json"),
-      process_((std::filesystem::remove(port_file_), command_of(program, runtime_dir, settings))),
+      process_((std::filesystem::remove(port_file_), command_of(program, runtime_dir, settings, environment))),
       reader_(start_thread("log-reader", [this](const std::stop_token&) { read_log(); })) {
   add(std::chrono::system_clock::now(), "started");
 }

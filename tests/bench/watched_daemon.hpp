@@ -23,9 +23,9 @@ struct LoggedChange {
 /// context: one thread; the log is read on a thread of its own.
 class WatchedDaemon {
  public:
-  /// Starts the program with config/fvd-sim.json and the settings, each as "key=value".
+  /// Starts the program with config/fvd-sim.json and the settings, each as "key=value"; environment: likewise.
   WatchedDaemon(const std::filesystem::path& program, const std::filesystem::path& runtime_dir,
-                const std::vector<std::string>& settings);
+                const std::vector<std::string>& settings, const std::vector<std::string>& environment = {});
   ~WatchedDaemon();
   WatchedDaemon(const WatchedDaemon&) = delete;
   WatchedDaemon& operator=(const WatchedDaemon&) = delete;
