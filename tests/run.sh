@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/support/setup.sh"
 fvd_packages+=(mbpoll python3-pymodbus python3-serial python3-serial-asyncio aravis-tools)  # peers that are not fvd's
 fvd_install_packages
 fvd_build
-fvd_build bench_accuracy bench_camera bench_focus bench_renderer bench_stage  # not run here; they must not fall behind
+fvd_build bench_accuracy bench_camera bench_focus bench_renderer bench_stage bench_structure  # not run here; they must not fall behind
 # Only the thread sanitizer reads this: which libraries' locks it cannot see, and that a test's forked child starts threads.
 export TSAN_OPTIONS="suppressions=$FVD_ROOT/tests/tsan.supp die_after_fork=0 ${TSAN_OPTIONS:-}"
 ctest --test-dir "$FVD_BUILD" --output-on-failure --no-tests=error -j2 "$@"

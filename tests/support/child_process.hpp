@@ -56,6 +56,10 @@ class ChildProcess {
     for (int c = std::fgetc(out_); c != EOF; c = std::fgetc(out_)) text += static_cast<char>(c);
     return text;
   }
+  /// Sends a signal, e.g. SIGKILL; wait() then tells of its end.
+  void signal(int number) const {
+    if (pid_ > 0) ::kill(pid_, number);
+  }
   /// The exit code; 127 for a program that could not be started.
   int wait() {
     if (pid_ <= 0) return 127;
