@@ -7,10 +7,10 @@ FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
 
 fvd_packages=(
-  ca-certificates cmake g++ iproute2 ninja-build pkg-config
+  ca-certificates ccache cmake g++ iproute2 ninja-build pkg-config
   libaravis-dev libbenchmark-dev libboost-dev libcli11-dev libeigen3-dev libgmock-dev libgtest-dev libmodbus-dev
   libopencv-dev libpng-dev libspdlog-dev libsqlite3-dev libsystemd-dev libtiff-dev libturbojpeg0-dev libusb-1.0-0-dev
-  libvalijson-dev zlib1g-dev
+  libvalijson-dev python3 zlib1g-dev
   nlohmann-json3-dev
 )
 
@@ -49,20 +49,37 @@ fvd_install_packages() {
   rm -f "$log"
 }
 
-# fvd_build [TARGET ...]: configures once and builds the targets, or everything. Copies of this script on one build
-# folder wait for each other.
-fvd_build() {
-  local log="$FVD_BUILD/build.log" targets=()
-  [ $# -eq 0 ] || targets=(--target "$@")
+# Configures in FVD_BUILD; everything is compiled through ccache where that is installed.
+fvd_cmake() {
+  local launcher=
+  launcher=$(command -v ccache) || launcher=
+  cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
+    -DCMAKE_CXX_COMPILER_LAUNCHER="${launcher:+ccache}"
+}
+
+# fvd_locked COMMAND ...: runs it with its output in the build's log; copies of this script on one build folder wait for
+# each other. Shows where the log speaks of errors if it fails.
+fvd_locked() {
+  local log="$FVD_BUILD/build.log"
   mkdir -p "$FVD_BUILD" || return 1
   exec 9>"$FVD_BUILD/.lock" && flock 9
-  fvd_say "building in $FVD_BUILD (the first time takes some minutes)"
-  if ! { cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" &&
-         cmake --build "$FVD_BUILD" "${targets[@]}"; } >"$log" 2>&1; then
+  if ! "$@" >"$log" 2>&1 9>&-; then
     grep -E -A12 'error|Error|FAILED' "$log" | head -n 60 >&2
     fvd_say "the build failed; the whole log is in $log"
     exec 9>&-
     return 1
   fi
   exec 9>&-
+}
+
+fvd_configure() { fvd_locked fvd_cmake; }
+
+fvd_cmake_build() { fvd_cmake && cmake --build "$FVD_BUILD" "$@"; }
+
+# fvd_build [TARGET ...]: configures and builds the targets, or everything.
+fvd_build() {
+  local targets=()
+  [ $# -eq 0 ] || targets=(--target "$@")
+  fvd_say "building in $FVD_BUILD (the first time takes some minutes)"
+  fvd_locked fvd_cmake_build "${targets[@]}"
 }
