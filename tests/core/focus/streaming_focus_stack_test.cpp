@@ -1,165 +1,19 @@
-/// The streaming stack against its twin that keeps everything, and against what is known.
+/// The streaming stack against what is known.
+
+#include "core/focus/streaming_focus_stack.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
-#include <random>
-#include <string>
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/focus/simple_focus_stack.hpp"
-#include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "gtest/gtest.h"
+#include "tests/core/focus/synthetic_scan.hpp"
 
 namespace fvd {
 namespace {
-
-/// A synthetic scan: texture whose contrast falls with the distance from the surface, plus noise.
-struct Scan {
-  PixelFormat format = PixelFormat::kMono8;
-  int width = 0;
-  int height = 0;
-  std::vector<std::vector<std::byte>> slices;
-  std::vector<double> z_um;
-
-  [[nodiscard]] ImageView slice(std::size_t k) const {
-    return {format, width, height, static_cast<std::ptrdiff_t>(width) * bytes_per_pixel(format), slices[k].data()};
-  }
-};
-
-enum class Surface { kTilted, kStepped, kRandom };
-
-double surface_um(Surface surface, int x, int y) {
-  switch (surface) {
-    case Surface::kTilted:
-      return 10.0 + 0.8 * x + 0.3 * y;
-    case Surface::kStepped:
-      return x % 20 < 10 ? 20.0 : 45.0;
-    case Surface::kRandom:
-      return 30.0;
-  }
-  return 0.0;
-}
-
-Scan make_scan(PixelFormat format, Surface surface, int width, int height, int count, unsigned seed) {
-  Scan scan{format, width, height, {}, {}};
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> jitter(-1.5, 1.5);
-  std::vector<double> texture(static_cast<std::size_t>(width * height));
-  for (auto& value : texture) value = normal(random);
-  const double unit = format == PixelFormat::kMono8 ? 1.0 : 256.0;
-  for (int k = 0; k < count; ++k) {
-    scan.z_um.push_back(5.0 * k + jitter(random));
-    std::vector<std::byte> bytes(texture.size() * static_cast<std::size_t>(bytes_per_pixel(format)));
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const auto i = static_cast<std::size_t>(y * width + x);
-        const double defocus = (scan.z_um.back() - surface_um(surface, x, y)) / 12.0;
-        const double contrast = surface == Surface::kRandom ? 30.0 : 30.0 * std::exp(-defocus * defocus);
-        const double noise = surface == Surface::kRandom ? 30.0 * normal(random) : normal(random);
-        const double level = std::clamp((128.0 + contrast * texture[i] + noise) * unit, 0.0, 256.0 * unit - 1.0);
-        if (format == PixelFormat::kMono8) {
-          bytes[i] = static_cast<std::byte>(static_cast<std::uint8_t>(level));
-        } else {
-          const auto wide = static_cast<std::uint16_t>(level);
-          std::memcpy(&bytes[2 * i], &wide, sizeof(wide));
-        }
-      }
-    }
-    scan.slices.push_back(std::move(bytes));
-  }
-  return scan;
-}
-
-void expect_identical(const HeightMap& a, const HeightMap& b) {
-  ASSERT_EQ(a.height_m.pixels().size(), b.height_m.pixels().size());
-  EXPECT_EQ(std::memcmp(a.height_m.pixels().data(), b.height_m.pixels().data(), a.height_m.pixels().size_bytes()), 0);
-  EXPECT_EQ(std::memcmp(a.sigma_m.pixels().data(), b.sigma_m.pixels().data(), a.sigma_m.pixels().size_bytes()), 0);
-  EXPECT_EQ(a.noise_grey, b.noise_grey);
-  EXPECT_EQ(a.curve_width_um, b.curve_width_um);
-  EXPECT_EQ(a.stage.offsets_um, b.stage.offsets_um);
-  EXPECT_EQ(a.stage.rms_um, b.stage.rms_um);
-  EXPECT_TRUE(std::ranges::equal(a.mask.pixels(), b.mask.pixels()));
-  EXPECT_TRUE(std::ranges::equal(a.prominence.pixels(), b.prominence.pixels()));
-  EXPECT_TRUE(std::ranges::equal(a.texture.pixels(), b.texture.pixels()));
-  EXPECT_EQ(a.texture_format, b.texture_format);
-}
-
-/// batch: slices pushed together.
-HeightMap stream(const Scan& scan, const FocusSettings& settings, PeakMethod method, int threads,
-                 std::size_t batch = 1) {
-  WorkerPool pool(threads);
-  StreamingFocusStack stack(scan.width, scan.height, scan.format, settings, pool);
-  for (std::size_t first = 0; first < scan.slices.size(); first += batch) {
-    std::vector<ZSlice> slices;
-    for (std::size_t k = first; k < std::min(first + batch, scan.slices.size()); ++k) {
-      slices.push_back({scan.slice(k), scan.z_um[k]});
-    }
-    stack.push(slices);
-  }
-  return stack.finish(method);
-}
-
-struct Case {
-  PixelFormat format;
-  Surface surface;
-  int width;
-  int height;
-  int slices;
-  int window;
-  int distance = 1;
-  FocusOperator focus_operator = FocusOperator::kModifiedLaplacian;
-  int bin = 1;
-};
-
-class AStreamingStack : public testing::TestWithParam<Case> {};
-
-TEST_P(AStreamingStack, EqualsTheOneThatKeepsEverything) {
-  const Case c = GetParam();
-  const Scan scan = make_scan(c.format, c.surface, c.width, c.height, c.slices, 7);
-  const FocusSettings settings{.focus_operator = c.focus_operator,
-                               .window_px = c.window,
-                               .distance_px = c.distance,
-                               .min_prominence = 0.3,
-                               .min_significance = 2.0,
-                               .bin_slices = c.bin};
-  SimpleFocusStack simple(settings);
-  for (std::size_t k = 0; k < scan.slices.size(); ++k) simple.push(scan.slice(k), scan.z_um[k]);
-  for (const PeakMethod method : kAllPeakMethods) {
-    const HeightMap expected = simple.finish(method);
-    for (const int threads : {1, 2, 5}) {
-      for (const std::size_t batch : {std::size_t{1}, std::size_t{3}, std::size_t{20}}) {
-        SCOPED_TRACE(std::string(peak_method_name(method)) + ", threads " + std::to_string(threads) + ", batch " +
-                     std::to_string(batch));
-        expect_identical(stream(scan, settings, method, threads, batch), expected);
-      }
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    OnEverySurface, AStreamingStack,
-    testing::Values(Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 15, 9},
-                    Case{PixelFormat::kMono8, Surface::kStepped, 64, 17, 12, 5, 3},
-                    Case{PixelFormat::kMono8, Surface::kRandom, 40, 23, 9, 3},
-                    Case{PixelFormat::kMono16, Surface::kTilted, 37, 29, 15, 7, 2},
-                    Case{PixelFormat::kMono16, Surface::kRandom, 33, 11, 21, 31},
-                    Case{PixelFormat::kMono12, Surface::kStepped, 20, 20, 8, 9},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 1, 1, 5, 9},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 3, 2, 5, 63, 7},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 40, 30, 31, 9, 2, FocusOperator::kTenengrad},
-                    Case{PixelFormat::kMono12, Surface::kStepped, 30, 30, 15, 7, 1, FocusOperator::kTenengrad, 2},
-                    Case{PixelFormat::kMono16, Surface::kTilted, 30, 20, 15, 1, 1, FocusOperator::kIntensity},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 30, 9, 2, FocusOperator::kModifiedLaplacian, 3},
-                    Case{PixelFormat::kMono16, Surface::kTilted, 33, 21, 29, 5, 1, FocusOperator::kModifiedLaplacian,
-                         4},
-                    Case{PixelFormat::kMono8, Surface::kRandom, 33, 21, 3, 5, 1, FocusOperator::kModifiedLaplacian, 4},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 1, 3},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 2, 3}));
 
 TEST(StreamingFocusStack, MarksHolesWithNaNAndNothingElse) {
   const HeightMap map =
