@@ -28,6 +28,7 @@ App::App(const Config& config)
                         [this] { return open_stage(config_.stage); }}),
       rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {}
 
-App::~App() { engine_.shut_down(); }
+// The connections live until all that was accepted has ended.
+App::~App() { engine_.finish(); }
 
 }  // namespace fvd

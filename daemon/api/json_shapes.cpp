@@ -54,7 +54,7 @@ ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) 
           {"ready", machine.state == ScanState::kReady || machine.state == ScanState::kInitialized},
           {"busy", executing},
           {"acquiring", acquiring},
-          {"part_release", !acquiring},
+          {"part_release", machine.part_free && !acquiring},
           {"result_valid", machine.job && machine.job->state == JobState::kCompleted && !machine.job->acknowledged},
           {"results_waiting", machine.results_waiting},
           {"error_code", code_of(machine.error)},

@@ -45,6 +45,7 @@ class DeviceSlot {
     try {
       device_ = opener_();
       failure_.reset();
+      ++openings_;
       return true;
     } catch (const Error& error) {
       failure_ = DeviceFailure{error.code(), error.what()};
@@ -59,6 +60,9 @@ class DeviceSlot {
 
   /// The device; ensure() returned true before.
   [[nodiscard]] Device& get() const { return *device_; }
+  [[nodiscard]] bool connected() const { return device_ && device_->connected(); }
+  /// How often a device was opened so far.
+  [[nodiscard]] int openings() const { return openings_; }
   [[nodiscard]] const std::optional<DeviceFailure>& failure() const { return failure_; }
 
  private:
@@ -66,6 +70,7 @@ class DeviceSlot {
   ErrorCode lost_;
   Reaper& reaper_;
   std::unique_ptr<Device> device_;
+  int openings_ = 0;
   std::optional<DeviceFailure> failure_;
 };
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <exception>
 #include <fstream>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 #include "core/focus/grey_statistics.hpp"
 #include "core/scan/slice_capture.hpp"
@@ -31,6 +33,25 @@ struct Shot {
   Frame frame;
   CameraSettings settings;  ///< in force
   double z_um = 0.0;
+};
+
+/// Puts the camera's settings back, however the work ends.
+class RestoredSettings {
+ public:
+  RestoredSettings(Camera& camera, const CameraSettings& settings) : camera_(camera), settings_(settings) {}
+  ~RestoredSettings() {
+    try {
+      (void)camera_.configure(settings_);
+    } catch (const std::exception& error) {
+      spdlog::warn("the camera's settings could not be put back: {}", error.what());
+    }
+  }
+  RestoredSettings(const RestoredSettings&) = delete;
+  RestoredSettings& operator=(const RestoredSettings&) = delete;
+
+ private:
+  Camera& camera_;
+  CameraSettings settings_;
 };
 
 /// A frame exposed from now on.
@@ -116,6 +137,7 @@ DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
   return [asked, target](const Devices& devices, const std::stop_token& stop) {
     CameraSettings settings = asked;
     ordered_json result;
+    const RestoredSettings restored(devices.camera, asked);
     for (int look = 1; look <= kLooks; ++look) {
       const Shot shot = shoot(devices, settings, stop);
       const GreyStatistics grey = grey_statistics(shot.frame.image);
@@ -126,7 +148,6 @@ DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
       if (reached) break;
       settings.exposure_us = shot.settings.exposure_us * factor;
     }
-    (void)devices.camera.configure(asked);
     return result.dump();
   };
 }

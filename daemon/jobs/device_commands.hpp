@@ -16,7 +16,7 @@ namespace fvd {
 [[nodiscard]] DeviceTask::Work preview_work(const CameraSettings& settings);
 
 /// Looks, and changes the exposure, until 0.1 % of the pixels are brighter than `target` of full scale, 8 looks at
-/// most; nothing of the camera is left changed.
+/// most. However it ends, `settings` are put back in force.
 [[nodiscard]] DeviceTask::Work exposure_work(const CameraSettings& settings, double target);
 
 /// See autofocus().

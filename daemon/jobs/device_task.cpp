@@ -5,7 +5,7 @@
 namespace fvd {
 
 void DeviceTask::end(Outcome outcome) noexcept {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!outcome_) outcome_ = std::move(outcome);
 }
 
@@ -22,7 +22,7 @@ void DeviceTask::run(const Devices& devices, std::stop_token stop) noexcept {
 void DeviceTask::fail(ErrorCode code, const std::string& message) noexcept { end({{}, code, message}); }
 
 std::optional<DeviceTask::Outcome> DeviceTask::outcome() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return outcome_;
 }
 

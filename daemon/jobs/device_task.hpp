@@ -2,16 +2,15 @@
 
 /// Something to be done with the devices between two jobs: an image, an autofocus.
 
-#include <condition_variable>
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <string>
 
 #include "core/base/clock.hpp"
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
 
@@ -50,8 +49,8 @@ class DeviceTask {
   void end(Outcome outcome) noexcept;
 
   Work work_;
-  mutable std::mutex mutex_;
-  std::optional<Outcome> outcome_;  // guarded by mutex_
+  mutable Mutex mutex_;
+  std::optional<Outcome> outcome_ FVD_GUARDED_BY(mutex_);
 };
 
 }  // namespace fvd

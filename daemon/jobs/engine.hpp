@@ -2,17 +2,16 @@
 
 /// The job engine: one measurement at a time on devices it keeps open.
 
-#include <atomic>
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
 
 #include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_slot.hpp"
@@ -33,7 +32,8 @@ struct EngineDependencies {
 };
 
 /// Owns the engine thread; that thread alone touches the devices. While no job runs it keeps trying to open a device
-/// that is missing. It never moves the stage but for a job.
+/// that is missing. The stage moves for a job or a command (submit()) alone; one that is found moving when it is opened
+/// is stopped, and the machine is not ready before its standstill was measured.
 /// context: every public function thread-safe.
 class Engine final : public MachineView,
                      public JobService,
@@ -42,7 +42,7 @@ class Engine final : public MachineView,
                      public RecipeService {
  public:
   Engine(const Config& config, const EngineDependencies& dependencies);
-  /// Aborts a running job, which then ends as failed with kShuttingDown, and closes the devices.
+  /// finish().
   ~Engine() override;
 
   /// The engine in all its parts, for the API.
@@ -66,12 +66,26 @@ class Engine final : public MachineView,
 
   /// Refuses new jobs from now on and aborts the running one; returns at once.
   void shut_down();
+  /// shut_down(), then waits until all has ended and the devices are closed: a running job ends as aborted, one that had
+  /// not begun as failed, and a command that had not begun fails, each with kShuttingDown.
+  /// context: one thread, the one that destroys the engine.
+  void finish();
 
  private:
   struct PendingJob {
     JobStatus status;
     Recipe recipe;
   };
+  /// How a job ended.
+  struct JobEnd {
+    JobState state = JobState::kFailed;
+    std::optional<ErrorCode> error = std::nullopt;
+    std::string message = {};
+    std::string directory = {};                             ///< empty = no result
+    std::string result_text = {};                           ///< of result.json, empty = no result
+    std::optional<DeviceFailure> failure = std::nullopt;  ///< why the machine is not ready after it
+  };
+  enum class Wanted { kJob, kTask };
   /// What is known of the open devices without asking them.
   struct DeviceFacts {
     StageInfo stage;
@@ -84,18 +98,32 @@ class Engine final : public MachineView,
   void check_devices();
   void run_task(DeviceTask& task, std::stop_token stop);
   void run_job(const PendingJob& job, std::stop_token stop);
-  void drop_failed_devices(ErrorCode code);
+  /// Fails what was accepted and has not begun.
+  void end_pending();
+  /// Opens what is missing; why the machine is not ready, nothing if it is. An axis that moves is stopped.
+  [[nodiscard]] std::optional<DeviceFailure> open_devices();
+  /// Asks the open stage whether it stands still, and stops it if not.
+  [[nodiscard]] std::optional<DeviceFailure> measure_standstill();
+  /// The device whose connection was lost since it was opened.
+  [[nodiscard]] std::optional<DeviceFailure> lost_device();
+  /// After a job or a command that ended by an error: gives up a device that is lost, measures standstill, and says why
+  /// the machine is not ready.
+  [[nodiscard]] std::optional<DeviceFailure> failure_behind(ErrorCode code, const std::string& message);
+  [[nodiscard]] bool at_rest() const;
+  void set_at_rest(bool at_rest);
   [[nodiscard]] ErrorCode abort_reason() const;
   [[nodiscard]] MeasurementObserver observer_of_current();
-  void end_job(const PendingJob& job, JobState state, std::optional<ErrorCode> error, const std::string& message,
-               const std::string& directory, const std::string& result_text);
+  void end_job(const PendingJob& job, const JobEnd& end);
   void update_current(const std::function<void(JobStatus&)>& change);
   void notify();
 
-  void require_acceptable_locked(const Recipe& recipe) const;
-  void require_ready_locked() const;
-  [[nodiscard]] Recipe load_checked_recipe_locked(const std::string& recipe_id) const;
-  void transition_locked(ScanEvent event);
+  void require_acceptable_locked(const Recipe& recipe) const FVD_REQUIRES(mutex_);
+  void require_ready_locked(Wanted wanted) const FVD_REQUIRES(mutex_);
+  [[nodiscard]] bool job_runs_locked() const FVD_REQUIRES(mutex_);
+  [[nodiscard]] Recipe load_checked_recipe_locked(const std::string& recipe_id) const FVD_REQUIRES(mutex_);
+  void transition_locked(ScanEvent event) FVD_REQUIRES(mutex_);
+  /// Makes the snapshot anew; called before mutex_ is let go after every change.
+  void publish_locked() FVD_REQUIRES(mutex_);
 
   const Config& config_;
   JobStore& store_;
@@ -103,21 +131,26 @@ class Engine final : public MachineView,
   Clock& clock_;
   WorkerPool pool_;
 
-  mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
-  ScanState state_ = ScanState::kPreoperational;  // this and all below up to the listener's mutex: guarded by mutex_
-  std::optional<DeviceFacts> facts_;
-  std::optional<DeviceFailure> failure_;
-  std::optional<PendingJob> pending_;
-  std::shared_ptr<DeviceTask> task_;  // waiting or running
-  std::stop_source task_stop_;
-  std::optional<JobStatus> current_;
-  std::string prepared_recipe_;
-  std::stop_source job_stop_;
-  bool shutting_down_ = false;
+  mutable Mutex mutex_;
+  Condition changed_;
+  ScanState state_ FVD_GUARDED_BY(mutex_) = ScanState::kPreoperational;
+  std::optional<DeviceFacts> facts_ FVD_GUARDED_BY(mutex_);
+  std::optional<DeviceFailure> failure_ FVD_GUARDED_BY(mutex_);
+  std::optional<PendingJob> pending_ FVD_GUARDED_BY(mutex_);
+  std::shared_ptr<DeviceTask> task_ FVD_GUARDED_BY(mutex_);  // waiting or running
+  std::stop_source task_stop_ FVD_GUARDED_BY(mutex_);
+  bool recipe_ready_ FVD_GUARDED_BY(mutex_) = false;  // the task that runs leads back to ready, not to initialized
+  bool at_rest_ FVD_GUARDED_BY(mutex_) = false;       // standstill was measured since the stage was opened
+  std::optional<JobStatus> current_ FVD_GUARDED_BY(mutex_);
+  std::string prepared_recipe_ FVD_GUARDED_BY(mutex_);
+  std::stop_source job_stop_ FVD_GUARDED_BY(mutex_);
+  bool shutting_down_ FVD_GUARDED_BY(mutex_) = false;
 
-  std::mutex listener_mutex_;       // held while the listener runs: once on_change({}) returned, it is not called again
-  std::function<void()> listener_;  // guarded by listener_mutex_
+  mutable Mutex status_mutex_;  // held for a pointer's copy alone, inside mutex_ or without it
+  std::shared_ptr<const MachineStatus> status_ FVD_GUARDED_BY(status_mutex_);
+
+  Mutex listener_mutex_;  // held while the listener runs: once on_change({}) returned, it is not called again
+  std::function<void()> listener_ FVD_GUARDED_BY(listener_mutex_);
 
   PreviewHub preview_;
   Reaper reaper_;

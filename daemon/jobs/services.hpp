@@ -23,6 +23,9 @@ struct MachineStatus {
   ScanState state = ScanState::kPreoperational;
   std::string recipe;            ///< prepared recipe, empty = none
   std::optional<JobStatus> job;  ///< the running or the latest job
+  /// The part may be taken: standstill was measured since the stage was opened, and neither a command nor the
+  /// acquisition of a job holds it.
+  bool part_free = false;
   int results_waiting = 0;       ///< completed and not acknowledged
   bool simulated = false;
   std::int64_t epoch = 0;          ///< counts the daemon's starts

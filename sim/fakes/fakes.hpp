@@ -41,7 +41,7 @@ enum class TriggerOutcome {
 
 /// A camera that follows a script, one entry a trigger, then delivers good frames. Every pixel of a frame holds the
 /// number of the trigger that made it, modulo 256. Aborts the program if it dies with script left over.
-class FakeCamera final : public Camera, private FrameRecycler {
+class FakeCamera : public Camera, private FrameRecycler {
  public:
   FakeCamera(FakeClock& clock, int width, int height, std::deque<TriggerOutcome> script = {});
   ~FakeCamera() override;
@@ -86,7 +86,7 @@ class FakeCamera final : public Camera, private FrameRecycler {
 };
 
 /// An axis that arrives in 50 ms and rests exactly `error_um` beside its target.
-class FakeAxis final : public Axis {
+class FakeAxis : public Axis {
  public:
   explicit FakeAxis(FakeClock& clock) : clock_(clock) {}
 
