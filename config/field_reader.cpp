@@ -5,6 +5,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "config/relation.hpp"
 #include "config/strict_json.hpp"
 
 namespace fvd {
@@ -100,6 +101,7 @@ void FieldReader::report(std::string_view name, const std::string& message) {
 }
 
 void FieldReader::refuse(std::string_view name, const json& value, const std::string& accepted) {
+  refused_.emplace(name);
   report(name, shown(value) + " is not accepted; expected " + accepted);
 }
 
@@ -179,6 +181,62 @@ void FieldReader::choices(std::string_view name, std::vector<std::string>& value
     read.push_back(item.get<std::string>());
   }
   values = std::move(read);
+}
+
+bool FieldReader::object_list(std::string_view name, const ObjectList& list, IntegerRange count,
+                              std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return false;
+  const auto size = static_cast<std::int64_t>(found->size());
+  if (!found->is_array() || size < count.min || size > count.max) {
+    refuse(name, *found, "a list of " + std::to_string(count.min) + ".." + std::to_string(count.max) + " objects { }");
+    return false;
+  }
+  const std::size_t problems_before = problems_.size();
+  for (std::size_t i = 0; i < found->size(); ++i) {
+    FieldReader element((*found)[i], problems_, pointer_ + "/" + escaped(name) + "/" + std::to_string(i));
+    list.describe_new(element);
+    element.finish();
+  }
+  return problems_.size() == problems_before;
+}
+
+void FieldReader::variant(std::string_view key, std::string& value, const std::vector<Shape>& shapes,
+                          std::string_view meaning) {
+  std::vector<std::string> names;
+  for (const Shape& shape : shapes) names.push_back(shape.name);
+  const std::size_t problems_before = problems_.size();
+  choice(key, value, names, meaning);
+  if (problems_.size() == problems_before) {
+    for (const Shape& shape : shapes) {
+      if (shape.name == value) shape.members(*this);
+    }
+    return;
+  }
+  // Nobody knows which shape was meant: the keys of all of them count as known, only others are reported.
+  static const json kEmpty = json::object();
+  Problems ignored;
+  FieldReader names_only(kEmpty, ignored);
+  for (const Shape& shape : shapes) shape.members(names_only);
+  known_.insert(names_only.known_.begin(), names_only.known_.end());
+}
+
+void FieldReader::optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) {
+  if (find(name) == nullptr) return;
+  const std::size_t problems_before = problems_.size();
+  member(*this);
+  if (problems_.size() == problems_before) present = true;
+}
+
+void FieldReader::relate(std::string_view name, double value, Relation relation, std::string_view other,
+                         double other_value, double offset) {
+  if (!object_.is_object() || refused_.contains(name) || refused_.contains(other)) return;
+  if (holds(value, relation, other_value + offset)) return;
+  std::ostringstream text;
+  text.precision(15);
+  text << name << " is " << value << "; expected " << relation_text(relation, other, offset) << ", and " << other
+       << " is " << other_value;
+  report(name, text.str());
 }
 
 void FieldReader::require(std::string_view name) {

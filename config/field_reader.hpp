@@ -29,6 +29,13 @@ class FieldReader final : public Fields {
               std::string_view meaning) override;
   void choices(std::string_view name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
                std::string_view meaning) override;
+  bool object_list(std::string_view name, const ObjectList& list, IntegerRange count,
+                   std::string_view meaning) override;
+  void variant(std::string_view key, std::string& value, const std::vector<Shape>& shapes,
+               std::string_view meaning) override;
+  void optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) override;
+  void relate(std::string_view name, double value, Relation relation, std::string_view other, double other_value,
+              double offset) override;
   void require(std::string_view name) override;
 
  private:
@@ -40,6 +47,7 @@ class FieldReader final : public Fields {
   Problems& problems_;
   std::string pointer_;
   std::set<std::string, std::less<>> known_;
+  std::set<std::string, std::less<>> refused_;  ///< their values are not those of the document
 };
 
 /// Reads a whole document: problems of syntax, type, range and names, all at once.

@@ -13,8 +13,10 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace fvd {
@@ -35,6 +37,24 @@ struct NumberRange {
 /// A number greater than 0, up to max.
 constexpr NumberRange positive(double max = 1e12) { return {0.0, max, true}; }
 
+/// What a value must be beside the value of another key, plus an offset.
+enum class Relation { kBelow, kAtMost, kAbove, kAtLeast };
+
+class Fields;
+
+/// The elements of a list, without their type.
+struct ObjectList {
+  std::size_t size = 0;                                ///< elements the structure has
+  std::function<void(std::size_t, Fields&)> describe;  ///< describes one of them, index below size
+  std::function<void(Fields&)> describe_new;           ///< describes one more, all its values at their defaults
+};
+
+/// One of the shapes an object can have.
+struct Shape {
+  std::string name;  ///< the key's value that chooses it
+  std::function<void(Fields&)> members;
+};
+
 class Fields {
  public:
   virtual ~Fields() = default;
@@ -50,6 +70,20 @@ class Fields {
   virtual void choices(std::string_view name, std::vector<std::string>& values,
                        const std::vector<std::string>& accepted, std::string_view meaning) = 0;
 
+  /// True where the elements made by describe_new replace the structure's. list() is the typed form.
+  [[nodiscard]] virtual bool object_list(std::string_view name, const ObjectList& list, IntegerRange count,
+                                         std::string_view meaning) = 0;
+  /// Members that only one of several shapes has, beside the key that chooses it. value names a shape, the default.
+  virtual void variant(std::string_view key, std::string& value, const std::vector<Shape>& shapes,
+                       std::string_view meaning) = 0;
+  /// member describes the one field `name`, which may have no value; present tells whether it has. optional() is the
+  /// typed form.
+  virtual void optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) = 0;
+  /// Refuses a value of `name` that does not stand in this relation to `other` + offset. Both are fields of this
+  /// object, described before; their values are given as read, in the unit of their keys.
+  virtual void relate(std::string_view name, double value, Relation relation, std::string_view other,
+                      double other_value, double offset = 0.0) = 0;
+
   /// Marks the field of this name, described before, as one that a document must give.
   virtual void require(std::string_view name) = 0;
 
@@ -59,6 +93,25 @@ class Fields {
     auto wide = static_cast<std::int64_t>(value);
     integer64(name, wide, range, meaning);
     value = static_cast<Integer>(wide);
+  }
+
+  /// A list of objects, each described by describe(Fields&, Element&). count: how many there may be, 0 or more.
+  template <typename Element, typename Describe>
+  void list(std::string_view name, std::vector<Element>& values, IntegerRange count, std::string_view meaning,
+            Describe describe) {
+    std::vector<Element> made;
+    const ObjectList access{values.size(), [&](std::size_t i, Fields& fields) { describe(fields, values[i]); },
+                            [&](Fields& fields) { describe(fields, made.emplace_back()); }};
+    if (object_list(name, access, count, meaning)) values = std::move(made);
+  }
+
+  /// A field that may have no value: describe(Fields&, Value&) describes it under the same name.
+  template <typename Value, typename Describe>
+  void optional(std::string_view name, std::optional<Value>& value, Describe describe) {
+    Value held = value.value_or(Value{});
+    bool present = value.has_value();
+    optional_field(name, present, [&](Fields& fields) { describe(fields, held); });
+    if (present) value = std::move(held);
   }
 };
 
