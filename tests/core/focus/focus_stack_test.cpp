@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -115,6 +116,21 @@ struct Case {
   FocusOperator focus_operator = FocusOperator::kModifiedLaplacian;
   int bin = 1;
 };
+
+/// For the names of the tests.
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << (c.format == PixelFormat::kMono8    ? "Mono8"
+           : c.format == PixelFormat::kMono12 ? "Mono12"
+                                              : "Mono16")
+       << (c.surface == Surface::kTilted    ? "Tilted"
+           : c.surface == Surface::kStepped ? "Stepped"
+                                            : "Random")
+       << c.width << "x" << c.height << "Slices" << c.slices << "Window" << c.window << "Distance" << c.distance
+       << "Bin" << c.bin
+       << (c.focus_operator == FocusOperator::kTenengrad   ? "Tenengrad"
+           : c.focus_operator == FocusOperator::kIntensity ? "Intensity"
+                                                           : "Laplacian");
+}
 
 class AStreamingStack : public testing::TestWithParam<Case> {};
 
