@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
-#include <mutex>
 #include <new>
 #include <vector>
 
 #include <sys/mman.h>
+
+#include "core/base/mutex.hpp"
 
 namespace fvd {
 
@@ -41,7 +42,7 @@ class KeptMemory {
  public:
   /// nullptr if there is none of that size.
   void* take(std::size_t bytes) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto same = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const Block& b) { return b.bytes == bytes; });
     if (same == blocks_.rend()) return nullptr;
     void* const memory = same->memory;
@@ -52,14 +53,14 @@ class KeptMemory {
 
   void keep(void* memory, std::size_t bytes) noexcept {
     ::madvise(memory, bytes, MADV_FREE);  // without it the memory is kept under pressure too, as long as it is here
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     blocks_.push_back({memory, bytes});
     kept_bytes_ += bytes;
     while (kept_bytes_ > kMostKeptBytes || blocks_.size() == blocks_.capacity()) release_oldest();
   }
 
   void release_all() noexcept {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     while (!blocks_.empty()) release_oldest();
   }
 
@@ -69,7 +70,7 @@ class KeptMemory {
     void* memory;
     std::size_t bytes;
   };
-  void release_oldest() noexcept {
+  void release_oldest() noexcept FVD_REQUIRES(mutex_) {
     ::munmap(blocks_.front().memory, blocks_.front().bytes);
     kept_bytes_ -= blocks_.front().bytes;
     blocks_.erase(blocks_.begin());
@@ -80,9 +81,9 @@ class KeptMemory {
     return blocks;
   }
 
-  std::mutex mutex_;
-  std::vector<Block> blocks_ = no_blocks();  // oldest first
-  std::size_t kept_bytes_ = 0;
+  Mutex mutex_;
+  std::vector<Block> blocks_ FVD_GUARDED_BY(mutex_) = no_blocks();  // oldest first
+  std::size_t kept_bytes_ FVD_GUARDED_BY(mutex_) = 0;
 };
 
 /// Never destroyed: arrays with static storage may outlive what is.

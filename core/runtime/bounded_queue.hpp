@@ -4,13 +4,13 @@
 
 #include <cassert>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <utility>
 #include <vector>
+
+#include "core/base/mutex.hpp"
 
 namespace fvd {
 
@@ -24,8 +24,11 @@ class BoundedQueue {
   /// requested: the caller decides what a loss means.
   template <typename Clock>
   [[nodiscard]] bool push_until(T&& item, std::chrono::time_point<Clock> deadline, std::stop_token stop) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_until(lock, stop, deadline, [this] { return count_ < ring_.size() || closed_; });
+    MutexLock lock(mutex_);
+    changed_.wait_until(lock, stop, deadline, [this] {
+      mutex_.assert_held();
+      return count_ < ring_.size() || closed_;
+    });
     if (stop.stop_requested() || closed_ || count_ == ring_.size()) return false;
     ring_[(first_ + count_) % ring_.size()] = std::move(item);
     ++count_;
@@ -35,15 +38,18 @@ class BoundedQueue {
 
   /// Waits for an item. Nothing once the queue is closed and empty, or as soon as stop is requested.
   [[nodiscard]] std::optional<T> pop(std::stop_token stop) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, stop, [this] { return count_ > 0 || closed_; });
+    MutexLock lock(mutex_);
+    changed_.wait(lock, stop, [this] {
+      mutex_.assert_held();
+      return count_ > 0 || closed_;
+    });
     if (count_ == 0 || stop.stop_requested()) return std::nullopt;
     return pop_locked();
   }
 
   /// An item that is there already, without waiting.
   [[nodiscard]] std::optional<T> try_pop() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (count_ == 0) return std::nullopt;
     return pop_locked();
   }
@@ -51,14 +57,14 @@ class BoundedQueue {
   /// No more items come; what is inside can still be popped.
   void close() {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       closed_ = true;
     }
     changed_.notify_all();
   }
 
  private:
-  std::optional<T> pop_locked() {
+  std::optional<T> pop_locked() FVD_REQUIRES(mutex_) {
     std::optional<T> item(std::move(*ring_[first_]));
     ring_[first_].reset();
     first_ = (first_ + 1) % ring_.size();
@@ -67,12 +73,12 @@ class BoundedQueue {
     return item;
   }
 
-  std::mutex mutex_;
-  std::condition_variable_any changed_;
-  std::vector<std::optional<T>> ring_;
-  std::size_t first_ = 0;
-  std::size_t count_ = 0;
-  bool closed_ = false;
+  Mutex mutex_;
+  Condition changed_;
+  std::vector<std::optional<T>> ring_ FVD_GUARDED_BY(mutex_);
+  std::size_t first_ FVD_GUARDED_BY(mutex_) = 0;
+  std::size_t count_ FVD_GUARDED_BY(mutex_) = 0;
+  bool closed_ FVD_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace fvd

@@ -1,43 +1,42 @@
 #include "core/runtime/worker_pool.hpp"
 
 #include <algorithm>
-#include <condition_variable>
 #include <exception>
-#include <mutex>
 #include <stop_token>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include <pthread.h>
+#include "core/base/mutex.hpp"
+#include "core/runtime/guarded_thread.hpp"
 
 namespace fvd {
 
 struct WorkerPool::Impl {
-  std::mutex mutex;
-  std::condition_variable_any work_arrived;
-  std::condition_variable work_done;
-  const std::function<void(int)>* body = nullptr;  // this and all below: guarded by mutex
-  int next = 0;
-  int count = 0;
-  int running = 0;
-  std::exception_ptr failure;
+  Mutex mutex;
+  Condition work_arrived;
+  Condition work_done;
+  const std::function<void(int)>* body FVD_GUARDED_BY(mutex) = nullptr;
+  int next FVD_GUARDED_BY(mutex) = 0;
+  int count FVD_GUARDED_BY(mutex) = 0;
+  int running FVD_GUARDED_BY(mutex) = 0;
+  std::exception_ptr failure FVD_GUARDED_BY(mutex);
   std::vector<std::jthread> threads;  // last: they use everything above
 
-  /// Runs indices until none is left; the lock is held on entry and exit.
-  void work(std::unique_lock<std::mutex>& lock) {
+  /// Runs indices until none is left; lets go of the mutex for each.
+  void work() FVD_REQUIRES(mutex) {
     while (body != nullptr && next < count) {
       const int index = next++;
       const auto& task = *body;
       ++running;
-      lock.unlock();
+      mutex.unlock();
       std::exception_ptr thrown;
       try {
         task(index);
       } catch (...) {
         thrown = std::current_exception();
       }
-      lock.lock();
+      mutex.lock();
       --running;
       if (thrown) {
         if (!failure) failure = thrown;
@@ -48,15 +47,19 @@ struct WorkerPool::Impl {
   }
 
   void serve(std::stop_token stop) {
-    std::unique_lock lock(mutex);
-    while (work_arrived.wait(lock, stop, [this] { return body != nullptr && next < count; })) work(lock);
+    MutexLock lock(mutex);
+    const auto due = [this] {
+      mutex.assert_held();
+      return body != nullptr && next < count;
+    };
+    while (work_arrived.wait(lock, stop, due)) work();
   }
 };
 
 WorkerPool::WorkerPool(int threads) : impl_(std::make_unique<Impl>()) {
   for (int i = 1; i < threads; ++i) {
-    impl_->threads.emplace_back([impl = impl_.get()](std::stop_token stop) { impl->serve(stop); });
-    pthread_setname_np(impl_->threads.back().native_handle(), "fvd-worker");
+    impl_->threads.push_back(
+        start_thread("fvd-worker", [impl = impl_.get()](std::stop_token stop) { impl->serve(stop); }));
   }
 }
 
@@ -65,14 +68,17 @@ WorkerPool::~WorkerPool() = default;
 int WorkerPool::threads() const noexcept { return static_cast<int>(impl_->threads.size()) + 1; }
 
 void WorkerPool::run(int count, const std::function<void(int)>& body) {
-  std::unique_lock lock(impl_->mutex);
+  MutexLock lock(impl_->mutex);
   impl_->body = &body;
   impl_->next = 0;
   impl_->count = count;
   impl_->failure = nullptr;
   if (count > 1) impl_->work_arrived.notify_all();
-  impl_->work(lock);
-  impl_->work_done.wait(lock, [this] { return impl_->running == 0 && impl_->next >= impl_->count; });
+  impl_->work();
+  impl_->work_done.wait(lock, [this] {
+    impl_->mutex.assert_held();
+    return impl_->running == 0 && impl_->next >= impl_->count;
+  });
   impl_->body = nullptr;
   if (auto failure = std::exchange(impl_->failure, nullptr)) std::rethrow_exception(failure);
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <mutex>
 #include <numbers>
 #include <random>
 
+#include "core/base/mutex.hpp"
 #include "sim/axis/axis_motion.hpp"
 
 namespace fvd::sim {
@@ -47,7 +47,7 @@ struct AxisModel::Impl {
   }
 
   /// The command in force at a moment: the last one that has started.
-  [[nodiscard]] const Move& move_at(HostTime at) const {
+  [[nodiscard]] const Move& move_at(HostTime at) const FVD_REQUIRES(mutex) {
     for (auto move = moves.rbegin(); move != moves.rend(); ++move) {
       if (move->start <= at) return *move;
     }
@@ -84,7 +84,7 @@ struct AxisModel::Impl {
     return load;
   }
 
-  [[nodiscard]] double true_um(HostTime at) const {
+  [[nodiscard]] double true_um(HostTime at) const FVD_REQUIRES(mutex) {
     const Move& move = move_at(at);
     // What the motor does beyond its profile, the load does too.
     const double deviation = motor_um(move, at) - move.profile.at(since_start(move, at)).position;
@@ -108,7 +108,7 @@ struct AxisModel::Impl {
   }
 
   /// Prepares the next command: the state it starts from, all errors carried over.
-  [[nodiscard]] Move successor(HostTime now) const {
+  [[nodiscard]] Move successor(HostTime now) const FVD_REQUIRES(mutex) {
     Move next;
     next.start = now + std::chrono::duration_cast<HostClock::duration>(
                            std::chrono::duration<double, std::milli>(p.start_latency_ms));
@@ -125,27 +125,27 @@ struct AxisModel::Impl {
     return next;
   }
 
-  [[nodiscard]] MotionState state(HostTime at) const {
+  [[nodiscard]] MotionState state(HostTime at) const FVD_REQUIRES(mutex) {
     const Move& move = move_at(at);
     return move.profile.at(since_start(move, at));
   }
 
-  void add(const Move& move) {
+  void add(const Move& move) FVD_REQUIRES(mutex) {
     moves.push_back(move);
     // A time asked for is never before the last command, but that one may not have started yet.
     while (moves.size() > 4) moves.pop_front();
   }
 
-  double draw_rest_error() { return p.settle_noise_um * normal(random); }
+  double draw_rest_error() FVD_REQUIRES(mutex) { return p.settle_noise_um * normal(random); }
 
   const AxisParameters p;
   const HostTime born = HostClock::now();
-  mutable std::mutex mutex;
-  std::mt19937_64 random;  // this and all below: guarded by mutex
-  mutable std::mt19937_64 encoder_random;
-  std::normal_distribution<double> normal;
-  mutable std::normal_distribution<double> encoder_normal;
-  std::deque<Move> moves;
+  mutable Mutex mutex;
+  std::mt19937_64 random FVD_GUARDED_BY(mutex);
+  mutable std::mt19937_64 encoder_random FVD_GUARDED_BY(mutex);
+  std::normal_distribution<double> normal FVD_GUARDED_BY(mutex);
+  mutable std::normal_distribution<double> encoder_normal FVD_GUARDED_BY(mutex);
+  std::deque<Move> moves FVD_GUARDED_BY(mutex);
 };
 
 AxisModel::AxisModel(const AxisParameters& parameters) : impl_(std::make_unique<Impl>(parameters)) {}
@@ -155,7 +155,7 @@ const AxisParameters& AxisModel::parameters() const noexcept { return impl_->p; 
 
 void AxisModel::move_to(HostTime now, std::int32_t target_steps, double speed, double acceleration,
                         double deceleration) {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   const double per_um = impl_->p.steps_per_um;
   auto move = impl_->successor(now);
   move.limits = {speed / per_um, acceleration / per_um, deceleration / per_um};
@@ -166,7 +166,7 @@ void AxisModel::move_to(HostTime now, std::int32_t target_steps, double speed, d
 }
 
 void AxisModel::stop(HostTime now) {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   auto move = impl_->successor(now);
   const double deceleration = move.limits.deceleration > 0 ? move.limits.deceleration : 1e4;
   move.profile = MotionProfile::brake(impl_->state(move.start), deceleration);
@@ -175,7 +175,7 @@ void AxisModel::stop(HostTime now) {
 }
 
 void AxisModel::home(HostTime now) {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   auto move = impl_->successor(now);
   // The drive's own homing speed, whatever moves were commanded before.
   move.limits = {2000.0, 20000.0, 20000.0};
@@ -188,7 +188,7 @@ void AxisModel::home(HostTime now) {
 }
 
 void AxisModel::power_cycle(HostTime now) {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   auto move = impl_->successor(now);
   move.start = now;
   const double rest = impl_->state(now).position;
@@ -199,27 +199,27 @@ void AxisModel::power_cycle(HostTime now) {
 }
 
 bool AxisModel::moving(HostTime now) const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   return impl_->running(impl_->move_at(now), now);
 }
 
 bool AxisModel::in_position(HostTime now) const { return !moving(now); }
 
 bool AxisModel::homed(HostTime now) const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   const auto& move = impl_->move_at(now);
   return impl_->running(move, now) ? move.homed_before : move.homed_after;
 }
 
 std::int32_t AxisModel::command_steps(HostTime now) const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   const auto& move = impl_->move_at(now);
   const double position = move.profile.at(impl_->since_start(move, now)).position - impl_->origin_um(move, now);
   return static_cast<std::int32_t>(std::lround(position * impl_->p.steps_per_um));
 }
 
 std::int32_t AxisModel::encoder_steps(HostTime now) const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   const auto& move = impl_->move_at(now);
   const double noise = impl_->p.encoder_noise_um * impl_->encoder_normal(impl_->encoder_random);
   const double origin = impl_->origin_um(move, now);
@@ -237,7 +237,7 @@ double AxisModel::temperature_c(HostTime at) const {
 }
 
 double AxisModel::true_position_um(HostTime at) const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   return impl_->true_um(at);
 }
 

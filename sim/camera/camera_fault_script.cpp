@@ -51,12 +51,12 @@ CameraEvent event_of(CameraFault fault) {
 
 void CameraFaultScript::add(const CameraFaultStep& step) {
   check(step);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   steps_.push_back(step);
 }
 
 std::optional<CameraFaultStep> CameraFaultScript::next(CameraEvent event) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (steps_.empty() || event_of(steps_.front()) != event) return std::nullopt;
   CameraFaultStep& step = steps_.front();
   if (step.after > 0) {
@@ -72,12 +72,12 @@ std::optional<CameraFaultStep> CameraFaultScript::next(CameraEvent event) {
 }
 
 std::size_t CameraFaultScript::unconsumed() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return steps_.size();
 }
 
 std::string CameraFaultScript::describe_unconsumed() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::string text;
   int number = taken_;
   for (const CameraFaultStep& step : steps_) {

@@ -38,7 +38,7 @@ std::uint64_t wide_at(const std::uint8_t* bytes) {
 CameraRegisters::CameraRegisters(const CameraIdentity& identity) : identity_(identity) { initialise_locked(); }
 
 void CameraRegisters::reset() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::uint32_t port = get_locked(reg::kStreamSourcePort);
   initialise_locked();
   set_locked(reg::kStreamSourcePort, port);
@@ -124,17 +124,17 @@ void CameraRegisters::set_text(std::uint32_t address, const std::string& text) {
 }
 
 std::uint32_t CameraRegisters::get(std::uint32_t address) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return get_locked(address);
 }
 
 void CameraRegisters::set(std::uint32_t address, std::uint32_t value) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   set_locked(address, value);
 }
 
 Status CameraRegisters::read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::uint8_t* found = locate(address, bytes.size());
   if (found == nullptr) return Status::kInvalidAddress;
   std::copy_n(found, bytes.size(), bytes.begin());
@@ -200,7 +200,7 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
 }
 
 Status CameraRegisters::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (address % 4 != 0) return Status::kBadAlignment;
   const Status status = check_locked(address, bytes);
   if (status != Status::kSuccess) return status;
@@ -217,7 +217,7 @@ void CameraRegisters::refresh_payload_locked() {
 }
 
 CameraState CameraRegisters::state() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   CameraState state;
   state.format = format_of(get_locked(feature::kPixelFormat)).value();
   state.width = static_cast<int>(get_locked(feature::kWidth));

@@ -3,11 +3,11 @@
 /// The memory of the simulated camera: bootstrap registers, its GenICam XML, and its features.
 
 #include <cstdint>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/mutex.hpp"
 #include "core/image/sensor_format.hpp"
 #include "sim/camera/gvcp.hpp"
 
@@ -87,22 +87,25 @@ class CameraRegisters {
   [[nodiscard]] CameraState state() const;
 
  private:
-  [[nodiscard]] std::uint32_t get_locked(std::uint32_t address) const;
-  [[nodiscard]] double get_float_locked(std::uint32_t address) const;
-  void set_locked(std::uint32_t address, std::uint32_t value);
-  void set_float_locked(std::uint32_t address, double value);
-  void set_text(std::uint32_t address, const std::string& text);
-  void initialise_locked();
-  void refresh_payload_locked();
-  [[nodiscard]] gvcp::Status check_locked(std::uint32_t address, std::span<const std::uint8_t> bytes) const;
-  [[nodiscard]] std::uint8_t* locate(std::uint32_t address, std::size_t count);
-  [[nodiscard]] const std::uint8_t* locate(std::uint32_t address, std::size_t count) const;
+  [[nodiscard]] std::uint32_t get_locked(std::uint32_t address) const FVD_REQUIRES(mutex_);
+  [[nodiscard]] double get_float_locked(std::uint32_t address) const FVD_REQUIRES(mutex_);
+  void set_locked(std::uint32_t address, std::uint32_t value) FVD_REQUIRES(mutex_);
+  void set_float_locked(std::uint32_t address, double value) FVD_REQUIRES(mutex_);
+  void set_text(std::uint32_t address, const std::string& text) FVD_REQUIRES(mutex_);
+  void initialise_locked() FVD_REQUIRES(mutex_);
+  void refresh_payload_locked() FVD_REQUIRES(mutex_);
+  [[nodiscard]] gvcp::Status check_locked(std::uint32_t address, std::span<const std::uint8_t> bytes) const
+      FVD_REQUIRES(mutex_);
+  // The analysis does not see that the const one, which this calls, is of the same object.
+  [[nodiscard]] std::uint8_t* locate(std::uint32_t address, std::size_t count)
+      FVD_REQUIRES(mutex_) FVD_NO_THREAD_SAFETY_ANALYSIS;
+  [[nodiscard]] const std::uint8_t* locate(std::uint32_t address, std::size_t count) const FVD_REQUIRES(mutex_);
 
   const CameraIdentity identity_;
-  mutable std::mutex mutex_;
-  std::vector<std::uint8_t> bootstrap_;  // these three: guarded by mutex_
-  std::vector<std::uint8_t> xml_;
-  std::vector<std::uint8_t> features_;
+  mutable Mutex mutex_;
+  std::vector<std::uint8_t> bootstrap_ FVD_GUARDED_BY(mutex_);
+  std::vector<std::uint8_t> xml_ FVD_GUARDED_BY(mutex_);
+  std::vector<std::uint8_t> features_ FVD_GUARDED_BY(mutex_);
 };
 
 }  // namespace fvd::sim

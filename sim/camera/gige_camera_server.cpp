@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "sim/base/file_descriptor.hpp"
 #include "sim/camera/camera_registers.hpp"
 #include "sim/camera/gige_control.hpp"
@@ -77,7 +78,7 @@ struct GigeCameraServer::Impl {
                  [this](const CameraFaultStep& step) { strike(step); }),
         control(registers, streamer, sender, faults, [this](const CameraFaultStep& step) { strike(step); }) {
     registers.set(gvcp::reg::kStreamSourcePort, static_cast<std::uint32_t>(sender.source_port()));
-    serving = std::jthread([this](std::stop_token stop) { serve(stop); });
+    serving = start_thread("sim-gvcp", [this](std::stop_token stop) { serve(stop); });
   }
 
   ~Impl() {

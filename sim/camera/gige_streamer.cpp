@@ -5,6 +5,7 @@
 
 #include <sys/prctl.h>
 
+#include "core/runtime/guarded_thread.hpp"
 #include "sim/camera/sensor_readout.hpp"
 
 namespace fvd::sim {
@@ -38,8 +39,8 @@ GigeStreamer::GigeStreamer(FrameSource& source, const CameraRegisters& registers
       first_block_id_(first_block_id),
       extended_ids_(extended_ids),
       struck_(std::move(struck)),
-      reading_([this](std::stop_token stop) { read_out(stop); }),
-      exposing_thread_([this](std::stop_token stop) { expose(stop); }) {}
+      reading_(start_thread("sim-readout", [this](std::stop_token stop) { read_out(stop); })),
+      exposing_thread_(start_thread("sim-exposure", [this](std::stop_token stop) { expose(stop); })) {}
 
 GigeStreamer::~GigeStreamer() {
   exposing_thread_.request_stop();
@@ -52,7 +53,7 @@ std::uint64_t GigeStreamer::timestamp_ns(HostTime time) const {
 
 void GigeStreamer::set_acquiring(bool on) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (on && !acquiring_) next_block_id_ = first_block_id_;
     acquiring_ = on;
     triggered_ = false;
@@ -63,7 +64,7 @@ void GigeStreamer::set_acquiring(bool on) {
 }
 
 void GigeStreamer::look_again() {
-  { const std::lock_guard lock(mutex_); }  // whoever looks at the registers now has them as they were, or waits already
+  { const MutexLock lock(mutex_); }  // whoever looks at the registers now has them as they were, or waits already
   changed_.notify_all();
 }
 
@@ -74,7 +75,7 @@ bool GigeStreamer::trigger(bool by_line) {
   if (fault) struck_(*fault);
   const CameraState state = registers_.state();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!acquiring_ || exposing_ || !state.triggered || state.by_line != by_line) return true;
     triggered_ = true;
   }
@@ -83,14 +84,17 @@ bool GigeStreamer::trigger(bool by_line) {
 }
 
 bool GigeStreamer::wait_until(HostTime time, std::uint64_t acquisition, std::stop_token stop) {
-  std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, stop, time, [&] { return acquisition_ != acquisition; });
+  MutexLock lock(mutex_);
+  changed_.wait_until(lock, stop, time, [&] {
+    mutex_.assert_held();
+    return acquisition_ != acquisition;
+  });
   return !stop.stop_requested() && acquisition_ == acquisition;
 }
 
 void GigeStreamer::stand_still(std::stop_token stop) {
   while (hung_.now() && !stop.stop_requested()) {
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     changed_.wait_until(lock, stop, hung_.end(), [] { return false; });
   }
 }
@@ -106,19 +110,22 @@ void GigeStreamer::expose(std::stop_token stop) {
     std::uint64_t acquisition = 0;
     CameraState state;
     {
-      std::unique_lock lock(mutex_);
-      const auto due = [&] { return acquiring_ && (triggered_ || !registers_.state().triggered); };
+      MutexLock lock(mutex_);
+      const auto due = [&] {
+        mutex_.assert_held();
+        return acquiring_ && (triggered_ || !registers_.state().triggered);
+      };
       if (!changed_.wait(lock, stop, due)) return;
       state = registers_.state();
       acquisition = acquisition_;
       if (!triggered_) {
         // A rate that cannot be held is followed as well as may be, without catching up.
         next_free_run = std::max(next_free_run, HostClock::now() - nanoseconds_of_us(1e6 / state.frame_rate_hz));
-        if (changed_.wait_until(lock, stop, next_free_run,
-                                [&] { return acquisition_ != acquisition || registers_.state().triggered; }) ||
-            stop.stop_requested()) {
-          continue;
-        }
+        const auto changes = [&] {
+          mutex_.assert_held();
+          return acquisition_ != acquisition || registers_.state().triggered;
+        };
+        if (changed_.wait_until(lock, stop, next_free_run, changes) || stop.stop_requested()) continue;
         start = std::max(next_free_run, HostClock::now() - std::chrono::milliseconds(1));
         next_free_run += nanoseconds_of_us(1e6 / state.frame_rate_hz);
       } else {
@@ -128,7 +135,7 @@ void GigeStreamer::expose(std::stop_token stop) {
       exposing_ = true;
     }
     (void)expose_one(state, start, acquisition, stop);
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     exposing_ = false;
   }
 }
@@ -150,7 +157,7 @@ bool GigeStreamer::expose_one(const CameraState& state, HostTime start, std::uin
   exposure.request.end = start + nanoseconds_of_us(state.exposure_us);
   exposure.request.exposure_index = exposures_++;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is(fault, CameraFault::kIdsRestart)) next_block_id_ = first_block_id_;
     if (is(fault, CameraFault::kIdJump)) next_block_id_ += static_cast<std::uint64_t>(fault->value);
     // GigE Vision 1.x: 16 bit, 0 is never used.
@@ -164,7 +171,7 @@ bool GigeStreamer::expose_one(const CameraState& state, HostTime start, std::uin
   if (is(fault, CameraFault::kEarlyLeader) && !mute_.now()) sender_.send_leader(header_of(exposure));
   if (!wait_until(exposure.request.end, acquisition, stop)) return false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     exposing_ = false;  // before anybody can see the frame, and trigger the next
     if (acquisition_ != acquisition) return false;
     if (exposed_.size() >= kHeld) {
@@ -184,8 +191,12 @@ void GigeStreamer::read_out(std::stop_token stop) {
   while (!stop.stop_requested()) {
     Exposure exposure;
     {
-      std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, stop, [this] { return !exposed_.empty(); })) return;
+      MutexLock lock(mutex_);
+      if (!changed_.wait(lock, stop, [this] {
+            mutex_.assert_held();
+            return !exposed_.empty();
+          }))
+        return;
       exposure = std::move(exposed_.front());
       exposed_.pop_front();
     }
@@ -241,7 +252,7 @@ void GigeStreamer::send(const Exposure& exposure, std::stop_token stop) {
     return;
   }
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (acquisition_ != exposure.acquisition) return;
   }
   if (mute_.now() || frame->to_port == 0) return;

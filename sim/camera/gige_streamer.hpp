@@ -4,17 +4,16 @@
 /// next exposure runs.
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <thread>
 
 #include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
 #include "sim/camera/camera_fault_script.hpp"
 #include "sim/camera/camera_registers.hpp"
 #include "sim/camera/gvsp_sender.hpp"
@@ -88,14 +87,15 @@ class GigeStreamer {
   const Struck struck_;
   const HostTime started_ = HostClock::now();
 
-  std::mutex mutex_;
-  std::condition_variable_any changed_;
-  bool acquiring_ = false;  // this and all to exposed_: guarded by mutex_
-  bool triggered_ = false;
-  bool exposing_ = false;
-  std::uint64_t acquisition_ = 0;  // counts starts and stops: tells a frame that it is out of date
-  std::uint64_t next_block_id_ = 1;
-  std::deque<Exposure> exposed_;
+  Mutex mutex_;
+  Condition changed_;
+  bool acquiring_ FVD_GUARDED_BY(mutex_) = false;
+  bool triggered_ FVD_GUARDED_BY(mutex_) = false;
+  bool exposing_ FVD_GUARDED_BY(mutex_) = false;
+  // Counts starts and stops: tells a frame that it is out of date.
+  std::uint64_t acquisition_ FVD_GUARDED_BY(mutex_) = 0;
+  std::uint64_t next_block_id_ FVD_GUARDED_BY(mutex_) = 1;
+  std::deque<Exposure> exposed_ FVD_GUARDED_BY(mutex_);
 
   std::uint64_t exposures_ = 0;                // exposing thread only
   std::shared_ptr<const StreamFrame> before_;  // reading thread only

@@ -65,7 +65,7 @@ GvspSender::~GvspSender() { ::close(socket_); }
 bool GvspSender::lose_packet() {
   const double ratio = packet_loss_;
   if (ratio <= 0.0) return false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (std::uniform_real_distribution<double>(0.0, 1.0)(random_) >= ratio) return false;
   ++packets_lost_;
   return true;
@@ -74,7 +74,7 @@ bool GvspSender::lose_packet() {
 std::shared_ptr<StreamFrame> GvspSender::spare() {
   std::shared_ptr<const StreamFrame> frame;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     frame = std::move(spare_);
   }
   // Nobody else refers to it: a frame leaves the store for good before it becomes the spare one.
@@ -83,13 +83,13 @@ std::shared_ptr<StreamFrame> GvspSender::spare() {
 }
 
 void GvspSender::forget() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   kept_.clear();
 }
 
 void GvspSender::send(const std::shared_ptr<const StreamFrame>& frame, const Sending& what) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     kept_.push_back(frame);
     if (kept_.size() > kKept) {
       spare_ = std::move(kept_.front());
@@ -118,7 +118,7 @@ void GvspSender::send_leader(const StreamFrame& frame) { transmit(frame, std::ar
 void GvspSender::resend(std::uint64_t block_id, std::uint32_t first, std::uint32_t last) {
   std::shared_ptr<const StreamFrame> frame;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found =
         std::find_if(kept_.rbegin(), kept_.rend(), [&](const auto& kept) { return kept->block_id == block_id; });
     if (found == kept_.rend()) return;

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <random>
 #include <span>
 
 #include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
 #include "sim/camera/gvsp.hpp"
 
 namespace fvd::sim {
@@ -64,10 +64,10 @@ class GvspSender {
   std::atomic<double> packet_loss_{0.0};
   std::atomic<std::uint64_t> packets_lost_{0};
   std::atomic<std::uint64_t> packets_resent_{0};
-  std::mutex mutex_;
-  std::deque<std::shared_ptr<const StreamFrame>> kept_;  // this, spare_ and random_: guarded by mutex_
-  std::shared_ptr<const StreamFrame> spare_;
-  std::mt19937_64 random_;
+  Mutex mutex_;
+  std::deque<std::shared_ptr<const StreamFrame>> kept_ FVD_GUARDED_BY(mutex_);
+  std::shared_ptr<const StreamFrame> spare_ FVD_GUARDED_BY(mutex_);
+  std::mt19937_64 random_ FVD_GUARDED_BY(mutex_);
 };
 
 }  // namespace fvd::sim

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/runtime/guarded_thread.hpp"
+
 namespace fvd::sim {
 
 namespace {
@@ -11,7 +13,9 @@ constexpr std::chrono::microseconds kPeriod{200};
 }  // namespace
 
 LineTrigger::LineTrigger(const AxisModel& axis, std::function<void()> edge)
-    : axis_(axis), edge_(std::move(edge)), thread_([this](std::stop_token stop) { watch(stop); }) {}
+    : axis_(axis),
+      edge_(std::move(edge)),
+      thread_(start_thread("sim-line", [this](std::stop_token stop) { watch(stop); })) {}
 
 void LineTrigger::watch(std::stop_token stop) const {
   bool before = true;

@@ -22,7 +22,7 @@ HostTime SimDrive::time_passes() {
 }
 
 ModbusException SimDrive::read(int address, std::span<std::uint16_t> values) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const HostTime now = time_passes();
   last_request_ = now;
   const auto exception = may_read(address, values.size());
@@ -34,7 +34,7 @@ ModbusException SimDrive::read(int address, std::span<std::uint16_t> values) {
 }
 
 ModbusException SimDrive::write(int address, std::span<const std::uint16_t> values) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const HostTime now = time_passes();
   last_request_ = now;
   const auto exception = may_write(address, values);
@@ -45,20 +45,22 @@ ModbusException SimDrive::write(int address, std::span<const std::uint16_t> valu
 }
 
 void SimDrive::idle() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   time_passes();
 }
 
 ModbusException SimDrive::may_read(int address, std::size_t count) const {
+  mutex_.assert_held();
   return image_.readable(address, count) ? ModbusException::kNone : ModbusException::kIllegalAddress;
 }
 
 ModbusException SimDrive::may_write(int address, std::span<const std::uint16_t> values) const {
+  mutex_.assert_held();
   return image_.writable(address, values.size()) ? ModbusException::kNone : ModbusException::kIllegalAddress;
 }
 
 void SimDrive::raise_alarm(int code) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const HostTime now = time_passes();
   alarm_ = code;
   axis_.stop(now);
@@ -66,21 +68,21 @@ void SimDrive::raise_alarm(int code) {
 }
 
 void SimDrive::limit_hit() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const HostTime now = time_passes();
   axis_.stop(now);
   on_limit(now);
 }
 
 void SimDrive::emergency_stop() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const HostTime now = time_passes();
   axis_.stop(now);
   on_torque_off(now);
 }
 
 void SimDrive::power_cycle() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const HostTime now = time_passes();
   axis_.power_cycle(now);
   alarm_ = 0;
@@ -92,29 +94,42 @@ void SimDrive::power_cycle() {
 }
 
 void SimDrive::refuse_moves(int count) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   refused_starts_ = count;
 }
 
 void SimDrive::hold_in_position(HostClock::duration duration) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   held_until_ = clock_() + duration;
 }
 
 bool SimDrive::axis_moves() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return axis_.moving(clock_());
 }
 
-bool SimDrive::reports_motion(HostTime now) const { return !is_held(now) && axis_.moving(now); }
+bool SimDrive::reports_motion(HostTime now) const {
+  mutex_.assert_held();
+  return !is_held(now) && axis_.moving(now);
+}
 
-bool SimDrive::reports_in_position(HostTime now) const { return is_held(now) || axis_.in_position(now); }
+bool SimDrive::reports_in_position(HostTime now) const {
+  mutex_.assert_held();
+  return is_held(now) || axis_.in_position(now);
+}
 
-std::int32_t SimDrive::command_position(HostTime now) const { return saturated(axis_.command_steps(now) + offset_); }
+std::int32_t SimDrive::command_position(HostTime now) const {
+  mutex_.assert_held();
+  return saturated(axis_.command_steps(now) + offset_);
+}
 
-std::int32_t SimDrive::actual_position(HostTime now) const { return saturated(axis_.encoder_steps(now) + offset_); }
+std::int32_t SimDrive::actual_position(HostTime now) const {
+  mutex_.assert_held();
+  return saturated(axis_.encoder_steps(now) + offset_);
+}
 
 void SimDrive::preset_position(HostTime now, std::int32_t position) {
+  mutex_.assert_held();
   offset_ = std::int64_t{position} - axis_.command_steps(now);
 }
 
@@ -125,6 +140,7 @@ bool SimDrive::refuses_start() {
 }
 
 bool SimDrive::start_move(HostTime now, std::int64_t target, double speed, double acceleration, double deceleration) {
+  mutex_.assert_held();
   if (!(speed > 0) || !(acceleration > 0) || !(deceleration > 0) || refuses_start()) return false;
   ++moves_;
   axis_.move_to(now, saturated(target - offset_), speed, acceleration, deceleration);
@@ -132,6 +148,7 @@ bool SimDrive::start_move(HostTime now, std::int64_t target, double speed, doubl
 }
 
 bool SimDrive::start_home(HostTime now) {
+  mutex_.assert_held();
   if (refuses_start()) return false;
   offset_ = 0;
   axis_.home(now);

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <span>
 
 #include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
 #include "sim/axis/axis_model.hpp"
 #include "sim/modbus/drive_faults.hpp"
 #include "sim/modbus/register_bank.hpp"
@@ -53,12 +53,24 @@ class SimDrive : public RegisterBank, public DriveFaults {
   [[nodiscard]] virtual ModbusException may_read(int address, std::size_t count) const;
   [[nodiscard]] virtual ModbusException may_write(int address, std::span<const std::uint16_t> values) const;
 
-  [[nodiscard]] RegisterImage& image() { return image_; }
-  [[nodiscard]] const RegisterImage& image() const { return image_; }
+  [[nodiscard]] RegisterImage& image() {
+    mutex_.assert_held();
+    return image_;
+  }
+  [[nodiscard]] const RegisterImage& image() const {
+    mutex_.assert_held();
+    return image_;
+  }
   [[nodiscard]] AxisModel& axis() { return axis_; }
 
-  [[nodiscard]] int alarm() const { return alarm_; }
-  void set_alarm(int code) { alarm_ = code; }
+  [[nodiscard]] int alarm() const {
+    mutex_.assert_held();
+    return alarm_;
+  }
+  void set_alarm(int code) {
+    mutex_.assert_held();
+    alarm_ = code;
+  }
 
   // What the drive reports: a fault may hold it.
   [[nodiscard]] bool reports_motion(HostTime now) const;
@@ -74,22 +86,25 @@ class SimDrive : public RegisterBank, public DriveFaults {
   bool start_home(HostTime now);
 
   /// When the request before this one came; when the drive was switched on if there was none.
-  [[nodiscard]] HostTime last_request() const { return last_request_; }
+  [[nodiscard]] HostTime last_request() const {
+    mutex_.assert_held();
+    return last_request_;
+  }
 
  private:
-  [[nodiscard]] bool is_held(HostTime now) const { return now < held_until_; }
-  [[nodiscard]] bool refuses_start();
-  HostTime time_passes();
+  [[nodiscard]] bool is_held(HostTime now) const FVD_REQUIRES(mutex_) { return now < held_until_; }
+  [[nodiscard]] bool refuses_start() FVD_REQUIRES(mutex_);
+  HostTime time_passes() FVD_REQUIRES(mutex_);
 
   AxisModel& axis_;
   DriveClock clock_;
-  std::mutex mutex_;
-  RegisterImage image_;  // this and all below: guarded by mutex_
-  int alarm_ = 0;
-  int refused_starts_ = 0;
-  std::int64_t offset_ = 0;  // what the drive calls a position, minus what the axis calls it
-  HostTime held_until_ = HostTime::min();
-  HostTime last_request_ = HostTime::max();
+  Mutex mutex_;
+  RegisterImage image_ FVD_GUARDED_BY(mutex_);
+  int alarm_ FVD_GUARDED_BY(mutex_) = 0;
+  int refused_starts_ FVD_GUARDED_BY(mutex_) = 0;
+  std::int64_t offset_ FVD_GUARDED_BY(mutex_) = 0;  // what the drive calls a position, minus what the axis calls it
+  HostTime held_until_ FVD_GUARDED_BY(mutex_) = HostTime::min();
+  HostTime last_request_ FVD_GUARDED_BY(mutex_) = HostTime::max();
   std::atomic<int> moves_{0};
 };
 

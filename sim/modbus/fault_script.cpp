@@ -50,12 +50,12 @@ FaultScript::FaultScript(const std::vector<FaultStep>& steps) {
 
 void FaultScript::add(const FaultStep& step) {
   check(step);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   steps_.push_back(step);
 }
 
 std::optional<FaultStep> FaultScript::next(std::span<const std::uint8_t> request, bool axis_moves) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (steps_.empty() || !matches(steps_.front(), request, axis_moves)) return std::nullopt;
   FaultStep& step = steps_.front();
   if (step.after > 0) {
@@ -71,12 +71,12 @@ std::optional<FaultStep> FaultScript::next(std::span<const std::uint8_t> request
 }
 
 std::size_t FaultScript::unconsumed() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return steps_.size();
 }
 
 std::string FaultScript::describe_unconsumed() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::string text;
   int number = taken_;
   for (const FaultStep& step : steps_) {

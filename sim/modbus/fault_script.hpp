@@ -5,12 +5,13 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/base/mutex.hpp"
 
 namespace fvd::sim {
 
@@ -66,9 +67,9 @@ class FaultScript {
   [[nodiscard]] std::string describe_unconsumed() const;
 
  private:
-  mutable std::mutex mutex_;
-  std::deque<FaultStep> steps_;  // guarded by mutex_; after and count of the first run down
-  int taken_ = 0;
+  mutable Mutex mutex_;
+  std::deque<FaultStep> steps_ FVD_GUARDED_BY(mutex_);  // after and count of the first run down
+  int taken_ FVD_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace fvd::sim

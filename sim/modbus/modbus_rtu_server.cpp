@@ -18,6 +18,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "sim/base/file_descriptor.hpp"
 #include "sim/modbus/scripted_responder.hpp"
 
@@ -97,7 +98,7 @@ struct ModbusRtuServer::Impl {
         link(o.link, slave_path),
         path(o.link.empty() ? slave_path : o.link),
         wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
-        thread([this](std::stop_token stop) { serve(stop); }) {}
+        thread(start_thread("sim-modbus-rtu", [this](std::stop_token stop) { serve(stop); })) {}
 
   ~Impl() {
     thread.request_stop();

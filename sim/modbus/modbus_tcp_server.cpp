@@ -4,10 +4,8 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <condition_variable>
 #include <cstring>
 #include <list>
-#include <mutex>
 #include <stop_token>
 #include <thread>
 #include <vector>
@@ -20,6 +18,8 @@
 #include <sys/socket.h>
 
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "sim/base/file_descriptor.hpp"
 #include "sim/modbus/scripted_responder.hpp"
 
@@ -75,7 +75,7 @@ struct ModbusTcpServer::Impl {
         listener(listening_socket(options)),
         wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         port(bound_port(listener.get())),
-        thread([this](std::stop_token stop) { serve(stop); }) {}
+        thread(start_thread("sim-modbus-tcp", [this](std::stop_token stop) { serve(stop); })) {}
 
   ~Impl() {
     thread.request_stop();
@@ -155,9 +155,9 @@ struct ModbusTcpServer::Impl {
 
   static void pause(std::chrono::milliseconds duration, const std::stop_token& stop) {
     if (duration.count() == 0) return;
-    std::mutex mutex;
-    std::condition_variable_any never;
-    std::unique_lock lock(mutex);
+    Mutex mutex;
+    Condition never;
+    MutexLock lock(mutex);
     never.wait_for(lock, stop, duration, [] { return false; });
   }
 

@@ -3,6 +3,7 @@
 /// One fault of the camera in the middle of a scan, and whether a wrong slice was believed because of it.
 
 #include <memory>
+#include <ostream>
 #include <set>
 #include <sstream>
 #include <string>
@@ -86,6 +87,9 @@ struct CameraFaultCase {
   /// The job's end that is right: nothing = it completes.
   std::optional<ErrorCode> end{};
 };
+
+/// For the names of the tests.
+inline void PrintTo(const CameraFaultCase& of, std::ostream* out) { *out << of.name; }
 
 inline std::vector<CameraFaultCase> camera_fault_cases() {
   using sim::CameraEvent;

@@ -1,9 +1,11 @@
 #pragma once
 
-/// Checks for fvd::Error: the code, and words that the message must contain.
+/// Expectations about Error: its code, and what its message tells.
 
 #include <initializer_list>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -13,6 +15,7 @@
 
 namespace fvd::test {
 
+/// The code, and words that the message must contain.
 template <typename Action>
 void expect_error(ErrorCode code, std::initializer_list<std::string> words, Action&& action) {
   try {
@@ -24,4 +27,29 @@ void expect_error(ErrorCode code, std::initializer_list<std::string> words, Acti
   }
 }
 
+/// The Error that `body` throws; nothing if it throws none.
+template <typename Body>
+std::optional<Error> error_of(Body body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+inline std::string_view name_of(const std::optional<Error>& error) {
+  return error ? error_name(error->code()) : std::string_view("no error");
+}
+
 }  // namespace fvd::test
+
+#define FVD_EXPECT_ERROR_SAYING(expected_code, statement, matcher)                                  \
+  do {                                                                                              \
+    const auto fvd_error = ::fvd::test::error_of([&] { statement; });                               \
+    EXPECT_EQ(::fvd::test::name_of(fvd_error), ::fvd::error_name(::fvd::ErrorCode::expected_code)); \
+    EXPECT_THAT(std::string(fvd_error ? fvd_error->what() : ""), matcher);                          \
+  } while (false)
+
+#define FVD_EXPECT_ERROR(expected_code, statement) \
+  FVD_EXPECT_ERROR_SAYING(expected_code, statement, ::testing::Not(::testing::IsEmpty()))

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "gtest/gtest.h"
+#include "tests/support/sleeping_thread.hpp"
 
 namespace fvd {
 namespace {
@@ -50,19 +51,24 @@ TEST(BoundedQueue, DrainsAfterCloseAndThenEnds) {
 
 TEST(BoundedQueue, WakesAWaitingConsumerOnStop) {
   BoundedQueue<int> queue(1);
-  std::jthread consumer([&queue](std::stop_token stop) { EXPECT_FALSE(queue.pop(stop).has_value()); });
+  test::SleepingThread consumer([&queue](std::stop_token stop) { EXPECT_FALSE(queue.pop(stop).has_value()); });
+  ASSERT_TRUE(consumer.sleeps());
   consumer.request_stop();
 }
 
 TEST(BoundedQueue, WakesAWaitingProducerOnStopAndOnClose) {
   BoundedQueue<int> queue(1);
   ASSERT_TRUE(push_now(queue, 1));
-  std::jthread stopped(
-      [&queue](std::stop_token stop) { EXPECT_FALSE(queue.push_until(2, steady_clock::time_point::max(), stop)); });
-  stopped.request_stop();
-  stopped.join();
-  const std::jthread refused([&queue] { EXPECT_FALSE(queue.push_until(3, steady_clock::time_point::max(), {})); });
+  const auto forever = steady_clock::now() + std::chrono::hours(1);
+  {
+    test::SleepingThread stopped([&](std::stop_token stop) { EXPECT_FALSE(queue.push_until(2, forever, stop)); });
+    ASSERT_TRUE(stopped.sleeps());
+    stopped.request_stop();
+  }
+  test::SleepingThread refused([&](std::stop_token) { EXPECT_FALSE(queue.push_until(3, forever, {})); });
+  const bool slept = refused.sleeps();
   queue.close();
+  EXPECT_TRUE(slept);
 }
 
 TEST(BoundedQueue, HandsEveryItemFromOneThreadToAnother) {

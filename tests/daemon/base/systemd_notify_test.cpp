@@ -1,6 +1,7 @@
 #include "daemon/base/systemd_notify.hpp"
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 
@@ -60,11 +61,16 @@ TEST_F(AServiceManager, HearsThatTheServiceStops) {
   EXPECT_THAT(heard(), ::testing::StartsWith("STOPPING=1\n"));
 }
 
-TEST(SystemdNotify, IsSilentWithoutAServiceManager) {
+TEST_F(AServiceManager, HearsNothingOfAServiceThatItDidNotStart) {
+  notify_status("started");
+  ASSERT_EQ(heard(), "STATUS=started") << "the socket hears";
   ::unsetenv("NOTIFY_SOCKET");
   notify_ready("x");
   notify_status("x");
   notify_stopping();
+  char byte = 0;
+  EXPECT_EQ(::recv(socket_, &byte, 1, MSG_DONTWAIT), -1);
+  EXPECT_TRUE(errno == EAGAIN || errno == EWOULDBLOCK) << std::strerror(errno);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/readable_name.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -109,6 +110,10 @@ struct BadConfig {
   std::string pointer;
   std::string says;
 };
+
+/// For the names of the tests.
+void PrintTo(const BadConfig& of, std::ostream* out) { *out << of.pointer << ": " << of.says; }
+
 class ABadConfig : public ::testing::TestWithParam<BadConfig> {};
 
 TEST_P(ABadConfig, IsRefusedWithPointerAndReason) {
@@ -133,7 +138,8 @@ INSTANTIATE_TEST_SUITE_P(
                       BadConfig{R"({"camera": {"driver": "usb"}})", "/camera/driver", "\"aravis\", \"replay\""},
                       BadConfig{R"({"a/b~c": 1})", "/a~1b~0c", "unknown key"},
                       BadConfig{"{\"rpc\": {\"address\": \"\xff\"}}", "", "no valid JSON"},
-                      BadConfig{std::string(100, '['), "", "deeper"}));
+                      BadConfig{std::string(100, '['), "", "deeper"}),
+    [](const auto& of) { return test::readable_name(of.index, of.param.pointer + " " + of.param.says); });
 
 TEST(ConfigFile, PutsOverridesOverTheFile) {
   const LoadedConfig loaded = parse_config(R"({"rpc": {"port": 1}})", "/etc/fvd",

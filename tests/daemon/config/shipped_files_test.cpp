@@ -15,7 +15,7 @@
 #include "daemon/config/config_file.hpp"
 #include "daemon/recipes/recipe_book.hpp"
 #include "drivers/modbus/drive_profile.hpp"
-#include "tests/daemon/expect_error.hpp"
+#include "tests/support/expect_error.hpp"
 
 namespace fvd {
 namespace {
@@ -206,7 +206,7 @@ TEST(ConfigSchema, AcceptsExactlyWhatTheReaderAccepts) {
 TEST(RecipeSchema, AcceptsExactlyWhatTheReaderAccepts) {
   // Rules between keys are not the schema's: they are refused with other words than those of a range.
   const auto reader_accepts = [](const std::string& text) {
-    const auto error = error_of([&] { (void)parse_recipe(text, "r"); });
+    const auto error = test::error_of([&] { (void)parse_recipe(text, "r"); });
     return !error || std::string(error->what()).find(" is even;") != std::string::npos ||
            std::string(error->what()).find("is the peak already") != std::string::npos ||
            std::string(error->what()).find("leaves fewer than 3") != std::string::npos;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <optional>
+#include <ostream>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -136,6 +137,9 @@ struct BadStack {
   void (*spoil)(const fs::path& folder);
   const char* named;
 };
+
+/// For the names of the tests.
+inline void PrintTo(const BadStack& of, std::ostream* out) { *out << of.what; }
 
 class ABadStack : public testing::TestWithParam<BadStack> {};
 

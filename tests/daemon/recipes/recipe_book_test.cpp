@@ -7,11 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "config/field_writer.hpp"
-#include "tests/daemon/expect_error.hpp"
+#include "tests/support/expect_error.hpp"
+#include "tests/support/readable_name.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
 namespace {
+
+using namespace std::string_literals;
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -96,6 +99,10 @@ struct BadRecipe {
   std::string pointer;
   std::string says;
 };
+
+/// For the names of the tests.
+void PrintTo(const BadRecipe& of, std::ostream* out) { *out << of.pointer << ": " << of.says; }
+
 class ABadRecipe : public ::testing::TestWithParam<BadRecipe> {};
 
 TEST_P(ABadRecipe, IsRefusedWithPointerAndReason) {
@@ -125,7 +132,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{with_scan(R"("camera": {"exposure": 1})"), "/camera/exposure", "did you mean 'exposure_us'?"},
         BadRecipe{with_scan(R"("lateral": {"pixel_pitch_x_um": -1})"), "/lateral/pixel_pitch_x_um", "above 0"},
         BadRecipe{with_scan(R"("result": {"record_slices": "yes"})"), "/result/record_slices", "true or false"},
-        BadRecipe{with_scan(R"("speed": 1)"), "/speed", "unknown key"}));
+        BadRecipe{with_scan(R"("speed": 1)"), "/speed", "unknown key"}),
+    [](const auto& of) { return test::readable_name(of.index, of.param.pointer + " " + of.param.says); });
 
 TEST(Recipe, ReportsAllProblemsAtOnce) {
   FVD_EXPECT_ERROR_SAYING(
@@ -196,7 +204,8 @@ TEST_F(ARecipeFolder, NamesTheKnownRecipesWhenOneIsUnknown) {
 TEST_F(ARecipeFolder, DoesNotLeaveItself) {
   put("a.json");
   std::filesystem::create_directory(folder_.path() / "inner");
-  for (const std::string id : {"../a", "inner/../a", "", ".", "..", "a.json", "a\0"}) {
+  put("inner/a.json");  // what "a\0" would open
+  for (const std::string& id : {"../a"s, "inner/../a"s, ""s, "."s, ".."s, "a.json"s, "a\0"s}) {
     FVD_EXPECT_ERROR(kUnknownRecipe, (void)load_recipe(folder_.path() / "inner", id));
   }
 }

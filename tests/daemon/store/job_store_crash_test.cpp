@@ -13,7 +13,7 @@
 
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_store.hpp"
-#include "tests/daemon/expect_error.hpp"
+#include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {

@@ -10,10 +10,14 @@
 #include <gtest/gtest.h>
 
 #include "daemon/store/database.hpp"
-#include "tests/daemon/expect_error.hpp"
+#include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
+
+/// For the names of the tests.
+static void PrintTo(JobState state, std::ostream* out) { *out << job_state_name(state); }
+
 namespace {
 
 JobRequest request(std::int64_t seq, const std::string& part = "part", const std::string& recipe = "chapter") {
@@ -148,7 +152,8 @@ TEST_P(EveryJobState, SurvivesReopening) {
   EXPECT_EQ(store_->find(job.job_id).status.error, std::nullopt);
 }
 INSTANTIATE_TEST_SUITE_P(Ended, EveryJobState,
-                         ::testing::Values(JobState::kCompleted, JobState::kAborted, JobState::kFailed));
+                         ::testing::Values(JobState::kCompleted, JobState::kAborted, JobState::kFailed),
+                         [](const auto& of) { return std::string(job_state_name(of.param)); });
 
 TEST_F(AJobStore, KeepsEveryErrorCode) {
   for (int code = 0; code <= static_cast<int>(kLastErrorCode); ++code) {

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -119,6 +120,9 @@ struct TiffLayout {
   std::uint16_t planes;
   bool tiled;
 };
+
+/// For the names of the tests.
+inline void PrintTo(const TiffLayout& of, std::ostream* out) { *out << of.name; }
 
 /// The level of a sample: tells columns, rows and channels apart.
 int expected_level(int x, int y, int channel, int bits) {
