@@ -3,28 +3,21 @@
 /// JSON-RPC 2.0 as a function from lines to lines: no sockets, no threads, no waiting.
 
 #include <chrono>
-#include <cstdint>
-#include <functional>
-#include <map>
-#include <memory>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/jobs/services.hpp"
+#include "daemon/api/method.hpp"
 
 namespace fvd {
 
 /// A request whose answer has to wait for a job (job.wait) or for the devices.
 struct WaitingRequest {
   nlohmann::json id;
-  JobKey key;
-  bool until_acquired = false;  ///< else until the job has ended
-  std::chrono::milliseconds timeout{0};
-  std::shared_ptr<DeviceTask> task{};  ///< if given, it is waited for, and key means nothing
+  Deferred until;
 };
 
 /// What became of a line.
@@ -34,19 +27,26 @@ struct Handled {
   bool is_parse_error = false;            ///< the line was no JSON
 };
 
-/// context: one thread at a time.
+/// context: thread-safe; it keeps nothing between two calls.
 class Dispatcher {
  public:
   static constexpr std::size_t kMaxLineBytes = 65536;
   static constexpr std::size_t kMaxBatch = 16;
 
   explicit Dispatcher(const Services& services);
+  Dispatcher(const Dispatcher&) = delete;  // a method refers to the table
+  Dispatcher& operator=(const Dispatcher&) = delete;
 
-  /// One request or batch. Never throws. Replies are ASCII.
-  [[nodiscard]] Handled handle(std::string_view line);
+  /// One request or batch. Never throws. Replies are ASCII. May block for files and the database.
+  [[nodiscard]] Handled handle(std::string_view line) const;
+  /// The same for what needs neither file nor database; never blocks. Nothing, and nothing executed, if handle() has to
+  /// take the line.
+  [[nodiscard]] std::optional<Handled> try_handle(std::string_view line) const;
 
-  /// The answer to a waiting request if what it waits for has come, or, with `timed_out`, in any case.
-  [[nodiscard]] std::optional<std::string> resume(const WaitingRequest& waiting, bool timed_out);
+  /// The answer to a waiting request if what it waits for has come, or, with `timed_out`, in any case. May block.
+  [[nodiscard]] std::optional<std::string> resume(const WaitingRequest& waiting, bool timed_out) const;
+  /// False while the machine's snapshot says that it has not come, and resume() would give nothing. Never blocks.
+  [[nodiscard]] bool may_have_come(const WaitingRequest& waiting) const;
 
   /// The reply to a line that is too long to be read.
   [[nodiscard]] static std::string too_long();
@@ -61,42 +61,25 @@ class Dispatcher {
   using Json = nlohmann::json;
   using OrderedJson = nlohmann::ordered_json;
 
-  enum class ParamType { kText, kInteger, kNumber, kAny };
-  struct Param {
-    std::string name;
-    ParamType type = ParamType::kText;
-    bool required = false;
-    std::string meaning;
+  /// How a request is to be handled.
+  struct Mode {
+    bool may_block = false;
+    bool in_batch = false;
   };
-  struct Method {
-    std::string summary;
-    std::vector<Param> params;
-    std::function<OrderedJson(const Json& params)> run;
+  /// What became of one request.
+  struct Answer {
+    std::optional<OrderedJson> reply{};
+    std::optional<WaitingRequest> waiting{};
+    bool would_block = false;  ///< nothing was done
   };
 
-  void add(const std::string& name, Method method);
-  void add_system_methods();
-  void add_recipe_methods();
-  void add_job_methods();
-  void add_result_methods();
-  void add_device_methods();
-  /// A method whose answer comes when its task is done.
-  void add_task(const std::string& name, const std::string& summary, std::vector<Param> params,
-                std::function<std::shared_ptr<DeviceTask>(const Json& params)> begin);
-  [[nodiscard]] std::optional<std::string> resume_task(const WaitingRequest& waiting, bool timed_out);
-  [[nodiscard]] OrderedJson describe_methods() const;
-  [[nodiscard]] std::optional<OrderedJson> handle_request(const Json& request, bool in_batch, Handled& handled);
-  [[nodiscard]] std::optional<OrderedJson> handle_batch(const Json& batch);
-  [[nodiscard]] OrderedJson run_method(const std::string& name, const Json& params, const Json& id);
-  [[nodiscard]] std::optional<WaitingRequest> as_waiting(const std::string& name, const Json& params,
-                                                         const Json& id) const;
-  [[nodiscard]] std::int64_t heartbeat() const;
+  [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, bool may_block) const;
+  [[nodiscard]] Answer handle_request(const Json& request, Mode mode) const;
+  [[nodiscard]] Answer handle_batch(const Json& batch, bool may_block) const;
+  [[nodiscard]] Answer run_method(const Json& request, const Json& id, Mode mode) const;
 
   Services services_;
-  std::map<std::string, Method> methods_;
-  bool may_wait_ = false;              // the request at hand can be answered later
-  std::shared_ptr<DeviceTask> begun_;  // by the method that runs
-  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  MethodTable methods_;  // not changed after construction
 };
 
 }  // namespace fvd

@@ -1,11 +1,14 @@
 #include "daemon/transport/rpc_server.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <deque>
 #include <fstream>
+#include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -16,13 +19,14 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <netinet/tcp.h>
-#include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "daemon/api/dispatcher.hpp"
 #include "daemon/transport/foreign_protocol.hpp"
+#include "daemon/transport/worker.hpp"
 
 namespace fvd {
 
@@ -62,13 +66,13 @@ struct RpcServer::Impl {
         dispatcher(s),
         acceptor(context),
         accept_pause(context),
-        port_file(runtime_dir / "rpc.json") {
+        port_file(runtime_dir / "rpc.json"),
+        worker("fvd-rpc-work") {
     listen();
     write_port_file();
     accept();
     services.machine.on_change([this] { asio::post(context, [this] { resume_all(); }); });
-    thread = std::jthread([this] { context.run(); });
-    pthread_setname_np(thread.native_handle(), "fvd-rpc");
+    thread = start_thread("fvd-rpc", [this](const std::stop_token&) { context.run(); });
   }
 
   ~Impl() {
@@ -111,6 +115,7 @@ struct RpcServer::Impl {
   }
 
   void accept();
+  [[nodiscard]] bool has_room();
   void resume_all();
 
   const RpcConfig config;
@@ -122,6 +127,7 @@ struct RpcServer::Impl {
   std::filesystem::path port_file;
   int port = 0;
   std::set<std::shared_ptr<Session>> sessions;  // network thread only
+  Worker worker;                                // after what its tasks refer to
   std::jthread thread;                          // last
 };
 
@@ -145,8 +151,21 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
 
   /// A job changed, or the waiting time is over: what waits for it may go on.
   void resume(bool timed_out) {
-    if (!try_answer_wait(timed_out)) return;
+    check_wait(timed_out);
     process();
+  }
+
+  [[nodiscard]] bool is_half_closed() const noexcept { return half_closed_; }
+
+  void close() {
+    refused_ = true;
+    waiting_.reset();
+    ErrorCodeOf ignored;
+    idle_.cancel();
+    wait_.cancel();
+    socket_.shutdown(tcp::socket::shutdown_both, ignored);
+    socket_.close(ignored);
+    server_.sessions.erase(shared_from_this());
   }
 
  private:
@@ -154,13 +173,14 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   void watch_idle() {
     idle_.expires_after(std::chrono::seconds(server_.config.idle_timeout_s));
     idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
-      // A request that waits for a job is no silence; its own timeout ends it.
-      if (!error && !self->waiting_) self->close();
+      // A request that is not answered yet is no silence; its own timeout ends it.
+      if (!error && !self->has_request()) self->close();
     });
   }
 
   void read() {
     socket_.async_read_some(asio::buffer(chunk_), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
+      if (error == asio::error::eof && !self->refused_) return self->half_close();
       if (error) return self->close();
       // What comes after a refusal is read and dropped: closing with unread input would take the refusal with it.
       if (!self->refused_) {
@@ -171,10 +191,38 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     });
   }
 
-  /// Handles the whole lines at hand, in order; stops at a request that has to wait.
+  /// The client sends no more; what it asked for is still answered.
+  void half_close() {
+    half_closed_ = true;
+    close_if_all_is_said();
+  }
+
+  void close_if_all_is_said() {
+    if (half_closed_ && !refused_ && !has_request() && unsent_.empty()) close();
+  }
+
+  /// True while a request is not answered: on the worker, or waiting for a job or the devices.
+  [[nodiscard]] bool has_request() const noexcept { return at_work_ || waiting_.has_value(); }
+
+  /// Has the worker do something that may block, and `then`, a member, take what it gives, on the network thread.
+  template <typename Result>
+  void work(std::function<Result(const Dispatcher&)> what, void (Session::*then)(Result)) {
+    at_work_ = true;
+    server_.worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
+      Result result = what(self->server_.dispatcher);
+      asio::io_context& context = self->server_.context;
+      // The session moves along: it ends on the network thread.
+      asio::post(context, [self = std::move(self), result = std::move(result), then]() mutable {
+        self->at_work_ = false;
+        if (!self->refused_) (self.get()->*then)(std::move(result));
+      });
+    });
+  }
+
+  /// Handles the whole lines at hand, in order; stops at a request that cannot be answered at once.
   void process() {
     std::size_t begin = 0;
-    while (!waiting_ && !refused_) {
+    while (!has_request() && !refused_) {
       const std::size_t end = input_.find_first_of(std::string_view("\n\r\0", 3), begin);
       if (end == std::string::npos) break;
       const std::string_view line(input_.data() + begin, end - begin);
@@ -183,36 +231,69 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
       if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
       if (begins_foreign_protocol(line)) return refuse_with(Dispatcher::foreign_protocol());
       watch_idle();
-      Handled handled = server_.dispatcher.handle(line);
-      parse_errors_in_a_row_ = handled.is_parse_error ? parse_errors_in_a_row_ + 1 : 0;
-      if (parse_errors_in_a_row_ == kMaxParseErrorsInARow) return refuse_with(Dispatcher::no_json());
-      if (handled.reply) send(std::move(*handled.reply));
-      if (handled.waiting) begin_wait(std::move(*handled.waiting));
+      if (auto handled = server_.dispatcher.try_handle(line)) {
+        take(std::move(*handled));
+      } else {
+        work<Handled>([line = std::string(line)](const Dispatcher& dispatcher) { return dispatcher.handle(line); },
+                      &Session::take_and_go_on);
+      }
     }
+    if (refused_) return;
     input_.erase(0, begin);
     // Also bounds what piles up behind a request that waits.
-    if (input_.size() > Dispatcher::kMaxLineBytes) refuse_with(Dispatcher::too_long());
+    if (input_.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
+    close_if_all_is_said();
+  }
+
+  void take(Handled handled) {
+    watch_idle();
+    parse_errors_in_a_row_ = handled.is_parse_error ? parse_errors_in_a_row_ + 1 : 0;
+    if (parse_errors_in_a_row_ == kMaxParseErrorsInARow) return refuse_with(Dispatcher::no_json());
+    if (handled.reply) send(std::move(*handled.reply));
+    if (handled.waiting && !refused_) begin_wait(std::move(*handled.waiting));
+  }
+
+  void take_and_go_on(Handled handled) {
+    take(std::move(handled));
+    process();
   }
 
   void begin_wait(WaitingRequest waiting) {
-    wait_.expires_after(waiting.timeout);
+    timed_out_ = false;
+    wait_.expires_after(waiting.until.timeout);
     waiting_ = std::move(waiting);
     wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
-      if (!error) self->resume(true);
+      // An expiry that was on its way when the wait ended must not end the next one.
+      if (!error && self->wait_.expiry() <= std::chrono::steady_clock::now()) self->resume(true);
     });
-    (void)try_answer_wait(false);
+    check_wait(false);
   }
 
-  /// True if the waiting request was answered.
-  [[nodiscard]] bool try_answer_wait(bool timed_out) {
-    if (!waiting_) return false;
-    auto reply = server_.dispatcher.resume(*waiting_, timed_out);
-    if (!reply) return false;
+  /// Has the worker look whether what is waited for has come; a look that is under way is followed by another.
+  void check_wait(bool timed_out) {
+    if (!waiting_) return;
+    timed_out_ = timed_out_ || timed_out;
+    if (at_work_) {
+      look_again_ = true;
+      return;
+    }
+    if (!timed_out_ && !server_.dispatcher.may_have_come(*waiting_)) return;
+    look_again_ = false;
+    work<std::optional<std::string>>([waiting = *waiting_, late = timed_out_](
+                                         const Dispatcher& dispatcher) { return dispatcher.resume(waiting, late); },
+                                     &Session::end_wait);
+  }
+
+  void end_wait(std::optional<std::string> reply) {
+    if (!reply) {
+      if (look_again_) check_wait(false);
+      return;
+    }
     waiting_.reset();
     wait_.cancel();
     watch_idle();
     send(std::move(*reply));
-    return true;
+    process();
   }
 
   /// Says why and ends the connection once that is said.
@@ -243,18 +324,8 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
                         if (!self->unsent_.empty()) return self->write();
                         ErrorCodeOf ignored;
                         if (self->refused_) self->socket_.shutdown(tcp::socket::shutdown_send, ignored);
+                        self->close_if_all_is_said();
                       });
-  }
-
-  void close() {
-    refused_ = true;
-    waiting_.reset();
-    ErrorCodeOf ignored;
-    idle_.cancel();
-    wait_.cancel();
-    socket_.shutdown(tcp::socket::shutdown_both, ignored);
-    socket_.close(ignored);
-    server_.sessions.erase(shared_from_this());
   }
 
   Impl& server_;
@@ -266,6 +337,10 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   std::deque<std::string> unsent_;
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;
+  bool at_work_ = false;     // the worker has something of this session, one thing at a time
+  bool timed_out_ = false;   // of waiting_
+  bool look_again_ = false;  // something changed while the worker looked
+  bool half_closed_ = false;
   bool refused_ = false;
   int parse_errors_in_a_row_ = 0;
 };
@@ -282,7 +357,7 @@ void RpcServer::Impl::accept() {
       return;
     }
     const auto session = std::make_shared<Session>(*this, std::move(socket));
-    const bool room = sessions.size() < static_cast<std::size_t>(config.max_connections);
+    const bool room = has_room();
     sessions.insert(session);
     if (room) {
       session->start();
@@ -291,6 +366,17 @@ void RpcServer::Impl::accept() {
     }
     accept();
   });
+}
+
+bool RpcServer::Impl::has_room() {
+  if (sessions.size() < static_cast<std::size_t>(config.max_connections)) return true;
+  // A client that went away in the middle of a wait looks half-closed; it must not keep itself from coming back.
+  const auto leaving = std::find_if(sessions.begin(), sessions.end(),
+                                    [](const std::shared_ptr<Session>& session) { return session->is_half_closed(); });
+  if (leaving == sessions.end()) return false;
+  const auto session = *leaving;  // closing takes it out of the set
+  session->close();
+  return true;
 }
 
 void RpcServer::Impl::resume_all() {

@@ -13,7 +13,9 @@ namespace fvd {
 /// Lines end with LF, CR, CRLF or NUL; replies end with LF. Requests of one connection are answered in their order.
 /// A connection is closed after a line over 64 KiB, one that begins as HTTP or TLS does (nothing behind it is read), or
 /// the third line in a row that is no JSON; also one too many, one that is silent for idle_timeout_s, and one that does
-/// not take its replies. Owns one network thread; nothing a client does blocks it.
+/// not take its replies. Owns a network thread, which answers what the machine's snapshot tells, and one for requests
+/// that may block: nothing a client does keeps another from its ping. A client that has closed its sending side still
+/// gets the answers to what it asked, unless its connection is needed for another client.
 class RpcServer {
  public:
   /// Listens, and writes <runtime_dir>/rpc.json {"address","port","pid"}. Becomes the machine's change listener.

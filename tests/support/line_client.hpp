@@ -40,6 +40,9 @@ class LineClient {
     }
   }
 
+  /// Half-closes: the server sees the end of what it is sent, and may still answer.
+  void finish_sending() { ::shutdown(socket_, SHUT_WR); }
+
   /// The next line; nothing after the deadline or when the server closed.
   std::optional<std::string> line(std::chrono::milliseconds within = std::chrono::seconds(5)) {
     const auto deadline = std::chrono::steady_clock::now() + within;

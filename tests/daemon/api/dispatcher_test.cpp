@@ -54,20 +54,29 @@ TEST_F(ADispatcher, RefusesDeepNestingBeforeAnythingRecurses) {
 
 TEST_F(ADispatcher, RefusesWhatIsNoRequest) {
   for (const char* line :
-       {"1", "null", "\"text\"", "{}", R"({"jsonrpc":2.0,"id":1,"method":"system.ping"})",
-        R"({"jsonrpc":"1.0","id":1,"method":"system.ping"})", R"({"jsonrpc":"2.0","id":1})",
-        R"({"jsonrpc":"2.0","id":1,"method":5})", R"({"jsonrpc":"2.0","id":1.5,"method":"system.ping"})",
+       {"1", "null", "\"text\"", "{}", R"({"jsonrpc":"2.0","id":1.5,"method":"system.ping"})",
         R"({"jsonrpc":"2.0","id":true,"method":"system.ping"})", R"({"jsonrpc":"2.0","id":[],"method":"system.ping"})",
         R"({"jsonrpc":"2.0","id":12345678901234567890123,"method":"system.ping"})",
         R"({"jsonrpc":"2.0","id":9007199254740992,"method":"system.ping"})",
-        R"({"jsonrpc":"2.0","id":1,"method":"system.ping","params":"bar"})"}) {
+        R"({"jsonrpc":"2.0","id":9007199254740993.0,"method":"system.ping"})"}) {
     EXPECT_EQ(error_of(line), json_rpc::kInvalidRequest) << line;
     EXPECT_TRUE(reply(line)["id"].is_null()) << line;
   }
 }
 
+TEST_F(ADispatcher, AnswersByTheIdThatStandsBesideAnotherFault) {
+  for (const char* line :
+       {R"({"jsonrpc":2.0,"id":7,"method":"system.ping"})", R"({"jsonrpc":"1.0","id":7,"method":"system.ping"})",
+        R"({"id":7,"method":"system.ping"})", R"({"jsonrpc":"2.0","id":7})", R"({"jsonrpc":"2.0","id":7,"method":5})",
+        R"({"jsonrpc":"2.0","id":7,"method":"system.ping","params":"bar"})"}) {
+    EXPECT_EQ(error_of(line), json_rpc::kInvalidRequest) << line;
+    EXPECT_EQ(reply(line)["id"], 7) << line;
+  }
+}
+
 TEST_F(ADispatcher, EchoesTheIdAsItCame) {
-  for (const json& id : {json(1), json("1"), json(nullptr), json(-5), json("abc"), json(9007199254740991)}) {
+  for (const json& id :
+       {json(1), json("1"), json(nullptr), json(-5), json("abc"), json(9007199254740991), json(1.0), json(-3.0)}) {
     EXPECT_EQ(reply(json{{"jsonrpc", "2.0"}, {"id", id}, {"method", "system.ping"}}.dump())["id"], id);
   }
 }
@@ -78,6 +87,56 @@ TEST_F(ADispatcher, NeverAnswersANotification) {
                            R"([{"jsonrpc":"2.0","method":"system.ping"}])"}) {
     EXPECT_FALSE(dispatcher_.handle(line).reply.has_value()) << line;
   }
+}
+
+TEST_F(ADispatcher, NeverStartsOrMovesAnythingForANotification) {
+  for (const char* line :
+       {R"({"jsonrpc":"2.0","method":"job.start","params":[1,"p"]})",
+        R"([{"jsonrpc":"2.0","method":"job.start","params":[1,"p"]}])",
+        R"({"jsonrpc":"2.0","method":"stage.move","params":[10.0]})", R"({"jsonrpc":"2.0","method":"stage.home"})"}) {
+    EXPECT_FALSE(dispatcher_.handle(line).reply.has_value()) << line;
+    EXPECT_FALSE(dispatcher_.handle(line).waiting.has_value()) << line;
+  }
+  EXPECT_EQ(service_.starts, 0);
+  EXPECT_EQ(service_.task, nullptr);
+}
+
+TEST_F(ADispatcher, AnswersFromTheSnapshotWhatItCan) {
+  JobStatus running;
+  running.job_id = "job-8";
+  running.request.seq = 8;
+  service_.current = running;
+  for (const char* line :
+       {R"({"jsonrpc":"2.0","id":1,"method":"system.ping"})", R"({"jsonrpc":"2.0","id":1,"method":"system.state"})",
+        R"({"jsonrpc":"2.0","id":1,"method":"system.info"})", R"({"jsonrpc":"2.0","id":1,"method":"rpc.discover"})",
+        R"([{"jsonrpc":"2.0","id":1,"method":"system.ping"},{"jsonrpc":"2.0","id":2,"method":"system.state"}])",
+        R"({"jsonrpc":"2.0","id":1,"method":"no.such"})", R"({"jsonrpc":"2.0","id":1,"method":"job.start"})", "{"}) {
+    const auto handled = dispatcher_.try_handle(line);
+    ASSERT_TRUE(handled.has_value()) << line;
+    EXPECT_EQ(handled->reply, dispatcher_.handle(line).reply) << line;
+  }
+  const auto status = dispatcher_.try_handle(R"({"jsonrpc":"2.0","id":1,"method":"job.status","params":{"seq":8}})");
+  ASSERT_TRUE(status.has_value()) << "the job that runs";
+  EXPECT_EQ(json::parse(status->reply.value())["result"]["job_id"], "job-8");
+}
+
+TEST_F(ADispatcher, LeavesToHandleWhatMayBlock) {
+  const json params_of{{"recipe.get", {{"id", "chapter"}}}, {"recipe.prepare", {{"id", "chapter"}}},
+                       {"recipe.list", json::object()},     {"job.start", {{"seq", 1}, {"part_id", "p"}}},
+                       {"job.status", {{"seq", 1}}},        {"job.wait", {{"seq", 1}}},
+                       {"job.abort", {{"seq", 1}}},         {"result.get", {{"seq", 1}}},
+                       {"result.next", json::object()},     {"result.ack", {{"seq", 1}}},
+                       {"stage.accuracy", json::object()},  {"stage.home", json::object()},
+                       {"stage.move", {{"z_um", 1}}},       {"camera.snap", json::object()},
+                       {"camera.preview", json::object()}};
+  for (const auto& [method, params] : params_of.items()) {
+    const json request{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}};
+    EXPECT_FALSE(dispatcher_.try_handle(request.dump()).has_value()) << method;
+    const json ping{{"jsonrpc", "2.0"}, {"id", 2}, {"method", "system.ping"}};
+    EXPECT_FALSE(dispatcher_.try_handle(json{ping, request}.dump()).has_value()) << method << " in a batch";
+  }
+  EXPECT_EQ(service_.starts, 0);
+  EXPECT_EQ(service_.task, nullptr);
 }
 
 TEST_F(ADispatcher, AnswersBatchesInOrder) {
@@ -93,10 +152,20 @@ TEST_F(ADispatcher, AnswersBatchesInOrder) {
 }
 
 TEST_F(ADispatcher, LimitsBatches) {
-  const json ping{{"jsonrpc", "2.0"}, {"id", 1}, {"method", "system.ping"}};
-  EXPECT_EQ(error_of(json(std::vector<json>(17, ping)).dump()), json_rpc::kInvalidRequest);
+  json pings = json::array();
+  for (int id = 0; id < 17; ++id) pings.push_back({{"jsonrpc", "2.0"}, {"id", id}, {"method", "system.ping"}});
+  const json answer = reply(pings.dump());
+  ASSERT_EQ(answer.size(), 17U) << "member by member";
+  for (int id = 0; id < 17; ++id) {
+    EXPECT_EQ(answer[static_cast<std::size_t>(id)]["id"], id);
+    EXPECT_EQ(answer[static_cast<std::size_t>(id)]["error"]["code"], json_rpc::kInvalidRequest);
+  }
+  EXPECT_EQ(reply(json(std::vector<json>(20000, json(5))).dump()).size(), 1U) << "the nameless get one answer";
   const json start{{"jsonrpc", "2.0"}, {"id", 1}, {"method", "job.start"}, {"params", {{"seq", 1}, {"part_id", "p"}}}};
-  EXPECT_EQ(error_of(json{start, start}.dump()), json_rpc::kInvalidRequest);
+  for (const json& refused : reply(json{start, start}.dump())) {
+    EXPECT_EQ(refused["error"]["code"], json_rpc::kInvalidRequest);
+    EXPECT_EQ(refused["id"], 1);
+  }
   EXPECT_EQ(service_.starts, 0);
 }
 
@@ -118,6 +187,66 @@ TEST_F(ADispatcher, RefusesWrongTypesAndRanges) {
     EXPECT_EQ(error_of(std::string(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":)") + params + "}"),
               json_rpc::kInvalidParams)
         << params;
+  }
+  EXPECT_EQ(service_.starts, 0);
+}
+
+TEST_F(ADispatcher, TakesWholeNumbersHoweverTheyAreWritten) {
+  EXPECT_EQ(
+      reply(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":{"seq":4711.0,"part_id":"p"}})")["result"]["seq"],
+      4711);
+  EXPECT_EQ(result_of("job.status", {{"seq", 4.711e3}})["job_id"], "job-4711");
+}
+
+TEST_F(ADispatcher, NamesTheRangeOfEveryNumberBeyondIt) {
+  struct Case {
+    const char* method;
+    const char* params;
+    const char* range;
+  };
+  for (const Case& beyond : {Case{"job.start", R"({"seq":0,"part_id":"p"})", "1..9007199254740991"},
+                             Case{"job.start", R"({"seq":18446744073709551615,"part_id":"p"})", "1..9007199254740991"},
+                             Case{"job.start", R"({"seq":1e300,"part_id":"p"})", "1..9007199254740991"},
+                             Case{"job.status", R"({"seq":9007199254740992})", "1..9007199254740991"},
+                             Case{"job.abort", R"({"seq":-1})", "1..9007199254740991"},
+                             Case{"result.get", R"({"seq":0})", "1..9007199254740991"},
+                             Case{"result.ack", R"({"seq":18446744073709551615})", "1..9007199254740991"},
+                             Case{"job.wait", R"({"seq":1,"timeout_ms":30001})", "0..30000"},
+                             Case{"camera.snap", R"({"exposure_us":-1})", "0.001..60000000"},
+                             Case{"camera.preview", R"({"gain_db":101})", "0..100"},
+                             Case{"camera.suggest_exposure", R"({"target":1})", "0.1..0.95"},
+                             Case{"stage.move", R"({"z_um":1e7})", "-1000000..1000000"},
+                             Case{"stage.autofocus", R"({"from_um":0,"to_um":1e9})", "-1000000..1000000"}}) {
+    const json error = reply(std::string(R"({"jsonrpc":"2.0","id":1,"method":")") + beyond.method + R"(","params":)" +
+                             beyond.params + "}")["error"];
+    EXPECT_EQ(error["code"], json_rpc::kInvalidParams) << beyond.method << beyond.params;
+    EXPECT_NE(error["message"].get<std::string>().find(beyond.range), std::string::npos) << error.dump();
+  }
+  EXPECT_EQ(service_.starts, 0);
+  EXPECT_EQ(service_.task, nullptr);
+}
+
+TEST_F(ADispatcher, RepeatsNoMoreThan64BytesOfWhatItWasSent) {
+  const std::string run(65, 'q');
+  for (const std::string& line : {
+           R"({"jsonrpc":"2.0","id":1,"method":")" + run + "\"}",
+           R"({"jsonrpc":"2.0","id":")" + run + R"(","method":"system.ping"})",
+           R"({"jsonrpc":"2.0","id":1,"method":"system.ping","params":{")" + run + "\":1}}",
+           R"({"jsonrpc":"2.0","id":1,"method":"system.ping","params":{"t":")" + run + "\"}}",
+           R"({"jsonrpc":"2.0","id":1,"method":"job.status","params":{"job_id":")" + run + "\"}}",
+           R"({"jsonrpc":"2.0","id":1,"method":"recipe.get","params":{"id":")" + run + "\"}}",
+           R"({"jsonrpc":"2.0","id":1,"method":"recipe.prepare","params":{"id":")" + run + "\"}}",
+           R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":{"seq":1,"part_id":"p","recipe":")" + run + "\"}}",
+           R"({"jsonrpc":"2.0","id":1,"method":"camera.snap","params":{"recipe":")" + run + "\"}}",
+           "{\"" + run + "\":1,\"" + run + "\":2}",
+           "\"" + run + run,
+           "{\"a\":\"" + run + "\x01\"}",
+           run,
+       }) {
+    const auto answer = dispatcher_.handle(line).reply;
+    ASSERT_TRUE(answer.has_value()) << line;
+    EXPECT_TRUE(json::parse(*answer).contains("error")) << *answer;
+    EXPECT_EQ(answer->find(run), std::string::npos) << *answer;
   }
   EXPECT_EQ(service_.starts, 0);
 }

@@ -20,6 +20,7 @@ class FakeJobService final : public MachineView,
   [[nodiscard]] Services services() { return {*this, *this, *this, *this, *this}; }
 
   Started start(const JobRequest& request) override {
+    if (before_start) before_start();
     const std::lock_guard lock(mutex_);
     if (refusal) throw Error(*refusal, "refused by the test");
     ++starts;
@@ -69,6 +70,7 @@ class FakeJobService final : public MachineView,
     MachineStatus status;
     status.state = ScanState::kReady;
     status.epoch = 17;
+    status.job = current;
     return std::make_shared<const MachineStatus>(status);
   }
   /// Done only when a test runs it.
@@ -101,6 +103,10 @@ class FakeJobService final : public MachineView,
     if (listener) listener();
   }
 
+  /// In a test that has start() block.
+  std::function<void()> before_start;
+  /// The snapshot's job.
+  std::optional<JobStatus> current;
   int starts = 0;
   std::optional<ErrorCode> refusal;
   std::string result =

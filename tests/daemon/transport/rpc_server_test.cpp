@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <future>
 
 #include <nlohmann/json.hpp>
 
@@ -163,6 +164,87 @@ TEST_F(AnRpcServer, AnswersAWaitWhenTheJobEndsAndLaterRequestsAfterIt) {
   EXPECT_EQ(json::parse(*ended)["id"], 2);
   EXPECT_EQ(json::parse(*ended)["result"]["done"], true);
   EXPECT_TRUE(client.line().has_value()) << "the ping behind it";
+}
+
+TEST_F(AnRpcServer, AnswersPingsWhileAnotherClientsStartIsOnTheDisk) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  service_.before_start = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  serve(config());
+  LineClient starter(server_->port());
+  LineClient other(server_->port());
+  starter.send(R"({"jsonrpc":"2.0","id":2,"method":"job.start","params":[5,"p"]})" + std::string("\n") + kPing + "\n");
+  begun.get_future().wait();
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(answers(other));
+  EXPECT_EQ(json::parse(other.ask(R"({"jsonrpc":"2.0","id":1,"method":"system.state"})"))["result"]["state"], "ready");
+  released.set_value();
+  const auto started = starter.line();
+  ASSERT_TRUE(started.has_value());
+  EXPECT_EQ(json::parse(*started)["id"], 2) << "the start is answered first";
+  const auto ping = starter.line();
+  ASSERT_TRUE(ping.has_value());
+  EXPECT_EQ(json::parse(*ping)["id"], 1) << "and what came behind it then";
+}
+
+TEST_F(AnRpcServer, ForgetsAClientThatLeavesWhileItsStartIsOnTheDisk) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  service_.before_start = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  serve(config());
+  {
+    LineClient starter(server_->port());
+    starter.send(R"({"jsonrpc":"2.0","id":2,"method":"job.start","params":[5,"p"]})" + std::string("\n"));
+    begun.get_future().wait();
+  }
+  released.set_value();
+  LineClient other(server_->port());
+  EXPECT_EQ(json::parse(
+                other.ask(R"({"jsonrpc":"2.0","id":3,"method":"job.status","params":{"seq":5}})"))["result"]["job_id"],
+            "job-5");
+}
+
+TEST_F(AnRpcServer, AnswersAClientThatHasClosedItsSendingSide) {
+  serve(config());
+  LineClient client(server_->port());
+  client.send(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})"
+              "\n"
+              R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})"
+              "\n" +
+              kPing + "\n" + R"({"jsonrpc":"2.0","id":9,"method":"stage.home"})");
+  client.finish_sending();
+  const auto started = client.line();
+  ASSERT_TRUE(started.has_value());
+  EXPECT_EQ(json::parse(*started)["id"], 1);
+  EXPECT_FALSE(client.line(milliseconds(50)).has_value());
+  service_.change(5, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  const auto ended = client.line();
+  ASSERT_TRUE(ended.has_value());
+  EXPECT_EQ(json::parse(*ended)["result"]["done"], true);
+  EXPECT_TRUE(client.line().has_value()) << "the ping behind it";
+  EXPECT_TRUE(client.closes());
+  EXPECT_EQ(service_.task, nullptr) << "half a line is no request";
+}
+
+TEST_F(AnRpcServer, GivesTheConnectionOfAClientThatLeftToTheNext) {
+  serve(config(1));
+  LineClient gone(server_->port());
+  gone.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
+  gone.send(R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})" + std::string("\n"));
+  gone.finish_sending();
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  bool answered = false;
+  while (!answered && std::chrono::steady_clock::now() < deadline) {
+    LineClient next(server_->port());
+    answered = answers(next);
+  }
+  EXPECT_TRUE(answered);
+  EXPECT_TRUE(gone.closes());
 }
 
 TEST_F(AnRpcServer, EndsAWaitAtItsTimeout) {
