@@ -8,8 +8,8 @@
 
 namespace fvd {
 
-/// kExecuting is OPC's SingleExecution: a job or a task has the devices. Devices missing or faulty put the machine into kError; it leaves it by itself
-/// when they are back, but never moves on its own.
+/// kExecuting is OPC's SingleExecution: a job or a task has the devices. Devices missing or faulty put the machine into
+/// kError; it leaves it by itself when they are back, but never moves on its own.
 enum class ScanState { kPreoperational, kInitialized, kReady, kExecuting, kError, kHalted };
 inline constexpr std::array kAllScanStates{ScanState::kPreoperational, ScanState::kInitialized, ScanState::kReady,
                                            ScanState::kExecuting,      ScanState::kError,       ScanState::kHalted};
@@ -28,9 +28,9 @@ enum class ScanEvent {
   kHalt
 };
 inline constexpr std::array kAllScanEvents{
-    ScanEvent::kDevicesUp, ScanEvent::kDevicesDown, ScanEvent::kRecipePrepared, ScanEvent::kJobStarted,
-    ScanEvent::kJobEnded,  ScanEvent::kTaskStarted, ScanEvent::kTaskEnded,      ScanEvent::kTaskEndedPrepared,
-    ScanEvent::kHalt};
+    ScanEvent::kDevicesUp,  ScanEvent::kDevicesDown,       ScanEvent::kRecipePrepared,
+    ScanEvent::kJobStarted, ScanEvent::kJobEnded,          ScanEvent::kTaskStarted,
+    ScanEvent::kTaskEnded,  ScanEvent::kTaskEndedPrepared, ScanEvent::kHalt};
 
 [[nodiscard]] std::string_view scan_state_name(ScanState state) noexcept;
 

@@ -66,9 +66,9 @@ class Engine final : public MachineView,
 
   /// Refuses new jobs from now on and aborts the running one; returns at once.
   void shut_down();
-  /// shut_down(), then waits until all has ended and the devices are closed: a running job ends as aborted, one that had
-  /// not begun as failed, and a command that had not begun fails, each with kShuttingDown.
-  /// context: one thread, the one that destroys the engine.
+  /// shut_down(), then waits until all has ended and the devices are closed: a running job ends as aborted, one that
+  /// had not begun as failed, and a command that had not begun fails, each with kShuttingDown. context: one thread, the
+  /// one that destroys the engine.
   void finish();
 
  private:
@@ -81,8 +81,8 @@ class Engine final : public MachineView,
     JobState state = JobState::kFailed;
     std::optional<ErrorCode> error = std::nullopt;
     std::string message = {};
-    std::string directory = {};                             ///< empty = no result
-    std::string result_text = {};                           ///< of result.json, empty = no result
+    std::string directory = {};                           ///< empty = no result
+    std::string result_text = {};                         ///< of result.json, empty = no result
     std::optional<DeviceFailure> failure = std::nullopt;  ///< why the machine is not ready after it
   };
   enum class Wanted { kJob, kTask };

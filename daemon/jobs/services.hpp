@@ -26,7 +26,7 @@ struct MachineStatus {
   /// The part may be taken: standstill was measured since the stage was opened, and neither a command nor the
   /// acquisition of a job holds it.
   bool part_free = false;
-  int results_waiting = 0;       ///< completed and not acknowledged
+  int results_waiting = 0;  ///< completed and not acknowledged
   bool simulated = false;
   std::int64_t epoch = 0;          ///< counts the daemon's starts
   std::optional<ErrorCode> error;  ///< why the state is kError

@@ -117,7 +117,8 @@ class AnEngine : public testing::Test {
     std::unique_lock lock(seen_mutex_);
     const auto deadline = std::chrono::steady_clock::now() + seconds(10);
     while (!predicate(*engine_->snapshot())) {
-      // A change between the look and the wait is told under seen_mutex_; the first states may come before the listener.
+      // A change between the look and the wait is told under seen_mutex_; the first states may come before the
+      // listener.
       if (std::chrono::steady_clock::now() > deadline) return false;
       seen_changed_.wait_for(lock, std::chrono::milliseconds(20));
     }
