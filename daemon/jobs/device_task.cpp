@@ -9,15 +9,17 @@ void DeviceTask::end(Outcome outcome) noexcept {
   if (!outcome_) outcome_ = std::move(outcome);
 }
 
-void DeviceTask::run(const Devices& devices, std::stop_token stop) noexcept {
+DeviceTask::Outcome DeviceTask::perform(const Devices& devices, std::stop_token stop) const noexcept {
   try {
-    end({work_(devices, std::move(stop)), std::nullopt, {}});
+    return {work_(devices, std::move(stop)), std::nullopt, {}};
   } catch (const Error& error) {
-    fail(error.code(), error.what());
+    return {{}, error.code(), error.what()};
   } catch (const std::exception& error) {
-    fail(ErrorCode::kInternal, error.what());
+    return {{}, ErrorCode::kInternal, error.what()};
   }
 }
+
+void DeviceTask::run(const Devices& devices, std::stop_token stop) noexcept { end(perform(devices, std::move(stop))); }
 
 void DeviceTask::fail(ErrorCode code, const std::string& message) noexcept { end({{}, code, message}); }
 

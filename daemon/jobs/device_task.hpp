@@ -39,6 +39,11 @@ class DeviceTask {
   /// One that is done already.
   explicit DeviceTask(Outcome outcome) : outcome_(std::move(outcome)) {}
 
+  /// Does the work and tells nobody yet: the machine's state comes before the answer.
+  [[nodiscard]] Outcome perform(const Devices& devices, std::stop_token stop) const noexcept;
+  /// The first end counts.
+  void end(Outcome outcome) noexcept;
+  /// Both in one.
   void run(const Devices& devices, std::stop_token stop) noexcept;
   void fail(ErrorCode code, const std::string& message) noexcept;
 
@@ -46,8 +51,6 @@ class DeviceTask {
   [[nodiscard]] std::optional<Outcome> outcome() const;
 
  private:
-  void end(Outcome outcome) noexcept;
-
   Work work_;
   mutable Mutex mutex_;
   std::optional<Outcome> outcome_ FVD_GUARDED_BY(mutex_);

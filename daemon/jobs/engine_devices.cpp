@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <exception>
+#include <thread>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -18,6 +20,14 @@ constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
 
 bool moves(const StageStatus& stage) {
   return stage.moving || stage.state == AxisState::kMoving || stage.state == AxisState::kHoming;
+}
+
+/// An axis that was told to stop comes to rest within this; one that does not is looked at again at the next check.
+constexpr std::chrono::milliseconds kStopTime{500};
+constexpr std::chrono::milliseconds kStandstillPoll{5};
+
+DeviceFailure moving_on() {
+  return {ErrorCode::kNotReady, "the stage was found moving and is being stopped; wait until it rests"};
 }
 
 }  // namespace
@@ -68,18 +78,18 @@ void Engine::end_pending() {
 
 void Engine::run_task(DeviceTask& task, std::stop_token stop) {
   std::optional<DeviceFailure> failure;
+  DeviceTask::Outcome outcome;
   if (stop.stop_requested()) {
-    task.fail(abort_reason(), "a job was started, or the daemon was shut down, before the command could begin");
+    outcome = {{}, abort_reason(), "a job was started, or the daemon was shut down, before the command could begin"};
   } else if ((failure = open_devices())) {
-    task.fail(ErrorCode::kNotReady, failure->message);
+    outcome = {{}, ErrorCode::kNotReady, failure->message};
   } else {
     {
       // Gone before a camera may be dropped: its end waits for a call that is under way.
       const std::stop_callback wake(stop, [this] { camera_.get().interrupt(); });
-      task.run({camera_.get(), stage_.get(), clock_, config_.paths.state_dir}, stop);
+      outcome = task.perform({camera_.get(), stage_.get(), clock_, config_.paths.state_dir}, stop);
     }
-    const auto outcome = task.outcome();
-    failure = outcome && outcome->error ? failure_behind(*outcome->error, outcome->message) : lost_device();
+    failure = outcome.error ? failure_behind(*outcome.error, outcome.message) : lost_device();
   }
   {
     const MutexLock lock(mutex_);
@@ -94,6 +104,7 @@ void Engine::run_task(DeviceTask& task, std::stop_token stop) {
     }
     publish_locked();
   }
+  task.end(std::move(outcome));  // whoever reads it finds the devices free
   notify();
 }
 
@@ -137,11 +148,15 @@ std::optional<DeviceFailure> Engine::open_devices() {
 
 std::optional<DeviceFailure> Engine::measure_standstill() {
   try {
-    const bool moving = moves(stage_.get().status());
-    set_at_rest(!moving);
-    if (!moving) return std::nullopt;
-    stage_.get().stop();
-    return DeviceFailure{ErrorCode::kNotReady, "the stage was found moving and is being stopped; wait until it rests"};
+    const auto deadline = std::chrono::steady_clock::now() + kStopTime;
+    while (moves(stage_.get().status())) {
+      set_at_rest(false);
+      stage_.get().stop();
+      if (std::chrono::steady_clock::now() > deadline) return moving_on();
+      std::this_thread::sleep_for(kStandstillPoll);
+    }
+    set_at_rest(true);
+    return std::nullopt;
   } catch (const Error& error) {
     set_at_rest(false);
     if (error.code() == ErrorCode::kStageDisconnected) stage_.drop();
