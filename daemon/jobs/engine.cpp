@@ -138,16 +138,20 @@ void Engine::require_acceptable_locked(const Recipe& recipe) const {
 }
 
 JobStatus Engine::job(const JobKey& key) const {
-  const MutexLock lock(mutex_);
-  if (current_ && matches(*current_, key)) return *current_;
+  {
+    const MutexLock lock(mutex_);
+    if (current_ && matches(*current_, key)) return *current_;
+  }
   return store_.find(key).status;
 }
 
 JobStatus Engine::abort(const JobKey& key) {
-  const MutexLock lock(mutex_);
-  if (current_ && matches(*current_, key)) {
-    if (current_->state == JobState::kProcessing) job_stop_.request_stop();
-    return *current_;
+  {
+    const MutexLock lock(mutex_);
+    if (current_ && matches(*current_, key)) {
+      if (current_->state == JobState::kProcessing) job_stop_.request_stop();
+      return *current_;
+    }
   }
   return store_.find(key).status;
 }
@@ -161,13 +165,15 @@ std::string Engine::result_dir(const JobKey& key) const { return store_.find(key
 std::optional<JobStatus> Engine::next_unacknowledged() const { return store_.next_unacknowledged(); }
 
 int Engine::acknowledge(const JobKey& key) {
-  int remaining = 0;
   {
     const MutexLock lock(mutex_);
     if (current_ && matches(*current_, key) && current_->state == JobState::kProcessing) {
       throw Error(ErrorCode::kBusy, "job " + current_->job_id + " is still running; acknowledge it when it has ended");
     }
-    remaining = store_.acknowledge(key);
+  }
+  const int remaining = store_.acknowledge(key);  // not under the lock: a scan that runs would wait for the disk
+  {
+    const MutexLock lock(mutex_);
     if (current_ && matches(*current_, key)) current_->acknowledged = true;
     publish_locked();
   }
@@ -212,6 +218,7 @@ void Engine::publish_locked() {
     status->error_message = failure_->message;
   }
   const MutexLock lock(status_mutex_);
+  if (!status_ || status_->part_free != status->part_free) spdlog::info("part_release {}", status->part_free);
   status_ = std::move(status);
 }
 

@@ -1,6 +1,7 @@
 /// The engine's thread: its loop, the devices it keeps open, the commands between the jobs.
 
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <thread>
 #include <utility>
@@ -24,7 +25,10 @@ bool moves(const StageStatus& stage) {
 
 /// An axis that was told to stop comes to rest within this; one that does not is looked at again at the next check.
 constexpr std::chrono::milliseconds kStopTime{500};
-constexpr std::chrono::milliseconds kStandstillPoll{5};
+/// Standstill is two looks in a row, this far apart, at an axis that says it rests and measures the same position: a
+/// drive may report standstill before it starts, or late.
+constexpr std::chrono::milliseconds kStandstillPoll{20};
+constexpr double kStandstillWindow_um = 1.0;
 
 DeviceFailure moving_on() {
   return {ErrorCode::kNotReady, "the stage was found moving and is being stopped; wait until it rests"};
@@ -149,14 +153,26 @@ std::optional<DeviceFailure> Engine::open_devices() {
 std::optional<DeviceFailure> Engine::measure_standstill() {
   try {
     const auto deadline = std::chrono::steady_clock::now() + kStopTime;
-    while (moves(stage_.get().status())) {
-      set_at_rest(false);
-      stage_.get().stop();
-      if (std::chrono::steady_clock::now() > deadline) return moving_on();
+    std::optional<Micrometers> resting;
+    bool told_to_stop = false;
+    for (;;) {
+      const StageStatus status = stage_.get().status();
+      if (moves(status)) {
+        set_at_rest(false);
+        if (!std::exchange(told_to_stop, true)) stage_.get().stop();
+        resting.reset();
+      } else if (resting && std::abs(status.position.value - resting->value) <= kStandstillWindow_um) {
+        set_at_rest(true);
+        return std::nullopt;
+      } else {
+        resting = status.position;
+      }
+      if (std::chrono::steady_clock::now() > deadline) break;
       std::this_thread::sleep_for(kStandstillPoll);
     }
-    set_at_rest(true);
-    return std::nullopt;
+    set_at_rest(false);
+    if (!told_to_stop) stage_.get().stop();  // it creeps, though it says that it rests
+    return moving_on();
   } catch (const Error& error) {
     set_at_rest(false);
     if (error.code() == ErrorCode::kStageDisconnected) stage_.drop();
