@@ -1,12 +1,16 @@
 /// fvd: reads its configuration, starts, and waits for the signal to stop.
 
+#include <atomic>
 #include <csignal>
+#include <exception>
 #include <iostream>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "daemon/app.hpp"
 #include "daemon/base/exit_code.hpp"
 #include "daemon/base/systemd_notify.hpp"
@@ -15,6 +19,16 @@
 
 namespace fvd {
 namespace {
+
+std::string text_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "of an unknown kind";
+  }
+}
 
 int serve(const Config& config) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("fvd"));
@@ -28,6 +42,12 @@ int serve(const Config& config) {
   sigprocmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 
+  std::atomic<bool> thread_failed = false;
+  set_thread_failure_handler([&thread_failed](std::string_view name, const std::exception_ptr& failure) {
+    spdlog::critical("thread {} ended by an exception, the program stops: {}", name, text_of(failure));
+    thread_failed = true;
+    ::kill(::getpid(), SIGTERM);
+  });
   App app(config);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
   notify_ready("listening on port " + std::to_string(app.rpc_port()));
@@ -35,7 +55,7 @@ int serve(const Config& config) {
   sigwait(&signals, &received);
   spdlog::info("signal {}: stopping", received);
   notify_stopping();
-  return exit_code::kOk;
+  return thread_failed ? exit_code::kInternal : exit_code::kOk;
 }
 
 }  // namespace

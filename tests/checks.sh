@@ -22,7 +22,7 @@ if [ ${#parts[@]} -eq 0 ] && [ -z "$sanitized" ]; then
   sanitized=1
 fi
 
-fvd_packages+=(clang-14 clang-tidy-14 clang-format-14 git python3)
+fvd_packages+=(ccache clang-14 clang-tidy-14 clang-format-14 git python3)
 fvd_install_packages
 fvd_configure  # the list of commands and the generated headers
 

@@ -3,7 +3,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/support/setup.sh"
 
-fvd_packages+=(mbpoll python3-pymodbus python3-serial python3-serial-asyncio aravis-tools)  # peers that are not fvd's
+fvd_packages+=(ccache mbpoll python3-pymodbus python3-serial python3-serial-asyncio aravis-tools)  # speed; peers that are not fvd's
 fvd_install_packages
 fvd_build
 fvd_build bench_accuracy bench_camera bench_focus bench_renderer bench_stage bench_structure  # not run here; they must not fall behind

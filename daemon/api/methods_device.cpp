@@ -60,9 +60,10 @@ void add_device_methods(MethodTable& methods, const Services& services) {
       {"recipe", ParamType::kText, false, "whose camera settings to use; absent = the defaults"},
       {"exposure_us", ParamType::kNumber, false, "in place of the recipe's", ParamRange{1e-3, 6e7}},
       {"gain_db", ParamType::kNumber, false, "in place of the recipe's", ParamRange{0.0, 100.0}}};
-  add_task(
-      methods, "camera.snap", "Takes one image, writes it as PNG, and tells its grey levels", light,
-      [services](const json& params) { return services.tasks.submit(snap_work(settings_from(services, params))); });
+  add_task(methods, "camera.snap", "Takes one image, writes it as PNG, and tells its grey levels", light,
+           [services](const json& params) {
+             return services.tasks.submit(snap_work(settings_from(services, params)), TaskMotion::kNone);
+           });
   add_task(methods, "camera.preview", "A picture for the eye: one taken now, or the newest slice of the job that runs",
            light, [services](const json& params) { return services.tasks.preview(settings_from(services, params)); });
   auto exposure = light;
@@ -70,7 +71,8 @@ void add_device_methods(MethodTable& methods, const Services& services) {
                       ParamRange{0.1, 0.95}});
   add_task(methods, "camera.suggest_exposure", "Seeks the exposure; leaves the camera as it was", exposure,
            [services](const json& params) {
-             return services.tasks.submit(exposure_work(settings_from(services, params), params.value("target", 0.8)));
+             return services.tasks.submit(exposure_work(settings_from(services, params), params.value("target", 0.8)),
+                                          TaskMotion::kNone);
            });
   auto range = light;
   range.push_back({"from_um", ParamType::kNumber, true, "lower end of the range", kStageRange_um});
@@ -79,13 +81,14 @@ void add_device_methods(MethodTable& methods, const Services& services) {
                    ParamRange{1e-3, 1e5}});
   add_task(methods, "stage.autofocus", "Moves the stage to where the middle of the image is sharpest", range,
            [services](const json& params) {
-             return services.tasks.submit(autofocus_work(settings_from(services, params), plan_from(params)));
+             return services.tasks.submit(autofocus_work(settings_from(services, params), plan_from(params)),
+                                          TaskMotion::kMoves);
            });
   add_task(methods, "stage.home", "Finds the stage's reference; the stage MOVES", {},
-           [services](const json&) { return services.tasks.submit(home_work()); });
+           [services](const json&) { return services.tasks.submit(home_work(), TaskMotion::kMoves); });
   add_task(methods, "stage.move", "Moves the stage; its limits hold",
            {{"z_um", ParamType::kNumber, true, "where to", kStageRange_um}}, [services](const json& params) {
-             return services.tasks.submit(move_work(Micrometers{params["z_um"].get<double>()}));
+             return services.tasks.submit(move_work(Micrometers{params["z_um"].get<double>()}), TaskMotion::kMoves);
            });
 }
 

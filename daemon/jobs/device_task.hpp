@@ -23,6 +23,9 @@ struct Devices {
   std::filesystem::path state_dir;
 };
 
+/// What a command does to the axis: a part under one that moves may not be touched.
+enum class TaskMotion { kNone, kMoves };
+
 /// context: run() on the engine's thread, the rest on any.
 class DeviceTask {
  public:
@@ -35,7 +38,7 @@ class DeviceTask {
     std::string message;
   };
 
-  explicit DeviceTask(Work work) : work_(std::move(work)) {}
+  explicit DeviceTask(Work work, TaskMotion motion = TaskMotion::kNone) : work_(std::move(work)), motion_(motion) {}
   /// One that is done already.
   explicit DeviceTask(Outcome outcome) : outcome_(std::move(outcome)) {}
 
@@ -49,9 +52,11 @@ class DeviceTask {
 
   /// Nothing while it is not done.
   [[nodiscard]] std::optional<Outcome> outcome() const;
+  [[nodiscard]] bool moves() const noexcept { return motion_ == TaskMotion::kMoves; }
 
  private:
   Work work_;
+  TaskMotion motion_ = TaskMotion::kNone;
   mutable Mutex mutex_;
   std::optional<Outcome> outcome_ FVD_GUARDED_BY(mutex_);
 };

@@ -128,7 +128,7 @@ Recipe Engine::load_checked_recipe_locked(const std::string& recipe_id) const {
 }
 
 void Engine::require_acceptable_locked(const Recipe& recipe) const {
-  if (!facts_) return;
+  if (!facts_) throw Error(ErrorCode::kNotReady, "a device is being opened anew; try again when the machine is ready");
   if (recipe.mode == ScanMode::kContinuous) check_continuous(scan_plan(recipe), recipe.camera, facts_->stage);
   check_plan(scan_plan(recipe), facts_->stage);
   const int width = recipe.camera.width > 0 ? recipe.camera.width : facts_->sensor_width;
@@ -212,25 +212,31 @@ void Engine::publish_locked() {
   status->results_waiting = store_.unacknowledged_count();
   status->simulated = config_.camera.simulated || config_.stage.simulated || (facts_ && facts_->simulated);
   status->epoch = store_.epoch();
-  status->part_free = at_rest_ && task_ == nullptr && !(job_runs_locked() && !current_->acquired);
+  status->part_free = at_rest_ && !(task_ && task_->moves()) && !(job_runs_locked() && !current_->acquired);
   if (failure_) {
     status->error = failure_->code;
     status->error_message = failure_->message;
   }
-  const MutexLock lock(status_mutex_);
-  if (!status_ || status_->part_free != status->part_free) spdlog::info("part_release {}", status->part_free);
-  status_ = std::move(status);
+  const bool part_free = status->part_free;
+  bool changed = false;
+  {
+    const MutexLock lock(status_mutex_);
+    changed = !status_ || status_->part_free != part_free;
+    status_ = std::move(status);
+  }
+  if (changed) spdlog::info("part_release {}", part_free);  // no reader waits for the log
 }
 
-std::shared_ptr<DeviceTask> Engine::submit(DeviceTask::Work work) {
+std::shared_ptr<DeviceTask> Engine::submit(DeviceTask::Work work, TaskMotion motion) {
   std::shared_ptr<DeviceTask> task;
   {
     const MutexLock lock(mutex_);
     require_ready_locked(Wanted::kTask);
-    task = task_ = std::make_shared<DeviceTask>(std::move(work));
+    if (task_) throw Error(ErrorCode::kBusy, "the devices are busy with another command; try again when it is done");
+    task = task_ = std::make_shared<DeviceTask>(std::move(work), motion);
     task_stop_ = std::stop_source();
     recipe_ready_ = state_ == ScanState::kReady;
-    transition_locked(ScanEvent::kTaskStarted);
+    if (task->moves()) transition_locked(ScanEvent::kTaskStarted);
     publish_locked();  // before anything can move
   }
   changed_.notify_all();
@@ -240,7 +246,7 @@ std::shared_ptr<DeviceTask> Engine::submit(DeviceTask::Work work) {
 
 std::shared_ptr<DeviceTask> Engine::preview(const CameraSettings& settings) {
   const auto now = snapshot();
-  if (!now->job || now->job->state != JobState::kProcessing) return submit(preview_work(settings));
+  if (!now->job || now->job->state != JobState::kProcessing) return submit(preview_work(settings), TaskMotion::kNone);
   auto picture = preview_.newest();
   if (!picture) throw Error(ErrorCode::kBusy, "the job has shown no slice yet; ask again");
   return std::make_shared<DeviceTask>(DeviceTask::Outcome{std::move(*picture), std::nullopt, {}});

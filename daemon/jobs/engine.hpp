@@ -60,13 +60,13 @@ class Engine final : public MachineView,
   [[nodiscard]] std::string recipe_json(const std::string& recipe_id) const override;
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override;
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override;
-  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work) override;
+  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) override;
   std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override;
   void on_change(std::function<void()> listener) override;
 
   /// Refuses new jobs from now on and aborts the running one; returns at once.
   void shut_down();
-  /// shut_down(), then waits until all has ended and the devices are closed: a running job ends as aborted, one that
+  /// shut_down(), then waits until all has ended and the devices were given up: a running job ends as aborted, one that
   /// had not begun as failed, and a command that had not begun fails, each with kShuttingDown. context: one thread, the
   /// one that destroys the engine.
   void finish();

@@ -37,7 +37,7 @@ DeviceFailure moving_on() {
 }  // namespace
 
 void Engine::run(std::stop_token stop) {
-  for (;;) {
+  while (!stop.stop_requested()) {
     check_devices();
     MutexLock lock(mutex_);
     changed_.wait_for(lock, stop, failure_ ? kDeviceRetryPeriod : kDeviceCheckPeriod, [this] {

@@ -95,7 +95,7 @@ class TaskService {
 
   /// Has the engine do something with the devices as soon as it can; a job that is started meanwhile ends it. Throws
   /// Error kBusy while a job runs or another task waits, kNotReady without the devices, kShuttingDown.
-  virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work) = 0;
+  virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) = 0;
   /// As submit(preview_work(settings)); while a job runs, the newest of its slices instead, scaled down.
   virtual std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) = 0;
 

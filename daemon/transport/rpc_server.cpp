@@ -18,7 +18,6 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
-#include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -26,6 +25,8 @@
 #include "core/runtime/guarded_thread.hpp"
 #include "daemon/api/dispatcher.hpp"
 #include "daemon/transport/foreign_protocol.hpp"
+#include "daemon/transport/port_file.hpp"
+#include "daemon/transport/tcp_options.hpp"
 #include "daemon/transport/worker.hpp"
 
 namespace fvd {
@@ -43,17 +44,9 @@ constexpr int kMaxParseErrorsInARow = 3;
 /// A refused client has so long to read why.
 constexpr std::chrono::seconds kFarewell{1};
 
-void tune(tcp::socket& socket) {
-  ErrorCodeOf ignored;
-  socket.set_option(tcp::no_delay(true), ignored);
-  socket.set_option(asio::socket_base::keep_alive(true), ignored);
-  const int fd = socket.native_handle();
-  const auto set = [fd](int option, int value) { ::setsockopt(fd, IPPROTO_TCP, option, &value, sizeof(value)); };
-  set(TCP_KEEPIDLE, 10);
-  set(TCP_KEEPINTVL, 5);
-  set(TCP_KEEPCNT, 3);
-  set(TCP_USER_TIMEOUT, 15000);
-}
+/// Replies that are owed when the server ends are sent within this.
+constexpr std::chrono::milliseconds kLastReplies{500};
+constexpr std::chrono::milliseconds kLeavePoll{5};
 
 }  // namespace
 
@@ -66,10 +59,11 @@ struct RpcServer::Impl {
         dispatcher(s),
         acceptor(context),
         accept_pause(context),
+        farewell_timer(context),
         port_file(runtime_dir / "rpc.json"),
         worker("fvd-rpc-work") {
     listen();
-    write_port_file();
+    write_port_file(port_file, config.address, port);
     accept();
     services.machine.on_change([this] { asio::post(context, [this] { resume_all(); }); });
     thread = start_thread("fvd-rpc", [this](const std::stop_token&) { context.run(); });
@@ -77,7 +71,7 @@ struct RpcServer::Impl {
 
   ~Impl() {
     services.machine.on_change({});
-    context.stop();
+    asio::post(context, [this] { take_leave(std::chrono::steady_clock::now() + kLastReplies); });
     thread.join();
     std::error_code ignored;
     std::filesystem::remove(port_file, ignored);
@@ -100,21 +94,9 @@ struct RpcServer::Impl {
     port = acceptor.local_endpoint().port();
   }
 
-  void write_port_file() {
-    std::error_code error;
-    std::filesystem::create_directories(port_file.parent_path(), error);
-    const auto temporary = port_file.string() + ".tmp";
-    errno = 0;
-    std::ofstream out(temporary);
-    out << "{\"address\": \"" << config.address << "\", \"port\": " << port << ", \"pid\": " << ::getpid() << "}\n";
-    out.close();
-    if (!out || ::rename(temporary.c_str(), port_file.c_str()) != 0) {
-      throw Error(ErrorCode::kStorageWrite,
-                  "cannot write " + port_file.string() + ": " + std::strerror(errno) + "; see /paths/runtime_dir");
-    }
-  }
-
   void accept();
+  /// Answers what has come by now, then ends the network thread; at the deadline at the latest.
+  void take_leave(std::chrono::steady_clock::time_point deadline);
   [[nodiscard]] bool has_room();
   void resume_all();
 
@@ -124,6 +106,7 @@ struct RpcServer::Impl {
   asio::io_context context;
   tcp::acceptor acceptor;
   asio::steady_timer accept_pause;
+  asio::steady_timer farewell_timer;
   std::filesystem::path port_file;
   int port = 0;
   std::set<std::shared_ptr<Session>> sessions;  // network thread only
@@ -138,13 +121,13 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
       : server_(server), socket_(std::move(socket)), idle_(server.context), wait_(server.context) {}
 
   void start() {
-    tune(socket_);
+    tune(socket_.native_handle());
     watch_idle();
     read();
   }
 
   void refuse() {
-    tune(socket_);
+    tune(socket_.native_handle());
     refuse_with(Dispatcher::too_many_connections());
     read();
   }
@@ -154,6 +137,9 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     check_wait(timed_out);
     process();
   }
+
+  /// Nothing is owed to the client.
+  [[nodiscard]] bool is_answered() const noexcept { return !has_request() && unsent_.empty(); }
 
   [[nodiscard]] bool is_half_closed() const noexcept { return half_closed_; }
 
@@ -347,6 +333,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
 
 void RpcServer::Impl::accept() {
   acceptor.async_accept([this](ErrorCodeOf error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
     if (error) {
       // Out of file descriptors, most likely: trying again at once would only burn time.
       spdlog::warn("a connection could not be accepted: {}", error.message());
@@ -383,6 +370,17 @@ void RpcServer::Impl::resume_all() {
   // A copy: a session may close, and so leave the set, while it is resumed.
   const auto all = sessions;
   for (const auto& session : all) session->resume(false);
+}
+
+void RpcServer::Impl::take_leave(std::chrono::steady_clock::time_point deadline) {
+  ErrorCodeOf ignored;
+  acceptor.close(ignored);
+  resume_all();
+  const bool all_is_said =
+      std::all_of(sessions.begin(), sessions.end(), [](const auto& session) { return session->is_answered(); });
+  if (all_is_said || std::chrono::steady_clock::now() >= deadline) return context.stop();
+  farewell_timer.expires_after(kLeavePoll);
+  farewell_timer.async_wait([this, deadline](ErrorCodeOf) { take_leave(deadline); });
 }
 
 RpcServer::RpcServer(const RpcConfig& config, const std::filesystem::path& runtime_dir, const Services& services)

@@ -7,7 +7,7 @@ FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
 
 fvd_packages=(
-  ca-certificates ccache cmake g++ iproute2 ninja-build pkg-config
+  ca-certificates cmake g++ iproute2 ninja-build pkg-config
   libaravis-dev libbenchmark-dev libboost-dev libcli11-dev libeigen3-dev libgmock-dev libgtest-dev libmodbus-dev
   libopencv-dev libpng-dev libspdlog-dev libsqlite3-dev libsystemd-dev libtiff-dev libturbojpeg0-dev libusb-1.0-0-dev
   libvalijson-dev python3 zlib1g-dev
@@ -49,12 +49,16 @@ fvd_install_packages() {
   rm -f "$log"
 }
 
-# Configures in FVD_BUILD; everything is compiled through ccache where that is installed.
+# Configures in FVD_BUILD; everything is compiled through ccache where that is installed and works.
 fvd_cmake() {
   local launcher=
-  launcher=$(command -v ccache) || launcher=
+  # One that cannot make its folder, e.g. without a home, would fail every file.
+  if command -v ccache >/dev/null && echo 'int main() {}' >"$FVD_BUILD/probe.cpp" &&
+     ccache c++ -c "$FVD_BUILD/probe.cpp" -o "$FVD_BUILD/probe.o" 2>/dev/null; then
+    launcher=ccache
+  fi
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
-    -DCMAKE_CXX_COMPILER_LAUNCHER="${launcher:+ccache}"
+    -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"
 }
 
 # fvd_locked COMMAND ...: runs it with its output in the build's log; copies of this script on one build folder wait for
@@ -64,7 +68,7 @@ fvd_locked() {
   mkdir -p "$FVD_BUILD" || return 1
   exec 9>"$FVD_BUILD/.lock" && flock 9
   if ! "$@" >"$log" 2>&1 9>&-; then
-    grep -E -A12 'error|Error|FAILED' "$log" | head -n 60 >&2
+    grep -E -A12 'error|Error|FAILED' "$log" | head -n 60 >&2 || true
     fvd_say "the build failed; the whole log is in $log"
     exec 9>&-
     return 1

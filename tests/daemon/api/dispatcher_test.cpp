@@ -101,6 +101,16 @@ TEST_F(ADispatcher, NeverStartsOrMovesAnythingForANotification) {
   EXPECT_EQ(service_.task, nullptr);
 }
 
+TEST_F(ADispatcher, TellsTheEngineWhichCommandsMoveTheStage) {
+  for (const char* method : {"camera.snap", "camera.preview", "camera.suggest_exposure", "stage.home"}) {
+    (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":")" + std::string(method) + "\"}");
+  }
+  (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":"stage.move","params":[10.0]})");
+  (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":"stage.autofocus","params":{"from_um":0,"to_um":50}})");
+  using enum TaskMotion;
+  EXPECT_EQ(service_.motions, (std::vector<TaskMotion>{kNone, kNone, kNone, kMoves, kMoves, kMoves}));
+}
+
 TEST_F(ADispatcher, AnswersFromTheSnapshotWhatItCan) {
   JobStatus running;
   running.job_id = "job-8";

@@ -74,15 +74,17 @@ class FakeJobService final : public MachineView,
     return std::make_shared<const MachineStatus>(status);
   }
   /// Done only when a test runs it.
-  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work) override {
+  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) override {
+    motions.push_back(motion);
     if (refuse_tasks) throw Error(ErrorCode::kBusy, "a job is running");
     task = std::make_shared<DeviceTask>(std::move(work));
     return task;
   }
   std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override {
     previewed = settings;
-    return submit([](const Devices&, std::stop_token) { return std::string(R"({"seq": 1})"); });
+    return submit([](const Devices&, std::stop_token) { return std::string(R"({"seq": 1})"); }, TaskMotion::kNone);
   }
+  std::vector<TaskMotion> motions;  ///< of the commands so far
   std::shared_ptr<DeviceTask> task;
   std::optional<CameraSettings> previewed;
   bool refuse_tasks = false;

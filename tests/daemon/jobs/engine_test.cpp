@@ -164,12 +164,14 @@ TEST_F(AnEngine, NeverClosesACameraThatIsBeingInterrupted) {
     bench_.watch_interrupt = true;
   }
   Hold hold;
-  const auto task = engine_->submit([this, &hold](const Devices&, std::stop_token) -> std::string {
-    hold.began.set_value();
-    std::unique_lock lock(bench_.mutex);
-    bench_.changed.wait_for(lock, seconds(10), [this] { return bench_.interrupting; });
-    throw Error(ErrorCode::kCameraDisconnected, "pulled");
-  });
+  const auto task = engine_->submit(
+      [this, &hold](const Devices&, std::stop_token) -> std::string {
+        hold.began.set_value();
+        std::unique_lock lock(bench_.mutex);
+        bench_.changed.wait_for(lock, seconds(10), [this] { return bench_.interrupting; });
+        throw Error(ErrorCode::kCameraDisconnected, "pulled");
+      },
+      TaskMotion::kNone);
   hold.began.get_future().wait();
   engine_->start({1, "a", "part"});
   ASSERT_TRUE(job_ended());
@@ -184,7 +186,7 @@ TEST_F(AnEngine, IsExecutingAndHoldsThePartWhileACommandRuns) {
   ASSERT_TRUE(await_state(ScanState::kInitialized));
   EXPECT_EQ(signals()["part_release"], true);
   Hold hold;
-  const auto task = engine_->submit(hold.work());
+  const auto task = engine_->submit(hold.work(), TaskMotion::kMoves);
   hold.began.get_future().wait();
   const auto during = signals();
   EXPECT_EQ(during["state"], "executing");
@@ -197,13 +199,25 @@ TEST_F(AnEngine, IsExecutingAndHoldsThePartWhileACommandRuns) {
   EXPECT_EQ(signals()["part_release"], true);
 }
 
+TEST_F(AnEngine, StaysReadyForAPartWhileACommandTakesAnImage) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  Hold hold;
+  const auto task = engine_->submit(hold.work(), TaskMotion::kNone);
+  hold.began.get_future().wait();
+  EXPECT_EQ(signals()["ready"], true);
+  EXPECT_EQ(signals()["part_release"], true);
+  EXPECT_THROW(engine_->submit(hold.work(), TaskMotion::kMoves), Error) << "one command at a time";
+  hold.go.set_value();
+}
+
 TEST_F(AnEngine, LeadsACommandWithoutARecipeBackToInitializedAndTakesAJobMeanwhile) {
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
-  engine_->submit([](const Devices&, std::stop_token) { return std::string("{}"); });
+  engine_->submit([](const Devices&, std::stop_token) { return std::string("{}"); }, TaskMotion::kMoves);
   ASSERT_TRUE(await_state(ScanState::kInitialized));
   Hold hold;
-  const auto task = engine_->submit(hold.work());
+  const auto task = engine_->submit(hold.work(), TaskMotion::kMoves);
   hold.began.get_future().wait();
   EXPECT_FALSE(engine_->start({1, "a", "part"}).duplicate);
   EXPECT_EQ(signals()["part_release"], false);
@@ -248,7 +262,7 @@ TEST_F(AnEngine, EndsAJobThatWasPendingAtShutdown) {
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
   Hold hold;
-  const auto task = engine_->submit(hold.work());
+  const auto task = engine_->submit(hold.work(), TaskMotion::kMoves);
   hold.began.get_future().wait();
   engine_->start({1, "a", "part"});
   engine_->shut_down();

@@ -166,6 +166,20 @@ TEST_F(AnRpcServer, AnswersAWaitWhenTheJobEndsAndLaterRequestsAfterIt) {
   EXPECT_TRUE(client.line().has_value()) << "the ping behind it";
 }
 
+TEST_F(AnRpcServer, AnswersWhatHasComeBeforeItEnds) {
+  serve(config());
+  LineClient client(server_->port());
+  client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
+  client.send(R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})" + std::string("\n"));
+  EXPECT_FALSE(client.line(milliseconds(50)).has_value());
+  service_.change(5, [](JobStatus& job) { job.state = JobState::kAborted; });
+  server_.reset();
+  const auto ended = client.line();
+  ASSERT_TRUE(ended.has_value()) << "the end of the job is told before the connection closes";
+  EXPECT_EQ(json::parse(*ended)["result"]["state"], "aborted");
+  EXPECT_TRUE(client.closes());
+}
+
 TEST_F(AnRpcServer, AnswersPingsWhileAnotherClientsStartIsOnTheDisk) {
   std::promise<void> begun;
   std::promise<void> released;

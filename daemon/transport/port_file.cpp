@@ -1,0 +1,29 @@
+#include "daemon/transport/port_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "core/base/error.hpp"
+
+namespace fvd {
+
+void write_port_file(const std::filesystem::path& port_file, const std::string& address, int port) {
+  std::error_code error;
+  std::filesystem::create_directories(port_file.parent_path(), error);
+  const auto temporary = port_file.string() + ".tmp";
+  errno = 0;
+  std::ofstream out(temporary);
+  out << "{\"address\": \"" << address << "\", \"port\": " << port << ", \"pid\": " << ::getpid() << "}\n";
+  out.close();
+  if (!out || ::rename(temporary.c_str(), port_file.c_str()) != 0) {
+    throw Error(ErrorCode::kStorageWrite,
+                "cannot write " + port_file.string() + ": " + std::strerror(errno) + "; see /paths/runtime_dir");
+  }
+}
+
+}  // namespace fvd

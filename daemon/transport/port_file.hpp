@@ -1,0 +1,13 @@
+#pragma once
+
+/// Where clients on this machine find the server, whatever port it got.
+
+#include <filesystem>
+#include <string>
+
+namespace fvd {
+
+/// Writes {"address","port","pid"} whole or not at all, and makes the folder. Throws Error kStorageWrite.
+void write_port_file(const std::filesystem::path& file, const std::string& address, int port);
+
+}  // namespace fvd
