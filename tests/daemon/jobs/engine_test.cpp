@@ -209,6 +209,7 @@ TEST_F(AnEngine, StaysReadyForAPartWhileACommandTakesAnImage) {
   EXPECT_EQ(signals()["part_release"], true);
   EXPECT_THROW(engine_->submit(hold.work(), TaskMotion::kMoves), Error) << "one command at a time";
   hold.go.set_value();
+  ASSERT_TRUE(await([&](const MachineStatus&) { return task->outcome().has_value(); }));
 }
 
 TEST_F(AnEngine, LeadsACommandWithoutARecipeBackToInitializedAndTakesAJobMeanwhile) {
