@@ -34,7 +34,7 @@ class PngWriter {
   /// destructor.
   template <typename Action>
   void call(const Action& action) {
-    if (setjmp(png_jmpbuf(png_)) != 0) throw Error(ErrorCode::kInternal, error_);  // NOLINT(cert-err52-cpp)
+    if (setjmp(png_jmpbuf(png_)) != 0) throw Error(ErrorCode::kInternal, error_);  // NOLINT(cert-err52-cpp): libpng
     action(png_, info_);
   }
 
