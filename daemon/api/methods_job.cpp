@@ -27,9 +27,7 @@ std::optional<JobStatus> running_job(const MachineView& machine, const JobKey& k
   const auto snapshot = machine.snapshot();
   const auto& job = snapshot->job;
   if (!job || job->state != JobState::kProcessing) return std::nullopt;
-  const auto* id = std::get_if<std::string>(&key);
-  const bool is_meant = id != nullptr ? job->job_id == *id : job->request.seq == std::get<std::int64_t>(key);
-  return is_meant ? job : std::nullopt;
+  return names(key, *job) ? job : std::nullopt;
 }
 
 Reply start_job(const Services& services, const json& params) {
@@ -69,7 +67,7 @@ JobKey job_key_from(const json& params) {
     throw ProtocolError{json_rpc::kInvalidParams, "name the job by job_id or by seq, one of the two"};
   }
   if (params.contains("job_id")) return params["job_id"].get<std::string>();
-  return params["seq"].get<std::int64_t>();
+  return ClientSeq{params["seq"].get<std::int64_t>()};
 }
 
 std::string text_or(const json& params, const char* name, const std::string& fallback) {

@@ -21,11 +21,6 @@ int thread_count(int configured) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-bool matches(const JobStatus& job, const JobKey& key) {
-  if (const auto* id = std::get_if<std::string>(&key)) return job.job_id == *id;
-  return job.request.seq == std::get<std::int64_t>(key);
-}
-
 }  // namespace
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
@@ -140,7 +135,7 @@ void Engine::require_acceptable_locked(const Recipe& recipe) const {
 JobStatus Engine::job(const JobKey& key) const {
   {
     const MutexLock lock(mutex_);
-    if (current_ && matches(*current_, key)) return *current_;
+    if (current_ && names(key, *current_)) return *current_;
   }
   return store_.find(key).status;
 }
@@ -148,7 +143,7 @@ JobStatus Engine::job(const JobKey& key) const {
 JobStatus Engine::abort(const JobKey& key) {
   {
     const MutexLock lock(mutex_);
-    if (current_ && matches(*current_, key)) {
+    if (current_ && names(key, *current_)) {
       if (current_->state == JobState::kProcessing) job_stop_.request_stop();
       return *current_;
     }
@@ -167,14 +162,14 @@ std::optional<JobStatus> Engine::next_unacknowledged() const { return store_.nex
 int Engine::acknowledge(const JobKey& key) {
   {
     const MutexLock lock(mutex_);
-    if (current_ && matches(*current_, key) && current_->state == JobState::kProcessing) {
+    if (current_ && names(key, *current_) && current_->state == JobState::kProcessing) {
       throw Error(ErrorCode::kBusy, "job " + current_->job_id + " is still running; acknowledge it when it has ended");
     }
   }
   const int remaining = store_.acknowledge(key);  // not under the lock: a scan that runs would wait for the disk
   {
     const MutexLock lock(mutex_);
-    if (current_ && matches(*current_, key)) current_->acknowledged = true;
+    if (current_ && names(key, *current_)) current_->acknowledged = true;
     publish_locked();
   }
   notify();

@@ -13,10 +13,14 @@
 
 namespace fvd {
 
+/// The name of a client that gives none: a plain PLC.
+inline constexpr const char* kDefaultClient = "plc";
+
 struct JobRequest {
-  std::int64_t seq = 0;  ///< the client's sequence number, 1..2^53-1; the same number is the same job
-  std::string part_id;   ///< 1..64 printable ASCII characters
-  std::string recipe;    ///< recipe id; empty = the prepared one
+  std::int64_t seq = 0;                 ///< the client's sequence number, 1..2^53-1; the same number is the same job
+  std::string part_id;                  ///< 1..64 printable ASCII characters
+  std::string recipe;                   ///< recipe id; empty = the prepared one
+  std::string client = kDefaultClient;  ///< whose seq it is
 };
 
 /// OPC 40100-1 result states: processing, completed, aborted, failed.
@@ -37,7 +41,16 @@ struct JobStatus {
   bool acknowledged = false;  ///< result.ack was received
 };
 
-/// A job by id or by sequence number.
-using JobKey = std::variant<std::string, std::int64_t>;
+/// A sequence number belongs to the client that chose it.
+struct ClientSeq {
+  std::int64_t seq = 0;
+  std::string client = kDefaultClient;
+};
+
+/// A job by id or by its client's sequence number.
+using JobKey = std::variant<std::string, ClientSeq>;
+
+/// True if the key is this job's.
+[[nodiscard]] bool names(const JobKey& key, const JobStatus& job);
 
 }  // namespace fvd

@@ -8,7 +8,7 @@
 #include "core/base/mutex.hpp"
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_id.hpp"
-#include "daemon/store/job_schema.hpp"
+#include "daemon/store/migrations.hpp"
 
 namespace fvd {
 
@@ -17,9 +17,9 @@ namespace {
 constexpr std::array kAllJobStates{JobState::kProcessing, JobState::kCompleted, JobState::kAborted, JobState::kFailed};
 
 /// Columns in the order in which read_row() takes them.
-#define FVD_JOB_COLUMNS                                                                                        \
-  "job_id, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done, slices_planned, "     \
-  "frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale, frames_underrun, result_dir, " \
+#define FVD_JOB_COLUMNS                                                                                            \
+  "job_id, client, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done, slices_planned, " \
+  "frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale, frames_underrun, result_dir, "     \
   "result_json"
 
 JobState state_from_name(const std::string& name) {
@@ -37,6 +37,7 @@ StoredJob read_row(const Statement& row) {
   const auto count = [&] { return static_cast<std::uint64_t>(integer()); };
   JobStatus& status = job.status;
   status.job_id = text();
+  status.request.client = text();
   status.request.seq = integer();
   status.request.part_id = text();
   status.request.recipe = text();
@@ -63,9 +64,14 @@ std::optional<JobStatus> first_status(Statement& rows) {
   return read_row(rows).status;
 }
 
+std::string number_text(std::int64_t seq, const std::string& client) {
+  return "seq " + std::to_string(seq) + " of client '" + client + "'";
+}
+
 std::string key_text(const JobKey& key) {
   if (const auto* id = std::get_if<std::string>(&key)) return "'" + *id + "'";
-  return "with seq " + std::to_string(std::get<std::int64_t>(key));
+  const auto& number = std::get<ClientSeq>(key);
+  return "with " + number_text(number.seq, number.client);
 }
 
 std::int64_t scalar(const Database& database, const char* sql) {
@@ -90,7 +96,7 @@ struct JobStore::Impl {
 
   void count_start() {
     const MutexLock lock(mutex);
-    prepare_job_schema(database);
+    migrate(database);
     Transaction transaction(database);
     database.execute("UPDATE starts SET epoch = epoch + 1");
     Statement(database,
@@ -110,34 +116,38 @@ struct JobStore::Impl {
   [[nodiscard]] StoredJob find_locked(const JobKey& key) const FVD_REQUIRES(mutex) {
     const auto* id = std::get_if<std::string>(&key);
     Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
-                                            : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE seq = ?");
+                                            : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
     if (id != nullptr) {
       query.bind(*id);
     } else {
-      query.bind(std::get<std::int64_t>(key));
+      const auto& number = std::get<ClientSeq>(key);
+      query.bind(number.client).bind(number.seq);
     }
     if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
     return read_row(query);
   }
 
   [[nodiscard]] std::optional<JobStatus> find_repeated_locked(const JobRequest& request) const FVD_REQUIRES(mutex) {
-    Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE seq = ?");
-    query.bind(request.seq);
+    const std::string number = number_text(request.seq, request.client);
+    Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
+    query.bind(request.client).bind(request.seq);
     auto known = first_status(query);
     if (!known) {
-      const std::int64_t newest = scalar(database, "SELECT max(seq) FROM jobs");
+      Statement highest(database, "SELECT max(seq) FROM jobs WHERE client = ?");
+      highest.bind(request.client);
+      const std::int64_t newest = highest.step() ? highest.integer(0) : 0;
       if (request.seq < newest - kSeqWindow) {
-        throw Error(ErrorCode::kSeqStale, "seq " + std::to_string(request.seq) + " is more than " +
-                                              std::to_string(kSeqWindow) + " behind the newest, " +
-                                              std::to_string(newest) + ": continue from there");
+        throw Error(ErrorCode::kSeqStale, number + " is more than " + std::to_string(kSeqWindow) +
+                                              " behind the newest, " + std::to_string(newest) +
+                                              ": continue from there");
       }
       return std::nullopt;
     }
     const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
     if (known->request.part_id != request.part_id || !same_recipe) {
-      throw Error(ErrorCode::kSeqConflict, "seq " + std::to_string(request.seq) + " belongs to job " + known->job_id +
-                                               " (part '" + known->request.part_id + "', recipe '" +
-                                               known->request.recipe + "'): use a new number for a new job");
+      throw Error(ErrorCode::kSeqConflict, number + " belongs to job " + known->job_id + " (part '" +
+                                               known->request.part_id + "', recipe '" + known->request.recipe +
+                                               "'): use a new number for a new job");
     }
     return known;
   }
@@ -162,7 +172,7 @@ JobStatus JobStore::accept(const JobRequest& request) {
   Transaction transaction(impl_->database);
   if (const auto known = impl_->find_repeated_locked(request)) {
     throw Error(ErrorCode::kSeqConflict,
-                "seq " + std::to_string(request.seq) + " was accepted before, as job " + known->job_id);
+                number_text(request.seq, request.client) + " was accepted before, as job " + known->job_id);
   }
   // sqlite_sequence holds the number given last; it never goes back, even if rows are deleted.
   const std::int64_t number =
@@ -170,9 +180,11 @@ JobStatus JobStore::accept(const JobRequest& request) {
   JobStatus job;
   job.job_id = make_job_id(std::chrono::system_clock::now(), impl_->epoch, number);
   job.request = request;
-  Statement(impl_->database, "INSERT INTO jobs (number, job_id, seq, part_id, recipe, state) VALUES (?, ?, ?, ?, ?, ?)")
+  Statement(impl_->database,
+            "INSERT INTO jobs (number, job_id, client, seq, part_id, recipe, state) VALUES (?, ?, ?, ?, ?, ?, ?)")
       .bind(number)
       .bind(job.job_id)
+      .bind(request.client)
       .bind(request.seq)
       .bind(request.part_id)
       .bind(request.recipe)
@@ -219,6 +231,13 @@ StoredJob JobStore::find(const JobKey& key) const {
 std::optional<JobStatus> JobStore::latest() const {
   const MutexLock lock(impl_->mutex);
   Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
+  return first_status(query);
+}
+
+std::optional<JobStatus> JobStore::highest(const std::string& client) const {
+  const MutexLock lock(impl_->mutex);
+  Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? ORDER BY seq DESC LIMIT 1");
+  query.bind(client);
   return first_status(query);
 }
 

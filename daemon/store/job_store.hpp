@@ -23,20 +23,20 @@ struct StoredJob {
 /// context: thread-safe.
 class JobStore {
  public:
-  /// A sequence number that is unknown and further back than this from the newest is refused as stale.
+  /// A sequence number that is unknown and further back than this from its client's highest is refused as stale.
   static constexpr std::int64_t kSeqWindow = 1000;
 
-  /// Opens or creates the database and its folder, counts the start, and ends the jobs that were running when the last
-  /// process died as failed with kInterrupted. Throws Error kDatabase (also if another process holds the file, or it
-  /// was written by a newer version), kStorageFull.
+  /// Opens or creates the database and its folder, brings the tables of an older version up to date, counts the start,
+  /// and ends the jobs that were running when the last process died as failed with kInterrupted. Throws Error kDatabase
+  /// (also if another process holds the file, or it was written by a newer version), kStorageFull.
   explicit JobStore(const std::filesystem::path& file);
   ~JobStore();
   JobStore(const JobStore&) = delete;
   JobStore& operator=(const JobStore&) = delete;
 
-  /// The job of this sequence number if the request repeats it: same part, same recipe; a request that names no recipe
-  /// repeats whichever was taken. Nothing if the number is new. Throws Error kSeqConflict if the number belongs to
-  /// another request, kSeqStale if it is unknown and too old.
+  /// The job of this client and sequence number if the request repeats it: same part, same recipe; a request that names
+  /// no recipe repeats whichever was taken. Nothing if the number is new. Throws Error kSeqConflict if the number
+  /// belongs to another request, kSeqStale if it is unknown and too old.
   [[nodiscard]] std::optional<JobStatus> find_repeated(const JobRequest& request) const;
 
   /// Makes the job's row durable and gives the job its id: unique over all starts, sortable by time, 29 characters.
@@ -51,6 +51,8 @@ class JobStore {
   [[nodiscard]] StoredJob find(const JobKey& key) const;
   /// The job accepted last.
   [[nodiscard]] std::optional<JobStatus> latest() const;
+  /// The client's job with the highest sequence number.
+  [[nodiscard]] std::optional<JobStatus> highest(const std::string& client) const;
 
   /// The oldest ended job that was not acknowledged.
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const;

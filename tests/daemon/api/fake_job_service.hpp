@@ -34,8 +34,7 @@ class FakeJobService final : public MachineView,
   [[nodiscard]] JobStatus job(const JobKey& key) const override {
     const std::lock_guard lock(mutex_);
     for (const auto& [seq, job] : jobs_) {
-      const auto* id = std::get_if<std::string>(&key);
-      if (id != nullptr ? job.job_id == *id : seq == std::get<std::int64_t>(key)) return job;
+      if (names(key, job)) return job;
     }
     throw Error(ErrorCode::kUnknownJob, "no such job");
   }

@@ -269,7 +269,7 @@ TEST_F(AnEngine, EndsAJobThatWasPendingAtShutdown) {
   engine_->shut_down();
   hold.go.set_value();
   engine_->finish();
-  const JobStatus ended = store_->find(JobKey{std::int64_t{1}}).status;
+  const JobStatus ended = store_->find(ClientSeq{1}).status;
   EXPECT_EQ(ended.state, JobState::kFailed);
   EXPECT_EQ(ended.error, ErrorCode::kShuttingDown);
 }

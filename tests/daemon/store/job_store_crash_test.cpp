@@ -7,12 +7,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_store.hpp"
+#include "tests/daemon/store/broken_disk.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -50,7 +50,7 @@ TEST(JobStoreCrash, FindsAnAcceptedJobAsInterruptedAfterAKill) {
   JobStore store(file);
 
   EXPECT_EQ(store.epoch(), 2);
-  const JobStatus job = store.find(std::int64_t{42}).status;
+  const JobStatus job = store.find(ClientSeq{42}).status;
   EXPECT_EQ(job.state, JobState::kFailed);
   EXPECT_EQ(job.error, ErrorCode::kInterrupted);
   EXPECT_THAT(job.error_message, HasSubstr("measure the part again"));
@@ -70,8 +70,8 @@ TEST(JobStoreCrash, KeepsAFinishedJobAfterAKill) {
 
   JobStore store(file);
 
-  EXPECT_EQ(store.find(std::int64_t{42}).status.state, JobState::kCompleted);
-  EXPECT_EQ(store.find(std::int64_t{42}).result_json, "{\"points\":1}");
+  EXPECT_EQ(store.find(ClientSeq{42}).status.state, JobState::kCompleted);
+  EXPECT_EQ(store.find(ClientSeq{42}).result_json, "{\"points\":1}");
 }
 
 TEST(JobStoreCrash, CountsEveryStartThatWasKilled) {
@@ -108,44 +108,14 @@ TEST(JobStoreCrash, RefusesADatabaseOfANewerVersion) {
   FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore{file}, HasSubstr("newer"));
 }
 
-/// While it lives, SQLite's writes fail with one errno.
-class BrokenDisk {
- public:
-  explicit BrokenDisk(int error) {
-    error_ = error;
-    for (const char* call : {"pwrite", "pwrite64"}) set(call, reinterpret_cast<sqlite3_syscall_ptr>(&fail_pwrite));
-    set("write", reinterpret_cast<sqlite3_syscall_ptr>(&fail_write));
-  }
-  ~BrokenDisk() {
-    for (const char* call : {"pwrite", "pwrite64", "write"}) set(call, nullptr);  // nullptr: the real one again
-  }
-  BrokenDisk(const BrokenDisk&) = delete;
-  BrokenDisk& operator=(const BrokenDisk&) = delete;
-
- private:
-  static void set(const char* call, sqlite3_syscall_ptr function) {
-    sqlite3_vfs* vfs = sqlite3_vfs_find(nullptr);
-    vfs->xSetSystemCall(vfs, call, function);
-  }
-  static ssize_t fail_pwrite(int, const void*, std::size_t, off_t) {
-    errno = error_;
-    return -1;
-  }
-  static ssize_t fail_write(int, const void*, std::size_t) {
-    errno = error_;
-    return -1;
-  }
-  static inline int error_ = 0;
-};
-
 TEST(JobStoreCrash, SaysThatTheDiskIsFullAndWorksAgainWhenItIsNot) {
   const test::ScratchDir folder;
   JobStore store(folder.path() / "jobs.db");
   {
-    const BrokenDisk full(ENOSPC);
+    const test::BrokenDisk full(ENOSPC);
     FVD_EXPECT_ERROR(kStorageFull, (void)store.accept({1, "part", "chapter"}));
   }
-  FVD_EXPECT_ERROR(kUnknownJob, (void)store.find(std::int64_t{1}));
+  FVD_EXPECT_ERROR(kUnknownJob, (void)store.find(ClientSeq{1}));
 
   EXPECT_NO_THROW((void)store.accept({1, "part", "chapter"}));
 }
@@ -156,10 +126,10 @@ TEST(JobStoreCrash, SaysThatTheDiskIsBroken) {
   JobStatus job = store.accept({1, "part", "chapter"});
   job.state = JobState::kCompleted;
   {
-    const BrokenDisk broken(EIO);
+    const test::BrokenDisk broken(EIO);
     FVD_EXPECT_ERROR(kDatabase, store.finish(job, "dir", "{}"));
   }
-  EXPECT_EQ(store.find(std::int64_t{1}).status.state, JobState::kProcessing) << "nothing half done";
+  EXPECT_EQ(store.find(ClientSeq{1}).status.state, JobState::kProcessing) << "nothing half done";
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST_F(AJobStore, KnowsNothingAtFirst) {
   EXPECT_FALSE(store_->next_unacknowledged());
   EXPECT_EQ(store_->unacknowledged_count(), 0);
   EXPECT_FALSE(store_->find_repeated(request(1)));
-  FVD_EXPECT_ERROR(kUnknownJob, (void)store_->find(std::int64_t{1}));
+  FVD_EXPECT_ERROR(kUnknownJob, (void)store_->find(ClientSeq{1}));
   FVD_EXPECT_ERROR(kUnknownJob, (void)store_->find(std::string("x")));
   FVD_EXPECT_ERROR(kUnknownJob, store_->acknowledge(std::string("x")));
 }
@@ -64,8 +64,8 @@ TEST_F(AJobStore, FindsAnAcceptedJobByIdAndBySeq) {
 
   EXPECT_EQ(job.state, JobState::kProcessing);
   EXPECT_EQ(store_->find(job.job_id).status.request.seq, 7);
-  EXPECT_EQ(store_->find(std::int64_t{7}).status.job_id, job.job_id);
-  EXPECT_EQ(store_->find(std::int64_t{7}).status.request.part_id, "A-17");
+  EXPECT_EQ(store_->find(ClientSeq{7}).status.job_id, job.job_id);
+  EXPECT_EQ(store_->find(ClientSeq{7}).status.request.part_id, "A-17");
   EXPECT_EQ(store_->latest()->job_id, job.job_id);
 }
 
@@ -100,6 +100,32 @@ TEST_F(AJobStore, RefusesANumberThatBelongsToAnotherRequest) {
   FVD_EXPECT_ERROR(kSeqConflict, (void)store_->accept(request(7, "another part")));
 }
 
+TEST_F(AJobStore, KeepsTheNumbersOfEveryClientApart) {
+  const JobStatus plc = store_->accept(request(7));
+  const JobStatus other = store_->accept({7, "another part", "fine", "fvdctl"});
+
+  EXPECT_NE(other.job_id, plc.job_id);
+  EXPECT_EQ(store_->find(ClientSeq{7}).status.job_id, plc.job_id);
+  EXPECT_EQ(store_->find(ClientSeq{7, "fvdctl"}).status.job_id, other.job_id);
+  EXPECT_EQ(store_->find_repeated({7, "another part", "fine", "fvdctl"}).value().job_id, other.job_id);
+  FVD_EXPECT_ERROR(kSeqConflict, (void)store_->find_repeated({7, "part", "chapter", "fvdctl"}));
+  FVD_EXPECT_ERROR(kUnknownJob, (void)store_->find(ClientSeq{7, "nobody"}));
+  finish(other);
+  EXPECT_EQ(store_->acknowledge(ClientSeq{7, "fvdctl"}), 0);
+  reopen();
+  EXPECT_EQ(store_->find(ClientSeq{7, "fvdctl"}).status.request.client, "fvdctl");
+}
+
+TEST_F(AJobStore, LooksBackFromEachClientsOwnHighestNumber) {
+  (void)store_->accept({1'000'000, "part", "chapter", "fvdctl"});
+
+  EXPECT_NO_THROW((void)store_->accept(request(1)));
+  FVD_EXPECT_ERROR(kSeqStale, (void)store_->accept({1, "part", "chapter", "fvdctl"}));
+  EXPECT_EQ(store_->highest("fvdctl")->request.seq, 1'000'000);
+  EXPECT_EQ(store_->highest(kDefaultClient)->request.seq, 1);
+  EXPECT_FALSE(store_->highest("nobody"));
+}
+
 TEST_F(AJobStore, RefusesUnknownNumbersBehindTheWindow) {
   (void)store_->accept(request(1));
   (void)store_->accept(request(5000));
@@ -113,7 +139,7 @@ TEST_F(AJobStore, RefusesUnknownNumbersBehindTheWindow) {
 TEST_F(AJobStore, KeepsTheLargestSequenceNumber) {
   constexpr std::int64_t kLargest = (std::int64_t{1} << 53U) - 1;
   const JobStatus job = store_->accept(request(kLargest));
-  EXPECT_EQ(store_->find(kLargest).status.job_id, job.job_id);
+  EXPECT_EQ(store_->find(ClientSeq{kLargest}).status.job_id, job.job_id);
 }
 
 TEST_F(AJobStore, KeepsEverythingOfAnEndedJob) {
@@ -187,7 +213,7 @@ TEST_F(AJobStore, HandsOutUnacknowledgedJobsOldestFirst) {
   EXPECT_EQ(store_->acknowledge(first.job_id), 1) << "repeating changes nothing";
   EXPECT_TRUE(store_->find(first.job_id).status.acknowledged);
   EXPECT_EQ(store_->next_unacknowledged()->job_id, second.job_id);
-  EXPECT_EQ(store_->acknowledge(std::int64_t{5}), 0);
+  EXPECT_EQ(store_->acknowledge(ClientSeq{5}), 0);
   EXPECT_FALSE(store_->next_unacknowledged());
 }
 
@@ -212,7 +238,7 @@ TEST_F(AJobStore, CountsAHundredThousandResultsWithoutReadingThem) {
   for (int call = 0; call < 1000; ++call) EXPECT_EQ(store_->unacknowledged_count(), 100000);
   // Counting the rows takes milliseconds a call.
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
-  EXPECT_EQ(store_->acknowledge(std::int64_t{500}), 99999);
+  EXPECT_EQ(store_->acknowledge(ClientSeq{500}), 99999);
 }
 
 TEST_F(AJobStore, RefusesToAcknowledgeARunningJob) {

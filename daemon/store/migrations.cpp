@@ -1,0 +1,136 @@
+#include "daemon/store/migrations.hpp"
+
+#include <array>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.hpp"
+
+namespace fvd {
+
+namespace {
+
+std::int64_t scalar(const Database& database, const char* sql) {
+  Statement query(database, sql);
+  return query.step() ? query.integer(0) : 0;
+}
+
+/// Version 1, of fvd 0.1.0. States and errors are stored by name: names are the stable contract, numbers are not.
+void create_tables(Database& database) {
+  database.execute(R"(
+CREATE TABLE starts (
+  epoch INTEGER NOT NULL
+) STRICT;
+INSERT INTO starts (epoch) VALUES (0);
+CREATE TABLE jobs (
+  number            INTEGER PRIMARY KEY AUTOINCREMENT,
+  job_id            TEXT    NOT NULL UNIQUE,
+  seq               INTEGER NOT NULL UNIQUE,
+  part_id           TEXT    NOT NULL,
+  recipe            TEXT    NOT NULL,
+  state             TEXT    NOT NULL,
+  error             TEXT    NOT NULL DEFAULT '',
+  error_message     TEXT    NOT NULL DEFAULT '',
+  acknowledged      INTEGER NOT NULL DEFAULT 0,
+  slices_done       INTEGER NOT NULL DEFAULT 0,
+  slices_planned    INTEGER NOT NULL DEFAULT 0,
+  frames_expected   INTEGER NOT NULL DEFAULT 0,
+  frames_ok         INTEGER NOT NULL DEFAULT 0,
+  frames_incomplete INTEGER NOT NULL DEFAULT 0,
+  frames_missing    INTEGER NOT NULL DEFAULT 0,
+  frames_stale      INTEGER NOT NULL DEFAULT 0,
+  frames_underrun   INTEGER NOT NULL DEFAULT 0,
+  created_utc       TEXT    NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+  ended_utc         TEXT    NOT NULL DEFAULT '',
+  result_dir        TEXT    NOT NULL DEFAULT '',
+  result_json       TEXT    NOT NULL DEFAULT ''
+) STRICT;
+CREATE INDEX jobs_waiting ON jobs (number) WHERE acknowledged = 0;
+)");
+}
+
+/// Version 2: a sequence number is unique for its client alone. SQLite cannot drop the old UNIQUE, so the table is made
+/// anew; the number that was given last is carried over, or a deleted row's number would be given again.
+void give_sequence_numbers_to_clients(Database& database) {
+  database.execute(R"(
+CREATE TABLE jobs_2 (
+  number            INTEGER PRIMARY KEY AUTOINCREMENT,
+  job_id            TEXT    NOT NULL UNIQUE,
+  client            TEXT    NOT NULL DEFAULT 'plc',
+  seq               INTEGER NOT NULL,
+  part_id           TEXT    NOT NULL,
+  recipe            TEXT    NOT NULL,
+  state             TEXT    NOT NULL,
+  error             TEXT    NOT NULL DEFAULT '',
+  error_message     TEXT    NOT NULL DEFAULT '',
+  acknowledged      INTEGER NOT NULL DEFAULT 0,
+  slices_done       INTEGER NOT NULL DEFAULT 0,
+  slices_planned    INTEGER NOT NULL DEFAULT 0,
+  frames_expected   INTEGER NOT NULL DEFAULT 0,
+  frames_ok         INTEGER NOT NULL DEFAULT 0,
+  frames_incomplete INTEGER NOT NULL DEFAULT 0,
+  frames_missing    INTEGER NOT NULL DEFAULT 0,
+  frames_stale      INTEGER NOT NULL DEFAULT 0,
+  frames_underrun   INTEGER NOT NULL DEFAULT 0,
+  created_utc       TEXT    NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+  ended_utc         TEXT    NOT NULL DEFAULT '',
+  result_dir        TEXT    NOT NULL DEFAULT '',
+  result_json       TEXT    NOT NULL DEFAULT '',
+  UNIQUE (client, seq)
+) STRICT;
+INSERT INTO jobs_2 (number, job_id, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done,
+                    slices_planned, frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale,
+                    frames_underrun, created_utc, ended_utc, result_dir, result_json)
+  SELECT number, job_id, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done,
+         slices_planned, frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale,
+         frames_underrun, created_utc, ended_utc, result_dir, result_json FROM jobs;
+DELETE FROM sqlite_sequence WHERE name = 'jobs_2';
+INSERT INTO sqlite_sequence (name, seq) SELECT 'jobs_2', seq FROM sqlite_sequence WHERE name = 'jobs';
+DROP TABLE jobs;
+ALTER TABLE jobs_2 RENAME TO jobs;
+CREATE INDEX jobs_waiting ON jobs (number) WHERE acknowledged = 0;
+)");
+}
+
+constexpr std::array kSteps{
+    MigrationStep{"tables for jobs and starts", create_tables},
+    MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
+};
+
+void require_own_file(const Database& database, int version) {
+  if (version > newest_schema_version()) {
+    throw Error(ErrorCode::kDatabase, "database " + database.file().string() + " has version " +
+                                          std::to_string(version) + ", this fvd knows versions up to " +
+                                          std::to_string(newest_schema_version()) +
+                                          ": install the newer fvd that wrote it, or move the file away to start anew");
+  }
+  if (version == 0 && scalar(database, "SELECT count(*) FROM sqlite_schema") > 0) {
+    throw Error(ErrorCode::kDatabase, "database " + database.file().string() +
+                                          " was made by another program: move it away, or name another state_dir");
+  }
+}
+
+}  // namespace
+
+std::span<const MigrationStep> migration_steps() { return kSteps; }
+
+int newest_schema_version() { return static_cast<int>(kSteps.size()); }
+
+int schema_version(const Database& database) { return static_cast<int>(scalar(database, "PRAGMA user_version")); }
+
+void migrate(Database& database, int version) {
+  require_own_file(database, schema_version(database));
+  const int found = schema_version(database);
+  for (int from = found; from < version; ++from) {
+    const MigrationStep& step = kSteps.at(static_cast<std::size_t>(from));
+    Transaction transaction(database);
+    step.run(database);
+    database.execute(("PRAGMA user_version = " + std::to_string(from + 1)).c_str());
+    transaction.commit();
+    if (found == 0) continue;  // a new file
+    spdlog::info("database {}: version {} -> {}: {}", database.file().string(), from, from + 1, step.what);
+  }
+}
+
+}  // namespace fvd
