@@ -1,8 +1,10 @@
 #include "config/field_reader.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <sstream>
 
 #include "config/relation.hpp"
@@ -50,7 +52,8 @@ std::string shown(const json& value) {
 }
 
 std::string range_text(IntegerRange range) {
-  return "an integer within " + std::to_string(range.min) + ".." + std::to_string(range.max);
+  return std::string(range.hex ? "an integer or \"0x..\" within " : "an integer within ") + std::to_string(range.min) +
+         ".." + std::to_string(range.max);
 }
 
 std::string range_text(NumberRange range) {
@@ -77,6 +80,19 @@ std::string escaped(std::string_view name) {
   return text;
 }
 
+/// A whole number that fits, where hex is allowed also one written as "0x1A", which JSON has no other way to say.
+std::optional<std::int64_t> whole_number(const json& value, bool hex) {
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX) return std::nullopt;
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (!hex || !value.is_string()) return std::nullopt;
+  const auto& text = value.get_ref<const std::string&>();
+  std::uint32_t number = 0;
+  if (!text.starts_with("0x")) return std::nullopt;
+  const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), number, 16);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
 bool accepts(const std::vector<std::string>& accepted, const json& value) {
   return value.is_string() && std::find(accepted.begin(), accepted.end(), value.get<std::string>()) != accepted.end();
 }
@@ -92,7 +108,7 @@ void FieldReader::finish() {
   if (!object_.is_object()) return;
   for (const auto& [name, value] : object_.items()) {
     if (known_.contains(name) || (pointer_.empty() && name == "$schema")) continue;
-    report(name, "unknown key" + hint(name, known_));
+    report(name, row_ ? "is one too many" : "unknown key" + hint(name, known_));
   }
 }
 
@@ -112,10 +128,11 @@ const json* FieldReader::find(std::string_view name) {
   return found == object_.end() ? nullptr : &*found;
 }
 
-void FieldReader::group(std::string_view name, std::string_view /*meaning*/,
-                        const std::function<void(Fields&)>& members) {
+void FieldReader::group_of(std::string_view type, std::string_view name, std::string_view /*meaning*/,
+                           const std::function<void(Fields&)>& members) {
   static const json kEmpty = json::object();
   const json* value = find(name);
+  if (value == nullptr && !type.empty()) return;
   FieldReader inner(value != nullptr ? *value : kEmpty, problems_, pointer_ + "/" + escaped(name));
   members(inner);
   inner.finish();
@@ -125,12 +142,9 @@ void FieldReader::integer64(std::string_view name, std::int64_t& value, IntegerR
                             std::string_view /*meaning*/) {
   const json* found = find(name);
   if (found == nullptr) return;
-  const bool fits =
-      found->is_number_integer() && !(found->is_number_unsigned() && found->get<std::uint64_t>() > INT64_MAX);
-  if (!fits || found->get<std::int64_t>() < range.min || found->get<std::int64_t>() > range.max) {
-    return refuse(name, *found, range_text(range));
-  }
-  value = found->get<std::int64_t>();
+  const auto number = whole_number(*found, range.hex);
+  if (!number || *number < range.min || *number > range.max) return refuse(name, *found, range_text(range));
+  value = *number;
 }
 
 void FieldReader::number(std::string_view name, double& value, NumberRange range, std::string_view /*meaning*/) {
@@ -189,16 +203,33 @@ bool FieldReader::object_list(std::string_view name, const ObjectList& list, Int
   if (found == nullptr) return false;
   const auto size = static_cast<std::int64_t>(found->size());
   if (!found->is_array() || size < count.min || size > count.max) {
-    refuse(name, *found, "a list of " + std::to_string(count.min) + ".." + std::to_string(count.max) + " objects { }");
+    refuse(name, *found,
+           "a list of " + std::to_string(count.min) + ".." + std::to_string(count.max) +
+               (list.rows ? " lists [ ]" : " objects { }"));
     return false;
   }
   const std::size_t problems_before = problems_.size();
   for (std::size_t i = 0; i < found->size(); ++i) {
-    FieldReader element((*found)[i], problems_, pointer_ + "/" + escaped(name) + "/" + std::to_string(i));
+    const std::string pointer = pointer_ + "/" + escaped(name) + "/" + std::to_string(i);
+    if (list.rows) {
+      read_row((*found)[i], list, pointer);
+      continue;
+    }
+    FieldReader element((*found)[i], problems_, pointer);
     list.describe_new(element);
     element.finish();
   }
   return problems_.size() == problems_before;
+}
+
+void FieldReader::read_row(const json& row, const ObjectList& list, const std::string& pointer) {
+  if (!row.is_array()) return problems_.push_back({pointer, shown(row) + " is not a list [ ]"});
+  json members = json::object();
+  for (std::size_t i = 0; i < row.size(); ++i) members[std::to_string(i)] = row[i];
+  FieldReader element(members, problems_, pointer);
+  element.row_ = true;
+  list.describe_new(element);
+  element.finish();
 }
 
 void FieldReader::variant(std::string_view key, std::string& value, const std::vector<Shape>& shapes,
@@ -213,12 +244,57 @@ void FieldReader::variant(std::string_view key, std::string& value, const std::v
     }
     return;
   }
-  // Nobody knows which shape was meant: the keys of all of them count as known, only others are reported.
+  know_members(shapes);
+}
+
+void FieldReader::know_members(const std::vector<Shape>& shapes) {
   static const json kEmpty = json::object();
   Problems ignored;
   FieldReader names_only(kEmpty, ignored);
   for (const Shape& shape : shapes) shape.members(names_only);
   known_.insert(names_only.known_.begin(), names_only.known_.end());
+}
+
+void FieldReader::keyed_variant(std::string& value, const std::vector<Shape>& shapes) {
+  if (!object_.is_object()) return;
+  std::vector<std::string> names;
+  for (const Shape& shape : shapes) {
+    if (object_.contains(shape.name)) {
+      value = shape.name;
+      return shape.members(*this);
+    }
+    names.push_back(shape.name);
+  }
+  if (!object_.empty()) know_members(shapes);
+  problems_.push_back(
+      {pointer_, shown(object_) + " is not accepted; expected an object with one of the keys " + joined(names)});
+}
+
+bool FieldReader::keyed_values(std::string_view name, const KeyedValues& values, std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return false;
+  const std::size_t problems_before = problems_.size();
+  FieldReader inner(*found, problems_, pointer_ + "/" + escaped(name));
+  if (found->is_object()) {
+    for (const auto& [key, value] : found->items()) values.describe_new(key, inner);
+  }
+  return problems_.size() == problems_before;
+}
+
+void FieldReader::word_or(std::string_view name, std::string& word, const std::vector<std::string>& words,
+                          const std::function<void(Fields&)>& member) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  if (words.empty() && found->is_string()) return text(name, word, kMaxWordLength, "");
+  if (accepts(words, *found)) {
+    word = found->get<std::string>();
+    return;
+  }
+  const std::size_t problems_before = problems_.size();
+  word.clear();
+  member(*this);
+  if (problems_.size() == problems_before || found->is_object()) return;
+  problems_.back().message += words.empty() ? ", or a text" : ", or one of " + joined(words);
 }
 
 void FieldReader::optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) {

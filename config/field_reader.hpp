@@ -20,7 +20,8 @@ class FieldReader final : public Fields {
   /// Reports unknown keys: call when all fields are described.
   void finish();
 
-  void group(std::string_view name, std::string_view meaning, const std::function<void(Fields&)>& members) override;
+  void group_of(std::string_view type, std::string_view name, std::string_view meaning,
+                const std::function<void(Fields&)>& members) override;
   void integer64(std::string_view name, std::int64_t& value, IntegerRange range, std::string_view meaning) override;
   void number(std::string_view name, double& value, NumberRange range, std::string_view meaning) override;
   void boolean(std::string_view name, bool& value, std::string_view meaning) override;
@@ -33,6 +34,10 @@ class FieldReader final : public Fields {
                    std::string_view meaning) override;
   void variant(std::string_view key, std::string& value, const std::vector<Shape>& shapes,
                std::string_view meaning) override;
+  void keyed_variant(std::string& value, const std::vector<Shape>& shapes) override;
+  bool keyed_values(std::string_view name, const KeyedValues& values, std::string_view meaning) override;
+  void word_or(std::string_view name, std::string& word, const std::vector<std::string>& words,
+               const std::function<void(Fields&)>& member) override;
   void optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) override;
   void relate(std::string_view name, double value, Relation relation, std::string_view other, double other_value,
               double offset) override;
@@ -42,10 +47,14 @@ class FieldReader final : public Fields {
   [[nodiscard]] const nlohmann::json* find(std::string_view name);
   void refuse(std::string_view name, const nlohmann::json& value, const std::string& accepted);
   void report(std::string_view name, const std::string& message);
+  /// Of all shapes, where nobody knows which one was meant: only keys that none of them has are reported.
+  void know_members(const std::vector<Shape>& shapes);
+  void read_row(const nlohmann::json& row, const ObjectList& list, const std::string& pointer);
 
   const nlohmann::json& object_;
   Problems& problems_;
   std::string pointer_;
+  bool row_ = false;  ///< object_ stands for a list, its keys are the positions
   std::set<std::string, std::less<>> known_;
   std::set<std::string, std::less<>> refused_;  ///< their values are not those of the document
 };

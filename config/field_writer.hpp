@@ -1,6 +1,6 @@
 #pragma once
 
-/// The other two uses of a description: the structure as JSON, and the JSON schema it follows.
+/// The other uses of a description: the structure as JSON, the JSON schema it follows, and the table people read.
 
 #include <string>
 
@@ -16,5 +16,8 @@ namespace fvd {
 /// JSON Schema draft 7 of the description, with the values as defaults. Unknown keys are refused.
 [[nodiscard]] nlohmann::ordered_json fields_to_schema(const std::function<void(Fields&)>& describe,
                                                       const std::string& title);
+
+/// A schema's keys as a Markdown table: key, accepted, default, meaning; a row per value, groups by "group.key".
+[[nodiscard]] std::string schema_to_table(const nlohmann::ordered_json& schema);
 
 }  // namespace fvd

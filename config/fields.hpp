@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,7 @@ namespace fvd {
 struct IntegerRange {
   std::int64_t min = std::numeric_limits<std::int64_t>::min();
   std::int64_t max = std::numeric_limits<std::int64_t>::max();
+  bool hex = false;  ///< a text "0x1A" is accepted too
 };
 
 /// Range of a number; open at the bottom where above_min is set.
@@ -40,6 +42,9 @@ constexpr NumberRange positive(double max = 1e12) { return {0.0, max, true}; }
 /// What a value must be beside the value of another key, plus an offset.
 enum class Relation { kBelow, kAtMost, kAbove, kAtLeast };
 
+/// Bytes of a text that stands in place of an object.
+inline constexpr std::size_t kMaxWordLength = 256;
+
 class Fields;
 
 /// The elements of a list, without their type.
@@ -47,11 +52,26 @@ struct ObjectList {
   std::size_t size = 0;                                ///< elements the structure has
   std::function<void(std::size_t, Fields&)> describe;  ///< describes one of them, index below size
   std::function<void(Fields&)> describe_new;           ///< describes one more, all its values at their defaults
+  std::string type{};  ///< the schema's name for an element; needed where an element can contain others of its type
+  bool rows = false;   ///< an element is written as a list [a, b]; its members are named "0", "1", ...
+};
+
+/// How the elements of a list are written; the members are those of ObjectList.
+struct ListForm {
+  std::string type{};
+  bool rows = false;
+};
+
+/// An object whose keys are the document's own, without the type of its values.
+struct KeyedValues {
+  std::vector<std::string> keys;                                      ///< that the structure has
+  std::function<void(const std::string& key, Fields&)> describe;      ///< describes the field of one of them
+  std::function<void(const std::string& key, Fields&)> describe_new;  ///< likewise of a new one, at its defaults
 };
 
 /// One of the shapes an object can have.
 struct Shape {
-  std::string name;  ///< the key's value that chooses it
+  std::string name;  ///< variant: the key's value that chooses it; keyed_variant: the key whose presence does
   std::function<void(Fields&)> members;
 };
 
@@ -59,7 +79,10 @@ class Fields {
  public:
   virtual ~Fields() = default;
 
-  virtual void group(std::string_view name, std::string_view meaning, const std::function<void(Fields&)>& members) = 0;
+  /// An object of a named type: the schema defines the type once, so that it can contain itself. One that is absent is
+  /// not described to a reader. An empty type is none.
+  virtual void group_of(std::string_view type, std::string_view name, std::string_view meaning,
+                        const std::function<void(Fields&)>& members) = 0;
   virtual void integer64(std::string_view name, std::int64_t& value, IntegerRange range, std::string_view meaning) = 0;
   virtual void number(std::string_view name, double& value, NumberRange range, std::string_view meaning) = 0;
   virtual void boolean(std::string_view name, bool& value, std::string_view meaning) = 0;
@@ -76,6 +99,15 @@ class Fields {
   /// Members that only one of several shapes has, beside the key that chooses it. value names a shape, the default.
   virtual void variant(std::string_view key, std::string& value, const std::vector<Shape>& shapes,
                        std::string_view meaning) = 0;
+  /// Likewise, where the shape is the one whose name is a key of this object. value names it; empty writes nothing.
+  virtual void keyed_variant(std::string& value, const std::vector<Shape>& shapes) = 0;
+  /// True where the values described by describe_new replace the structure's. map() is the typed form.
+  [[nodiscard]] virtual bool keyed_values(std::string_view name, const KeyedValues& values,
+                                          std::string_view meaning) = 0;
+  /// A field that is one of these words, or else what member describes under the same name. No words: any text of up to
+  /// kMaxWordLength bytes. word: empty where the field is none.
+  virtual void word_or(std::string_view name, std::string& word, const std::vector<std::string>& words,
+                       const std::function<void(Fields&)>& member) = 0;
   /// member describes the one field `name`, which may have no value; present tells whether it has. optional() is the
   /// typed form.
   virtual void optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) = 0;
@@ -86,6 +118,10 @@ class Fields {
 
   /// Marks the field of this name, described before, as one that a document must give.
   virtual void require(std::string_view name) = 0;
+
+  void group(std::string_view name, std::string_view meaning, const std::function<void(Fields&)>& members) {
+    group_of("", name, meaning, members);
+  }
 
   /// Any other integer type, and anything made of an integer, through a copy.
   template <typename Integer>
@@ -98,11 +134,23 @@ class Fields {
   /// A list of objects, each described by describe(Fields&, Element&). count: how many there may be, 0 or more.
   template <typename Element, typename Describe>
   void list(std::string_view name, std::vector<Element>& values, IntegerRange count, std::string_view meaning,
-            Describe describe) {
+            Describe describe, const ListForm& form = {}) {
     std::vector<Element> made;
     const ObjectList access{values.size(), [&](std::size_t i, Fields& fields) { describe(fields, values[i]); },
-                            [&](Fields& fields) { describe(fields, made.emplace_back()); }};
+                            [&](Fields& fields) { describe(fields, made.emplace_back()); }, form.type, form.rows};
     if (object_list(name, access, count, meaning)) values = std::move(made);
+  }
+
+  /// An object with keys of the document's own: describe(Fields&, const std::string& key, Element&) describes the field
+  /// of one key.
+  template <typename Element, typename Describe>
+  void map(std::string_view name, std::map<std::string, Element>& values, std::string_view meaning, Describe describe) {
+    std::map<std::string, Element> made;
+    KeyedValues access{{},
+                       [&](const std::string& key, Fields& fields) { describe(fields, key, values.at(key)); },
+                       [&](const std::string& key, Fields& fields) { describe(fields, key, made[key]); }};
+    for (const auto& [key, value] : values) access.keys.push_back(key);
+    if (keyed_values(name, access, meaning)) values = std::move(made);
   }
 
   /// A field that may have no value: describe(Fields&, Value&) describes it under the same name.
