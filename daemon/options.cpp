@@ -7,6 +7,7 @@
 #include "daemon/base/exit_code.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/recipes/recipe_book.hpp"
+#include "drivers/modbus/drive_profile.hpp"
 
 namespace fvd {
 
@@ -24,6 +25,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
   app.add_flag("--dump-config", options.dump_config, "print the configuration in force as JSON and exit");
   app.add_flag("--print-config-schema", options.print_config_schema, "print the configuration's JSON schema and exit");
   app.add_flag("--print-recipe-schema", options.print_recipe_schema, "print the recipes' JSON schema and exit");
+  app.add_flag("--print-drive-schema", options.print_drive_schema, "print the drive profiles' JSON schema and exit");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -34,8 +36,10 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
 
 StartUp start_up(const Options& options, std::ostream& out, std::ostream& err) {
   StartUp result;
-  if (options.print_config_schema || options.print_recipe_schema) {
-    out << (options.print_config_schema ? config_schema_text() : recipe_schema_text());
+  if (options.print_config_schema || options.print_recipe_schema || options.print_drive_schema) {
+    out << (options.print_config_schema   ? config_schema_text()
+            : options.print_recipe_schema ? recipe_schema_text()
+                                          : drive_profile_schema_text());
     result.exit = exit_code::kOk;
     return result;
   }

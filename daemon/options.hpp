@@ -17,6 +17,7 @@ struct Options {
   bool dump_config = false;
   bool print_config_schema = false;
   bool print_recipe_schema = false;
+  bool print_drive_schema = false;
 };
 
 /// The options, or the exit code where the command line says it all (--help, --version) or is wrong.

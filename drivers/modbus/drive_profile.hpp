@@ -112,4 +112,7 @@ struct DriveProfile {
 /// Throws likewise, or kBadInput if the file cannot be read.
 [[nodiscard]] DriveProfile load_drive_profile(const std::filesystem::path& file);
 
+/// JSON Schema of a profile; config/drive.schema.json is this text.
+[[nodiscard]] std::string drive_profile_schema_text();
+
 }  // namespace fvd

@@ -1,5 +1,6 @@
 /// The files in config/ against their JSON schemas, by a validator that knows nothing of our reader.
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "config/field_writer.hpp"
 #include "daemon/config/config_file.hpp"
 #include "daemon/recipes/recipe_book.hpp"
 #include "drivers/modbus/drive_profile.hpp"
@@ -53,6 +55,8 @@ TEST(ShippedFiles, HoldTheSchemasThatTheProgramPrints) {
       << "run: fvd --print-config-schema > config/fvd.schema.json";
   EXPECT_EQ(text_of(kConfigFolder / "recipe.schema.json"), recipe_schema_text())
       << "run: fvd --print-recipe-schema > config/recipe.schema.json";
+  EXPECT_EQ(text_of(kConfigFolder / "drive.schema.json"), drive_profile_schema_text())
+      << "run: fvd --print-drive-schema > config/drive.schema.json";
 }
 
 class AShippedConfig : public ::testing::TestWithParam<std::string> {};
@@ -128,23 +132,37 @@ TEST(ShippedFiles, HaveTheReferenceRecipe) {
   EXPECT_EQ(chapter.focus.distance_px, 1);
 }
 
-TEST(ShippedFiles, DescribeEveryKeyInTheReadme) {
-  const std::string readme = text_of(kConfigFolder / "README.md");
-  for (const std::string& schema_text : {config_schema_text(), recipe_schema_text()}) {
-    const std::function<void(const json&, const std::string&)> look = [&](const json& schema, const std::string& path) {
-      for (const auto& [name, property] : schema["properties"].items()) {
-        if (name == "$schema") continue;
-        const std::string key = path.empty() ? name : path + "." + name;
-        if (property.contains("properties")) {
-          look(property, key);
-        } else {
-          EXPECT_THAT(readme, ::testing::HasSubstr("| `" + key + "` |"));
-        }
-      }
-    };
-    look(json::parse(schema_text), "");
+struct DocumentedSchema {
+  std::string readme;
+  std::string name;  ///< of the table between "<!-- keys: NAME -->" and "<!-- end -->"
+  std::string schema;
+};
+
+class ATableOfKeys : public ::testing::TestWithParam<DocumentedSchema> {};
+
+TEST_P(ATableOfKeys, IsThatOfTheSchema) {
+  const auto file = kConfigFolder / GetParam().readme;
+  const std::string readme = text_of(file);
+  const std::string begin = "<!-- keys: " + GetParam().name + " -->\n";
+  const std::size_t from = readme.find(begin);
+  const std::size_t to = readme.find("<!-- end -->", from);
+  ASSERT_NE(from, std::string::npos) << begin;
+  ASSERT_NE(to, std::string::npos) << "no <!-- end --> after it";
+  const std::size_t table_begin = from + begin.size();
+  const std::string table = schema_to_table(nlohmann::ordered_json::parse(GetParam().schema));
+
+  if (std::getenv("FVD_WRITE_TABLES") != nullptr) {
+    std::ofstream(file) << readme.substr(0, table_begin) << table << readme.substr(to);
+    return;
   }
+  EXPECT_EQ(readme.substr(table_begin, to - table_begin), table)
+      << "run: FVD_WRITE_TABLES=1 build/tests/daemon/config/shipped_files_test --gtest_filter='*ATableOfKeys*'";
 }
+INSTANTIATE_TEST_SUITE_P(All, ATableOfKeys,
+                         ::testing::Values(DocumentedSchema{"README.md", "fvd.json", config_schema_text()},
+                                           DocumentedSchema{"README.md", "recipe", recipe_schema_text()},
+                                           DocumentedSchema{"drives/README.md", "drive", drive_profile_schema_text()}),
+                         [](const auto& of) { return of.param.name == "fvd.json" ? "config" : of.param.name; });
 
 /// Values at and just outside the border of what a property accepts, and of other types.
 std::vector<json> candidates(const json& property) {
