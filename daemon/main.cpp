@@ -1,7 +1,9 @@
 /// fvd: reads its configuration, starts, and waits for the signal to stop.
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <ctime>
 #include <exception>
 #include <iostream>
 
@@ -13,6 +15,7 @@
 #include "core/runtime/guarded_thread.hpp"
 #include "daemon/app.hpp"
 #include "daemon/base/exit_code.hpp"
+#include "daemon/base/service_watchdog.hpp"
 #include "daemon/base/systemd_notify.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/options.hpp"
@@ -28,6 +31,12 @@ std::string text_of(const std::exception_ptr& failure) {
   } catch (...) {
     return "of an unknown kind";
   }
+}
+
+/// The signal that came within that time, -1 if none did.
+int signal_within(const sigset_t& signals, std::chrono::milliseconds time) {
+  const timespec left{time.count() / 1000, time.count() % 1000 * 1'000'000};
+  return sigtimedwait(&signals, nullptr, &left);
 }
 
 int serve(const Config& config) {
@@ -51,8 +60,12 @@ int serve(const Config& config) {
   App app(config);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
   notify_ready("listening on port " + std::to_string(app.rpc_port()));
-  int received = 0;
-  sigwait(&signals, &received);
+  ServiceWatchdog watchdog;
+  int received = -1;
+  while (received < 0) {
+    watchdog.look(HostClock::now());
+    received = signal_within(signals, ServiceWatchdog::interval());
+  }
   spdlog::info("signal {}: stopping", received);
   notify_stopping();
   return thread_failed ? exit_code::kInternal : exit_code::kOk;

@@ -22,6 +22,7 @@ void notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_s
 
 void notify_ready(const std::string& status) { notify("READY=1\nSTATUS=" + one_line(status)); }
 void notify_status(const std::string& status) { notify("STATUS=" + one_line(status)); }
+void notify_watchdog() { notify("WATCHDOG=1"); }
 void notify_stopping() { notify("STOPPING=1\nSTATUS=stopping"); }
 
 }  // namespace fvd

@@ -11,6 +11,8 @@ namespace fvd {
 void notify_ready(const std::string& status);
 /// STATUS= alone.
 void notify_status(const std::string& status);
+/// WATCHDOG=1: a sign of life.
+void notify_watchdog();
 /// STOPPING=1: the ordered stop has begun.
 void notify_stopping();
 

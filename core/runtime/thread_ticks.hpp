@@ -1,0 +1,53 @@
+#pragma once
+
+/// Threads that show that they get on, and those that do not.
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "core/base/clock.hpp"
+
+namespace fvd {
+
+/// One thread's ticks; makes the thread known to stalled_threads() for as long as it lives. A thread ticks when it
+/// begins a piece of work, and rests while it waits for the next one, which may take for ever.
+/// context: the thread itself.
+class ThreadTicks {
+ public:
+  /// allowed: longest time from one tick to the next or to rest(). The thread rests until its first tick.
+  ThreadTicks(std::string name, std::chrono::milliseconds allowed);
+  ~ThreadTicks();
+  ThreadTicks(const ThreadTicks&) = delete;
+  ThreadTicks& operator=(const ThreadTicks&) = delete;
+
+  void tick(HostTime now) noexcept { last_ = now; }
+  void rest() noexcept { last_ = kResting; }
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Time since the last tick; 0 while the thread rests.
+  [[nodiscard]] HostClock::duration age(HostTime now) const noexcept;
+  [[nodiscard]] std::chrono::milliseconds allowed() const noexcept { return allowed_; }
+
+ private:
+  static constexpr HostTime kResting = HostTime::min();
+
+  const std::string name_;
+  const std::chrono::milliseconds allowed_;
+  std::atomic<HostTime> last_{kResting};
+};
+
+struct StalledThread {
+  std::string name;
+  std::chrono::milliseconds age;  ///< since its last tick
+  std::chrono::milliseconds allowed;
+
+  bool operator==(const StalledThread&) const = default;
+};
+
+/// The threads of the process that ticked last longer ago than they may, in the order in which they began.
+/// context: thread-safe.
+[[nodiscard]] std::vector<StalledThread> stalled_threads(HostTime now);
+
+}  // namespace fvd

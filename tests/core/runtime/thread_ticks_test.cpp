@@ -1,0 +1,61 @@
+#include "core/runtime/thread_ticks.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace fvd {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+const HostTime kStart{std::chrono::hours(1)};
+
+TEST(ThreadTicks, StallsOnceItsLastTickIsOlderThanAllowed) {
+  ThreadTicks ticks("camera", milliseconds(500));
+  ticks.tick(kStart);
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(500)), IsEmpty());
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(501)),
+              ElementsAre(StalledThread{"camera", milliseconds(501), milliseconds(500)}));
+
+  ticks.tick(kStart + milliseconds(600));
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(1100)), IsEmpty()) << "it got on";
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(1101)), testing::SizeIs(1));
+}
+
+TEST(ThreadTicks, DoesNotStallWhileItRests) {
+  ThreadTicks ticks("camera", milliseconds(500));
+  EXPECT_THAT(stalled_threads(kStart + std::chrono::hours(24)), IsEmpty()) << "before its first work";
+  ticks.tick(kStart);
+  ticks.rest();
+  EXPECT_THAT(stalled_threads(kStart + std::chrono::hours(24)), IsEmpty());
+}
+
+TEST(ThreadTicks, NamesEveryThreadThatStallsAndNoOther) {
+  ThreadTicks first("first", milliseconds(100));
+  ThreadTicks good("good", milliseconds(1000));
+  ThreadTicks last("last", milliseconds(200));
+  for (ThreadTicks* ticks : {&first, &good, &last}) ticks->tick(kStart);
+  std::vector<std::string> names;
+  for (const StalledThread& stalled : stalled_threads(kStart + milliseconds(300))) names.push_back(stalled.name);
+  EXPECT_THAT(names, ElementsAre("first", "last"));
+}
+
+TEST(ThreadTicks, IsForgottenWithItsThread) {
+  {
+    ThreadTicks ticks("short", milliseconds(100));
+    ticks.tick(kStart);
+    ASSERT_THAT(stalled_threads(kStart + milliseconds(200)), testing::SizeIs(1));
+  }
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(200)), IsEmpty());
+}
+
+TEST(ThreadTicks, IsNotOlderThanNowWhenItTicksDuringTheLook) {
+  ThreadTicks ticks("camera", milliseconds(500));
+  ticks.tick(kStart + milliseconds(1));
+  EXPECT_THAT(stalled_threads(kStart), IsEmpty());
+}
+
+}  // namespace
+}  // namespace fvd
