@@ -12,7 +12,7 @@ namespace fvd {
 namespace {
 
 /// An emission takes microseconds; this is for a machine that is very busy.
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kEmissionTimeout{5};
 
 }  // namespace
 
@@ -30,7 +30,7 @@ ControlWatch::~ControlWatch() {
   if (!device_) return;
   // Without a handler no new emission begins; one that runs ends soon.
   g_signal_handler_disconnect(device_.get(), handler_);
-  const HostTime deadline = HostClock::now() + kPatience;
+  const HostTime deadline = HostClock::now() + kEmissionTimeout;
   while (g_atomic_int_get(&G_OBJECT(device_.get())->ref_count) > 1) {
     if (HostClock::now() > deadline) {
       spdlog::error("a camera that was closed is still in use; its memory is not given back");

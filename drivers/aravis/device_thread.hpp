@@ -2,21 +2,21 @@
 
 /// The one thread that talks to an Aravis device.
 
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <future>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <thread>
 #include <type_traits>
 #include <utility>
 
+#include "core/base/mutex.hpp"
+
 namespace fvd {
 
-/// Aravis devices are not thread-safe, and a command to a camera that no longer answers blocks for 2.5 s; who wants
-/// something of one waits on the future for as long as he likes. context: thread-safe.
+/// Aravis devices are not thread-safe, and a command to a camera that no longer answers blocks for 2.5 s: the caller
+/// waits on the future for as long as he chooses. context: thread-safe.
 class DeviceThread {
  public:
   DeviceThread();
@@ -38,10 +38,10 @@ class DeviceThread {
   void enqueue(std::function<void()> command);
   void run(std::stop_token stop);
 
-  std::mutex mutex_;
-  std::condition_variable_any changed_;
-  std::deque<std::function<void()>> commands_;  // guarded by mutex_
-  std::jthread thread_;                         // last
+  Mutex mutex_;
+  Condition changed_;
+  std::deque<std::function<void()>> commands_ FVD_GUARDED_BY(mutex_);
+  std::jthread thread_;  // last
 };
 
 }  // namespace fvd

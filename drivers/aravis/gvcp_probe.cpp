@@ -78,7 +78,7 @@ GvcpProbe::Answer GvcpProbe::look() noexcept {
     const bool told = ack[0] == 0 && ack[1] == 0 && static_cast<std::size_t>(size) >= kHeaderBytes + 4;
     return !told || (ack[11] & kControlOrExclusive) != 0 ? Answer::kControlled : Answer::kFree;
   }
-  if (HostClock::now() - sent_ >= kRepeat) {
+  if (HostClock::now() - sent_ >= kRepeatInterval) {
     ++last_id_;
     send();
   }
@@ -91,7 +91,7 @@ GvcpProbe::Answer GvcpProbe::ask(std::chrono::milliseconds patience) noexcept {
   for (;;) {
     const Answer answer = look();
     if (answer != Answer::kNone || HostClock::now() >= deadline) return answer;
-    wait(std::min(deadline, sent_ + kRepeat));
+    wait(std::min(deadline, sent_ + kRepeatInterval));
   }
 }
 

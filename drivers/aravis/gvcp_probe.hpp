@@ -11,7 +11,7 @@
 
 namespace fvd {
 
-/// Reads the control privilege register (GigE Vision 1.2, CCP at 0x0A00), which every camera tells everybody.
+/// Reads the control privilege register (GigE Vision 1.2, CCP at 0x0A00), which is readable without control privilege.
 /// context: one thread.
 class GvcpProbe {
  public:
@@ -28,12 +28,12 @@ class GvcpProbe {
     kControlled,  ///< there, and somebody does
   };
 
-  /// A request is repeated so often while no answer comes.
-  static constexpr std::chrono::milliseconds kRepeat{50};
+  /// Interval at which an unanswered request is repeated.
+  static constexpr std::chrono::milliseconds kRepeatInterval{50};
 
   /// Forgets what was asked before and asks.
   void begin() noexcept;
-  /// The answer to the question, at once; asks again after kRepeat. begin() came first.
+  /// The answer to the question, at once; asks again after kRepeatInterval. begin() came first.
   [[nodiscard]] Answer look() noexcept;
   /// begin(), and look() until there is an answer or `patience` is over.
   [[nodiscard]] Answer ask(std::chrono::milliseconds patience) noexcept;

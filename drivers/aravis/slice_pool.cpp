@@ -9,7 +9,7 @@ SlicePool::SlicePool(int count, std::size_t slot_bytes)
 }
 
 FrameLease SlicePool::borrow() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (free_.empty()) return FrameLease(nullptr, FrameSlotDeleter{this});
   void* slot = free_.back();
   free_.pop_back();
@@ -17,7 +17,7 @@ FrameLease SlicePool::borrow() {
 }
 
 void SlicePool::recycle(void* slot) noexcept {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   free_.push_back(slot);
 }
 

@@ -4,10 +4,10 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
+#include "core/base/mutex.hpp"
 #include "core/image/frame.hpp"
 
 namespace fvd {
@@ -28,8 +28,8 @@ class SlicePool final : public FrameRecycler {
  private:
   std::size_t slot_bytes_;
   std::unique_ptr<std::byte[]> memory_;
-  std::mutex mutex_;
-  std::vector<void*> free_;  // guarded by mutex_; never above the capacity it was made with
+  Mutex mutex_;
+  std::vector<void*> free_ FVD_GUARDED_BY(mutex_);  // never above the capacity it was made with
 };
 
 }  // namespace fvd

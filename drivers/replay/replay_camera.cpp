@@ -1,11 +1,10 @@
 #include <algorithm>
-#include <condition_variable>
 #include <deque>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
 #include "drivers/replay/recorded_stack.hpp"
 #include "drivers/replay/replay_bench.hpp"
 #include "drivers/replay/replay_devices.hpp"
@@ -23,7 +22,7 @@ class ReplayPool final : public FrameRecycler {
 
   /// Nothing while all are lent.
   [[nodiscard]] SliceImage* borrow() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (free_.empty()) return nullptr;
     SliceImage* slot = free_.back();
     free_.pop_back();
@@ -31,7 +30,7 @@ class ReplayPool final : public FrameRecycler {
   }
 
   void recycle(void* slot) noexcept override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     free_.push_back(static_cast<SliceImage*>(slot));  // never above the capacity it had when all were free
   }
 
@@ -39,8 +38,8 @@ class ReplayPool final : public FrameRecycler {
 
  private:
   std::vector<SliceImage> slots_;
-  std::mutex mutex_;
-  std::vector<SliceImage*> free_;
+  Mutex mutex_;
+  std::vector<SliceImage*> free_ FVD_GUARDED_BY(mutex_);
 };
 
 class ReplayCamera final : public Camera {
@@ -72,6 +71,10 @@ class ReplayCamera final : public Camera {
       pending_.clear();  // their leases point into the old pool
       pool_ = std::make_unique<ReplayPool>(settings.pool_frames);
     }
+    {
+      const MutexLock lock(mutex_);
+      interrupted_ = false;  // that was for a wait of before
+    }
     CameraSettings in_force = settings;
     in_force.width = stack_.width();
     in_force.height = stack_.height();
@@ -100,8 +103,11 @@ class ReplayCamera final : public Camera {
   [[nodiscard]] std::optional<Frame> next_frame(HostTime deadline) override {
     if (pending_.empty()) {
       // Frames arrive inside trigger(), on this thread: all there is to wait for is the deadline or an interrupt.
-      std::unique_lock lock(mutex_);
-      interrupted_changed_.wait_until(lock, deadline, [this] { return interrupted_; });
+      MutexLock lock(mutex_);
+      interrupted_changed_.wait_until(lock, deadline, [this] {
+        mutex_.assert_held();
+        return interrupted_;
+      });
       interrupted_ = false;
       return std::nullopt;
     }
@@ -114,7 +120,7 @@ class ReplayCamera final : public Camera {
 
   void interrupt() noexcept override {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       interrupted_ = true;
     }
     interrupted_changed_.notify_all();
@@ -129,9 +135,9 @@ class ReplayCamera final : public Camera {
   std::string address_;
   CameraHealth health_;
   std::uint64_t last_id_ = 0;
-  std::mutex mutex_;
-  std::condition_variable interrupted_changed_;
-  bool interrupted_ = false;
+  Mutex mutex_;
+  Condition interrupted_changed_;
+  bool interrupted_ FVD_GUARDED_BY(mutex_) = false;
   std::unique_ptr<ReplayPool> pool_;
   std::deque<Frame> pending_;  // after the pool: its leases go back before the pool dies
 };

@@ -32,6 +32,7 @@ FakeCamera::~FakeCamera() {
 CameraInfo FakeCamera::info() const { return {"fake", "camera", "1", "in process", width_, height_, true}; }
 
 CameraSettings FakeCamera::configure(const CameraSettings& settings) {
+  interrupted_ = false;
   CameraSettings effective = settings;
   effective.width = width_;
   effective.height = height_;
@@ -77,7 +78,7 @@ void FakeCamera::trigger() {
 }
 
 std::optional<Frame> FakeCamera::next_frame(HostTime deadline) {
-  if (std::exchange(interrupted_, false)) return std::nullopt;
+  if (interrupted_.exchange(false)) return std::nullopt;
   const auto first = std::min_element(pending_.begin(), pending_.end(),
                                       [](const Pending& a, const Pending& b) { return a.arrival < b.arrival; });
   if (first == pending_.end() || first->arrival > std::max(deadline, clock_.now())) {

@@ -3,6 +3,7 @@
 /// In-process doubles of the hardware interfaces for fast, deterministic tests of the scan. Time passes only when
 /// somebody waits.
 
+#include <atomic>
 #include <deque>
 #include <functional>
 #include <optional>
@@ -82,7 +83,7 @@ class FakeCamera : public Camera, private FrameRecycler {
   int triggers_ = 0;
   int lent_ = 0;
   bool connected_ = true;
-  bool interrupted_ = false;
+  std::atomic<bool> interrupted_{false};
 };
 
 /// An axis that arrives in 50 ms and rests exactly `error_um` beside its target.

@@ -169,6 +169,16 @@ TEST_F(AReplayedStack, EndsAWaitWhenInterrupted) {
   EXPECT_FALSE(camera->next_frame(HostClock::now() + std::chrono::minutes(10)));  // the test's own limit is shorter
 }
 
+TEST_F(AReplayedStack, ForgetsAnInterruptOfBeforeItWasConfigured) {
+  const auto camera = open_replay_camera(camera_config_);
+  camera->configure(settings_);
+  camera->interrupt();
+  camera->configure(settings_);
+  const HostTime deadline = HostClock::now() + std::chrono::milliseconds(30);
+  EXPECT_FALSE(camera->next_frame(deadline)) << "nothing was triggered";
+  EXPECT_GE(HostClock::now(), deadline) << "the wait was not cut short";
+}
+
 TEST_F(AReplayedStack, MustBeTriggeredAfterConfiguration) {
   expect_error(ErrorCode::kCameraSettings, {"configured"}, [&] { open_replay_camera(camera_config_)->trigger(); });
 }

@@ -1,0 +1,56 @@
+#pragma once
+
+/// From the buffers of a stream to frames: judged, counted, dated, unpacked. Inside the driver only: this header brings
+/// in Aravis.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <arv.h>
+
+#include "core/hw/camera.hpp"
+#include "drivers/aravis/camera_clock.hpp"
+#include "drivers/aravis/frame_buffers.hpp"
+#include "drivers/aravis/frame_counter.hpp"
+#include "drivers/aravis/slice_pool.hpp"
+
+namespace fvd {
+
+/// context: not thread-safe; the threads that use it take turns.
+class FrameIntake {
+ public:
+  /// The clock outlives the intake.
+  explicit FrameIntake(const CameraClock& clock) : clock_(clock) {}
+
+  /// A new stream with those settings in force: the camera counts anew, slices have another shape.
+  void begin_stream(const CameraSettings& in_force);
+  /// The camera counts anew on the same stream.
+  void restart_count() { counter_.restart(); }
+
+  /// The frame of a buffer; nothing for one exposed before `configured`, whose settings were others. The buffer goes
+  /// back with the frame's lease.
+  [[nodiscard]] std::optional<Frame> take(FrameBuffers& buffers, ArvBuffer* buffer, const CameraSettings& in_force,
+                                          HostTime configured);
+  /// Counts a frame that nobody measures and gives its buffer back. Returns its time on the camera's clock in ns, 0 if
+  /// it is no good frame.
+  std::uint64_t discard(FrameBuffers& buffers, ArvBuffer* buffer, const CameraSettings& in_force);
+
+  /// Adds what was counted here.
+  void count_into(CameraHealth& health) const;
+
+ private:
+  void count_id(std::uint64_t block_id, Frame& frame);
+  [[nodiscard]] bool unpack_into_slice(ArvBuffer* buffer, const CameraSettings& in_force, Frame& frame);
+
+  const CameraClock& clock_;
+  FrameCounter counter_;
+  std::unique_ptr<SlicePool> slices_;  // nothing: slices are what comes over the wire
+  std::uint64_t frames_complete_ = 0;
+  std::uint64_t frames_failed_ = 0;
+  std::uint64_t failed_since_good_ = 0;
+  std::uint64_t ids_skipped_ = 0;
+  std::uint64_t slice_underruns_ = 0;
+};
+
+}  // namespace fvd
