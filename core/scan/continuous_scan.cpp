@@ -5,12 +5,14 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
 
 namespace fvd {
 
@@ -18,15 +20,15 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// How long a frame is waited for before the stage is looked at.
+/// Longest wait for a frame before the stage is looked at.
+constexpr milliseconds kFrameWait{20};
 /// How much wider than planned the slices may lie throughout: cameras keep a frame rate within 2 %, and a drive rounds
 /// a low speed to whole units, by up to 3.2 %.
 constexpr double kPaceTolerance = 0.05;
-constexpr milliseconds kLook{20};
 /// So many steps behind its way the scan has lost frames: half a step of phase, and one that the ends may cost.
 constexpr double kFramesBehind = 1.5;
-/// A queue that takes no slice for so long has no room in time.
-constexpr std::chrono::seconds kComputePatience{10};
+/// Give up if the slice queue stays full this long.
+constexpr std::chrono::seconds kQueueTimeout{10};
 
 HostTime middle(const Frame& frame) { return frame.exposure_start + (frame.exposure_end - frame.exposure_start) / 2; }
 
@@ -35,10 +37,10 @@ class Sweep {
  public:
   Sweep(Axis& stage, Micrometers target, double speed_um_per_s, std::stop_token stop)
       : stage_(stage), forward_(stop, [this] { own_.request_stop(); }) {
-    std::packaged_task<void()> task(
+    auto task = std::make_shared<std::packaged_task<void()>>(
         [this, target, speed_um_per_s] { stage_.sweep_to(target, speed_um_per_s, own_.get_token()); });
-    result_ = task.get_future();
-    thread_ = std::jthread(std::move(task));
+    result_ = task->get_future();
+    thread_ = start_thread("fvd-sweep", [task](const std::stop_token& /*own_ stops it*/) { (*task)(); });
   }
   ~Sweep() { own_.request_stop(); }
   Sweep(const Sweep&) = delete;
@@ -247,7 +249,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
     std::optional<HostTime> at_rest;
     while (!after || !at_rest) {
       if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
-      if (auto frame = deps_.camera.next_frame(deps_.clock.now() + kLook)) {
+      if (auto frame = deps_.camera.next_frame(deps_.clock.now() + kFrameWait)) {
         if (after) {
           ++report.ramp_frames;
         } else if (frame->status == FrameStatus::kOk) {
@@ -270,7 +272,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
         if (sorter.lost() > plan.allowed_lost_slices) throw too_many_lost(sorter, plan, report.frames);
         if (place == SliceSorter::Place::kSlice) {
           report.steps.push_back(record(sorter.taken() + sorter.lost() - 1, oldest.frame, position));
-          if (!deps_.sink.push({std::move(oldest.frame), position.mean.value}, deps_.clock.now() + kComputePatience,
+          if (!deps_.sink.push({std::move(oldest.frame), position.mean.value}, deps_.clock.now() + kQueueTimeout,
                                stop)) {
             if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
             throw Error(ErrorCode::kSliceLost,

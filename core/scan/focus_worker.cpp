@@ -4,14 +4,28 @@
 #include <utility>
 #include <vector>
 
-#include <pthread.h>
+#include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 
 namespace fvd {
 
+namespace {
+
+/// A batch takes milliseconds; its slices may be written to a disk that is slow (Tap).
+constexpr std::chrono::seconds kLongestBatch{60};
+
+}  // namespace
+
 FocusWorker::FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, Tap tap)
-    : stack_(stack), queue_(queue_slices), tap_(std::move(tap)), thread_([this](std::stop_token stop) { run(stop); }) {
-  pthread_setname_np(thread_.native_handle(), "fvd-focus");
-}
+    : stack_(stack),
+      queue_(queue_slices),
+      tap_(std::move(tap)),
+      thread_(start_thread(
+          "fvd-focus", [this](std::stop_token stop) { run(stop); },
+          [this](std::string_view /*name*/, const std::exception_ptr& failure) {
+            failure_ = failure;
+            queue_.close();  // the next push is refused and ends the scan; finish() tells the reason
+          })) {}
 
 bool FocusWorker::push(Slice&& slice, HostTime deadline, std::stop_token stop) {
   return queue_.push_until(std::move(slice), deadline, std::move(stop));
@@ -24,23 +38,21 @@ void FocusWorker::finish() {
 }
 
 void FocusWorker::run(std::stop_token stop) {
-  try {
-    // What has come meanwhile is computed together: the further the computation is behind, the faster it gets.
-    std::vector<Slice> batch;
-    batch.reserve(StreamingFocusStack::kMaxBatch);
-    while (auto slice = queue_.pop(stop)) {
-      batch.clear();
-      batch.push_back(std::move(*slice));
-      while (batch.size() < StreamingFocusStack::kMaxBatch) {
-        auto next = queue_.try_pop();
-        if (!next) break;
-        batch.push_back(std::move(*next));
-      }
-      consume(batch);
+  ThreadTicks ticks("fvd-focus", kLongestBatch);
+  // What has come meanwhile is computed together: the further the computation is behind, the faster it gets.
+  std::vector<Slice> batch;
+  batch.reserve(StreamingFocusStack::kMaxBatch);
+  while (auto slice = queue_.pop(stop)) {
+    ticks.tick(HostClock::now());
+    batch.clear();
+    batch.push_back(std::move(*slice));
+    while (batch.size() < StreamingFocusStack::kMaxBatch) {
+      auto next = queue_.try_pop();
+      if (!next) break;
+      batch.push_back(std::move(*next));
     }
-  } catch (...) {
-    failure_ = std::current_exception();
-    queue_.close();  // the next push is refused and ends the scan; finish() then tells the reason
+    consume(batch);
+    ticks.rest();
   }
 }
 

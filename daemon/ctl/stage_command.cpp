@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "core/stage/stage_report.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
@@ -103,10 +104,10 @@ class StopOnSignal {
     sigaddset(&signals_, SIGINT);
     sigaddset(&signals_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-    watcher_ = std::jthread([this](const std::stop_token& ended) {
-      constexpr timespec kLook{0, 100'000'000};
+    watcher_ = start_thread("fvdctl-signals", [this](const std::stop_token& ended) {
+      constexpr timespec kPollInterval{0, 100'000'000};
       while (!ended.stop_requested()) {
-        if (sigtimedwait(&signals_, nullptr, &kLook) > 0) source_.request_stop();
+        if (sigtimedwait(&signals_, nullptr, &kPollInterval) > 0) source_.request_stop();
       }
     });
   }

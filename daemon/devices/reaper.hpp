@@ -2,12 +2,12 @@
 
 /// Buries devices on a thread of its own: closing a camera that no longer answers takes many seconds.
 
-#include <condition_variable>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <thread>
+
+#include "core/base/mutex.hpp"
 
 namespace fvd {
 
@@ -27,10 +27,10 @@ class Reaper {
   void enqueue(std::shared_ptr<void> device);
   void run(std::stop_token stop);
 
-  std::mutex mutex_;
-  std::condition_variable_any changed_;
-  std::deque<std::shared_ptr<void>> dead_;  // guarded by mutex_
-  std::jthread thread_;
+  Mutex mutex_;
+  Condition changed_;
+  std::deque<std::shared_ptr<void>> dead_ FVD_GUARDED_BY(mutex_);
+  std::jthread thread_;  // last
 };
 
 }  // namespace fvd

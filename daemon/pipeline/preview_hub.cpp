@@ -68,8 +68,9 @@ std::string preview_json(const PreviewPicture& picture) {
 void PreviewHub::offer(const ImageView& image, double z_um) {
   const HostTime now = HostClock::now();
   if (now > wanted_until_.load()) return;
-  const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock || (newest_ && now - taken_ < kLeastAge)) return;
+  if (!mutex_.try_lock()) return;
+  const MutexLock lock(mutex_, kAlreadyLocked);
+  if (newest_ && now - taken_ < kLeastAge) return;
   newest_ = make_preview(image, z_um);
   newest_->seq = ++seq_;
   taken_ = now;
@@ -77,13 +78,13 @@ void PreviewHub::offer(const ImageView& image, double z_um) {
 
 std::optional<std::string> PreviewHub::newest() {
   wanted_until_ = HostClock::now() + kWantedFor;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!newest_) return std::nullopt;
   return preview_json(*newest_);
 }
 
 void PreviewHub::clear() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   newest_.reset();
 }
 

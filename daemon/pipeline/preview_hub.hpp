@@ -4,11 +4,11 @@
 
 #include <atomic>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
 #include "core/image/image.hpp"
 
 namespace fvd {
@@ -28,22 +28,22 @@ struct PreviewPicture {
 /// {"seq", "width_px", "height_px", "z_um", "focus", "saturated_fraction", "png_base64"} as a JSON text.
 [[nodiscard]] std::string preview_json(const PreviewPicture& picture);
 
-/// A measurement offers its slices and never waits: nobody looks, the last picture is younger than 0.2 s, or somebody
-/// reads it just now - the slice is passed over. context: thread-safe.
+/// A measurement offers its slices and never waits. context: thread-safe.
 class PreviewHub {
  public:
+  /// Skips the slice if there is no viewer, the last picture is younger than 0.2 s, or the lock is taken.
   void offer(const ImageView& image, double z_um);
-  /// The newest picture as preview_json(), nothing before the first; from now on for 3 s somebody looks.
+  /// The newest picture as preview_json(), nothing before the first; there is a viewer for 3 s from now on.
   [[nodiscard]] std::optional<std::string> newest();
   /// What was seen belongs to the past.
   void clear();
 
  private:
   std::atomic<HostTime> wanted_until_{HostTime{}};
-  std::mutex mutex_;
-  std::optional<PreviewPicture> newest_;  // guarded by mutex_, as are the two below
-  HostTime taken_{};
-  std::uint64_t seq_ = 0;
+  Mutex mutex_;
+  std::optional<PreviewPicture> newest_ FVD_GUARDED_BY(mutex_);
+  HostTime taken_ FVD_GUARDED_BY(mutex_){};
+  std::uint64_t seq_ FVD_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace fvd
