@@ -2,7 +2,7 @@
 """The checks of the sources, without running any; called by tests/checks.sh.
 
 checks.py --build FOLDER [--all] [--jobs 2] [--sanitized FILE] PART...
-  parts: format clang tidy layers sizes headers
+  parts: format clang tidy layers sizes threads headers
 Prints every finding, and as its last line one JSON object of counts (null: that part was not asked for). Fails if there
 is a finding that tests/checks_known.txt does not hold, or one that has grown beyond what it holds.
 """
@@ -20,7 +20,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PRODUCT = ("core", "config", "drivers", "sim", "daemon")
 KEYS = ("format_diffs", "clang_warnings", "tidy_findings", "layer_violations", "folder_circles",
         "files_over_400_lines", "tidy_files", "functions_over_80_lines", "headers_not_alone",
-        "sanitized_tests", "sanitized_failed")
+        "sanitized_tests", "sanitized_failed", "raw_threads")
 CLANG = "clang++-14"
 TIDY = "clang-tidy-14"
 FORMAT = "clang-format-14"
@@ -272,6 +272,33 @@ def check_sizes(findings, files):
         sys.exit(f"checks: found {seen} functions in {len(files)} files; the search for functions is broken")
 
 
+RAW_THREAD = re.compile(r"std::(?:j?thread\s*[({]|j?thread\s+(?!start_thread\b)\w+\s*[({](?!\s*[)}])|make_unique<std::j?thread>"
+                        r"|mutex\b|(?:recursive|shared|timed)_\w*mutex\b|condition_variable\w*\b"
+                        r"|lock_guard\b|unique_lock\b|scoped_lock\b)|\bpthread_create\b")
+# Where the standard library's own are used, and why.
+RAW_THREAD_ALLOWED = {
+    "core/base/mutex.hpp": "the annotated ones are made of them",
+    "core/runtime/guarded_thread.cpp": "the one function that starts threads",
+}
+
+
+def check_threads(findings, files):
+    """Threads start through start_thread, and mutexes carry annotations: in everything that is no test."""
+    for path in files:
+        if path.split("/")[0] not in PRODUCT or path in RAW_THREAD_ALLOWED:
+            continue
+        code = LITERALS.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), read(path))
+        seen = {}
+        for match in RAW_THREAD.finditer(code):
+            seen.setdefault(code.count("\n", 0, match.start()) + 1, match[0].rstrip("({ "))
+        for i, (line, what) in enumerate(sorted(seen.items()), 1):
+            findings.add("raw_threads", path, i, f"{path}:{line}: {what}: use start_thread (core/runtime/guarded_thread.hpp), "
+                         "Mutex, MutexLock and Condition (core/base/mutex.hpp)")
+    for path in RAW_THREAD_ALLOWED:
+        if not RAW_THREAD.search(read(path)):
+            sys.exit(f"checks: {path} needs no exception in RAW_THREAD_ALLOWED, or the search is broken")
+
+
 def judge(findings):
     """Prints the findings; the number of those that are not held by the list of known ones."""
     known, used, bad = known_findings(), set(), 0
@@ -325,6 +352,9 @@ def main():
             elif part == "sizes":
                 keys = ["files_over_400_lines", "functions_over_80_lines"]
                 check_sizes(findings, files)
+            elif part == "threads":
+                keys = ["raw_threads"]
+                check_threads(findings, files)
             else:
                 sys.exit(f"checks: no part {part}")
             for key in keys:

@@ -2,6 +2,7 @@
 #
 # FVD_BUILD_DIR   build folder (default: build)
 # FVD_SANITIZE    sanitizers for every target, e.g. address,undefined or thread
+# FVD_FLAGS       flags of the compiler in place of those of the build type RelWithDebInfo (assertions stay on)
 
 FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
@@ -57,8 +58,10 @@ fvd_cmake() {
      ccache c++ -c "$FVD_BUILD/probe.cpp" -o "$FVD_BUILD/probe.o" 2>/dev/null; then
     launcher=ccache
   fi
+  local flags=()
+  [ -z "${FVD_FLAGS:-}" ] || flags=(-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$FVD_FLAGS")
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
-    -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"
+    -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" "${flags[@]}"
 }
 
 # fvd_locked COMMAND ...: runs it with its output in the build's log; copies of this script on one build folder wait for
