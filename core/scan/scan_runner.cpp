@@ -12,7 +12,7 @@ namespace fvd {
 namespace {
 
 /// The stage stands still while the computation catches up: nothing is lost by waiting, only time.
-constexpr std::chrono::seconds kComputePatience{10};
+constexpr std::chrono::seconds kQueueTimeout{10};
 
 double milliseconds(HostClock::duration duration) {
   return std::chrono::duration<double, std::milli>(duration).count();
@@ -60,11 +60,11 @@ void ScanRunner::take_up(const ScanPlan& plan, std::stop_token stop) {
 }
 
 void ScanRunner::hand_over(Slice&& slice, int index, std::stop_token stop) {
-  if (deps_.sink.push(std::move(slice), deps_.clock.now() + kComputePatience, stop)) return;
+  if (deps_.sink.push(std::move(slice), deps_.clock.now() + kQueueTimeout, stop)) return;
   if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
   throw Error(ErrorCode::kSliceLost,
               "slice " + std::to_string(index) + " found no room in the slice queue within " +
-                  std::to_string(kComputePatience / std::chrono::seconds(1)) +
+                  std::to_string(kQueueTimeout / std::chrono::seconds(1)) +
                   " s: the computation hangs or is far too slow; use more threads or a smaller window");
 }
 
