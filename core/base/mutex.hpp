@@ -37,15 +37,10 @@ class FVD_CAPABILITY("mutex") Mutex {
   std::mutex mutex_;
 };
 
-struct AlreadyLocked {};
-/// For a lock that takes over from try_lock().
-inline constexpr AlreadyLocked kAlreadyLocked{};
-
 /// Holds a mutex for as long as it lives; may let go of it in between.
 class FVD_SCOPED_CAPABILITY MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) FVD_ACQUIRE(mutex) : mutex_(mutex) { mutex_.lock(); }
-  MutexLock(Mutex& mutex, AlreadyLocked /*by the caller*/) FVD_REQUIRES(mutex) : mutex_(mutex) {}
   ~MutexLock() FVD_RELEASE() {
     if (held_) mutex_.unlock();
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include <glib.h>
 #include <nlohmann/json.hpp>
@@ -67,13 +68,17 @@ std::string preview_json(const PreviewPicture& picture) {
 
 void PreviewHub::offer(const ImageView& image, double z_um) {
   const HostTime now = HostClock::now();
-  if (now > wanted_until_.load()) return;
+  if (now > wanted_until_.load() || !mutex_.try_lock()) return;
+  const bool recent = newest_ && now - taken_ < kLeastAge;
+  mutex_.unlock();
+  if (recent) return;
+  PreviewPicture picture = make_preview(image, z_um);
   if (!mutex_.try_lock()) return;
-  const MutexLock lock(mutex_, kAlreadyLocked);
-  if (newest_ && now - taken_ < kLeastAge) return;
-  newest_ = make_preview(image, z_um);
-  newest_->seq = ++seq_;
+  // Nothing here throws.
+  picture.seq = ++seq_;
+  newest_ = std::move(picture);
   taken_ = now;
+  mutex_.unlock();
 }
 
 std::optional<std::string> PreviewHub::newest() {
