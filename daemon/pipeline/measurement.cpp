@@ -112,7 +112,7 @@ void check_valid_points(const Recipe& recipe, const HeightMap& map) {
   if (valid >= recipe.min_valid_fraction * total) return;
   constexpr unsigned kEnds = mask_reason::kFirstSlice | mask_reason::kLastSlice;
   const auto at_ends = static_cast<double>(
-      std::count_if(mask.begin(), mask.end(), [](std::uint8_t reasons) { return (reasons & kEnds) != 0; }));
+      std::count_if(mask.begin(), mask.end(), [](MaskReasons reasons) { return (reasons & kEnds) != 0; }));
   std::ostringstream message;
   message << "only " << 100.0 * valid / total << " % of the points are valid, the recipe asks for "
           << 100.0 * recipe.min_valid_fraction << " %; ";
