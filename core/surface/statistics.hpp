@@ -30,6 +30,7 @@ struct HoleCounts {
   std::size_t saturated = 0;
   std::size_t insignificant = 0;
   std::size_t edge_bleeding = 0;
+  bool operator==(const HoleCounts&) const = default;
 };
 
 struct HeightSummary {

@@ -54,28 +54,24 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   return options;
 }
 
-constexpr double kWorthTellingPercent = 5.0;
-
 void print_summary(std::ostream& out, const ProcessReport& report, const std::filesystem::path& directory) {
+  const Result& result = report.result;
+  const auto um = [&result](std::string_view name) { return result.find(name)->value; };
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
-  text << "slices    " << report.slices_text << ", " << report.width << " x " << report.height << " pixels\n";
-  text << "valid     " << 100.0 * report.summary.valid_fraction() << " %\n";
-  if (const auto& height = report.summary.height) {
-    text << "heights   " << height->min_um << " to " << height->max_um << " um, median " << height->median_um
+  text << "slices    " << report.slices_text << ", " << result.focus.width_px << " x " << result.focus.height_px
+       << " pixels\n";
+  text << "valid     " << 100.0 * result.valid_fraction() << " %\n";
+  if (um("height_median")) {
+    text << "heights   " << *um("height_min") << " to " << *um("height_max") << " um, median " << *um("height_median")
          << " um\n";
   } else {
     text << "heights   none: every point is a hole, see hole_points in result.json\n";
   }
-  const double points = static_cast<double>(std::max<std::size_t>(1, report.summary.points));
-  const double first = 100.0 * static_cast<double>(report.summary.holes.first_slice) / points;
-  const double last = 100.0 * static_cast<double>(report.summary.holes.last_slice) / points;
-  if (first + last > kWorthTellingPercent) {
-    text << std::setprecision(1) << "range     " << first << " % of the points are sharpest at the first slice and "
-         << last << " % at the last: the surface may reach beyond the recorded range\n";
-  }
-  text << "memory    " << std::setprecision(1) << report.state_bytes_per_pixel << " bytes per pixel, whatever the "
-       << "number of slices\n";
+  if (result.verdict) text << "verdict   " << verdict_name(*result.verdict) << "\n";
+  for (const Warning& warning : result.warnings) text << "warning   " << warning.text << "\n";
+  text << "memory    " << std::setprecision(1) << result.focus.state_bytes_per_pixel
+       << " bytes per pixel, whatever the number of slices\n";
   text << "result    " << directory.string() << "\n";
   out << text.str() << std::flush;
 }

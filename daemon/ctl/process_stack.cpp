@@ -123,8 +123,7 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   measure(options, stack, start, on_slice, data);
   release_kept_memory();  // there is no next scan
   data.step_summary = summarize_steps(data.steps);
-  const HeightSummary summary = write_result(options.out, data);
-  return {stack.list().description, stack.slices(), stack.width(), stack.height(), data.state_bytes_per_pixel, summary};
+  return {stack.list().description, write_result(options.out, data)};
 }
 
 }  // namespace fvd::ctl

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/focus/measure/focus_settings.hpp"
-#include "core/surface/statistics.hpp"
+#include "daemon/pipeline/result.hpp"
 #include "drivers/replay/slice_heights.hpp"
 
 namespace fvd::ctl {
@@ -28,11 +28,7 @@ struct ProcessOptions {
 
 struct ProcessReport {
   std::string slices_text;  ///< which files were taken for slices
-  int slices = 0;
-  int width = 0;
-  int height = 0;
-  double state_bytes_per_pixel = 0.0;
-  HeightSummary summary;
+  Result result;
 };
 
 /// Reads a few slices at a time; writes only after the last one was good. on_slice(done, total) follows each slice.

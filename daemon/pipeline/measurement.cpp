@@ -1,7 +1,5 @@
 #include "daemon/pipeline/measurement.hpp"
 
-#include <algorithm>
-#include <sstream>
 #include <utility>
 
 #include "core/base/error.hpp"
@@ -103,26 +101,6 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   result.map = stack.finish(recipe.peak);
   result.times.finish_ms = milliseconds_since(deps.clock, acquired);
   for (const PeakMethod method : recipe.extra_peaks) result.extra_maps.emplace_back(method, stack.finish(method));
-}
-
-void check_valid_points(const Recipe& recipe, const HeightMap& map) {
-  const auto mask = map.mask.pixels();
-  const auto total = static_cast<double>(mask.size());
-  const auto valid = static_cast<double>(std::count(mask.begin(), mask.end(), 0));
-  if (valid >= recipe.min_valid_fraction * total) return;
-  constexpr unsigned kEnds = mask_reason::kFirstSlice | mask_reason::kLastSlice;
-  const auto at_ends = static_cast<double>(
-      std::count_if(mask.begin(), mask.end(), [](MaskReasons reasons) { return (reasons & kEnds) != 0; }));
-  std::ostringstream message;
-  message << "only " << 100.0 * valid / total << " % of the points are valid, the recipe asks for "
-          << 100.0 * recipe.min_valid_fraction << " %; ";
-  if (at_ends > (total - valid) / 2) {
-    message << "most of the others are sharpest at an end of the scan: move or widen the range of " << recipe.start_um
-            << ".." << recipe.start_um + (recipe.slices - 1) * recipe.step_um << " um";
-    throw Error(ErrorCode::kFocusRange, message.str());
-  }
-  message << "most of the others have too little texture or are saturated: check light and exposure";
-  throw Error(ErrorCode::kTooFewValid, message.str());
 }
 
 }  // namespace fvd

@@ -8,7 +8,7 @@
 #include "core/base/units.hpp"
 #include "core/surface/mask_reason.hpp"
 #include "core/surface/statistics.hpp"
-#include "daemon/export/result_data.hpp"
+#include "daemon/pipeline/result_data.hpp"
 
 namespace fvd::test {
 
@@ -75,7 +75,7 @@ inline ResultData sample_result() {
   data.steps[1].measured = false;
   data.steps[1].triggers = 4;
   data.step_summary = {2, 0.0625, 0.0, 0.0625, 0.0, 0.0, 12.5, 12.5};
-  data.times = {100.0, 2000.0, 5.0};
+  data.times = {100.0, 2000.0, 5.0, 0.0};
   return data;
 }
 
