@@ -13,8 +13,8 @@ using MaskReasons = std::uint16_t;
 /// 8 narrow curve, 9 second peak, 10 edge band, 11 largest sigma, 12 outlier, 13 no tile.
 namespace mask_reason {
 inline constexpr MaskReasons kLowProminence = 1U << 0U;  ///< no texture: the focus curve has no peak worth the name
-inline constexpr MaskReasons kFirstSlice =
-    1U << 1U;  ///< sharpest at the first slice: the surface may lie below the range
+inline constexpr MaskReasons kFirstSlice = 1U
+                                           << 1U;  ///< sharpest at the first slice: the surface may lie below the range
 inline constexpr MaskReasons kLastSlice = 1U << 2U;      ///< sharpest at the last slice: it may lie above
 inline constexpr MaskReasons kNotBracketed = 1U << 3U;   ///< the neighbours do not enclose a maximum
 inline constexpr MaskReasons kSaturated = 1U << 4U;      ///< a pixel at full scale inside the window at the peak

@@ -13,8 +13,8 @@ namespace fvd {
 /// to 0.1 nm. Holds the keys of format 1 as well.
 [[nodiscard]] std::string result_json_text(const Result& result);
 
-/// What result_json_text() wrote, to its roundings; null where a number is expected reads as NaN. Throws Error kBadInput
-/// with the JSON pointer of what is missing or wrong, and for another format.
+/// What result_json_text() wrote, to its roundings; null where a number is expected reads as NaN. Throws Error
+/// kBadInput with the JSON pointer of what is missing or wrong, and for another format.
 [[nodiscard]] Result read_result_json(std::string_view text);
 
 }  // namespace fvd

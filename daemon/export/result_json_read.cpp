@@ -180,14 +180,10 @@ Result::Slices slices(const Node& node) {
 }
 
 StepSummary steps(const Node& node) {
-  return {node.at("steps").integer<int>(),
-          node.at("error_mean_um").number(),
-          node.at("error_sd_um").number(),
-          node.at("error_max_um").number(),
-          node.at("increment_error_sd_um").number(),
-          node.at("increment_error_max_um").number(),
-          node.at("move_median_ms").number(),
-          node.at("move_max_ms").number()};
+  return {node.at("steps").integer<int>(),           node.at("error_mean_um").number(),
+          node.at("error_sd_um").number(),           node.at("error_max_um").number(),
+          node.at("increment_error_sd_um").number(), node.at("increment_error_max_um").number(),
+          node.at("move_median_ms").number(),        node.at("move_max_ms").number()};
 }
 
 PhaseTimes times(const Node& node) {

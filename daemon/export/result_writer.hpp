@@ -14,8 +14,8 @@ namespace fvd {
 
 /// Judges what was acquired and writes all files of its result into the directory, result.json with the verdict last;
 /// does not commit. Two exporters run at a time, encoding in memory (at most about 12 bytes per pixel). Returns the
-/// result that result.json tells. The first failure ends it: Error kStorageFull, kStorageWrite, kInternal, its message beginning with the
-/// name of the file.
+/// result that result.json tells. The first failure ends it: Error kStorageFull, kStorageWrite, kInternal, its message
+/// beginning with the name of the file.
 Result write_result(AtomicDirectory& directory, const ResultData& data,
                     std::span<const Exporter> exporters = exporter_table());
 

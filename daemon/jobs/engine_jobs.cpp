@@ -12,6 +12,7 @@
 #include "daemon/export/result_writer.hpp"
 #include "daemon/jobs/engine.hpp"
 #include "daemon/pipeline/evaluate.hpp"
+#include "daemon/pipeline/reconstruct.hpp"
 
 namespace fvd {
 
@@ -41,13 +42,7 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
   result.job_id = job.status.job_id;
   result.seq = job.status.request.seq;
   result.part_id = job.status.request.part_id;
-  result.recipe_id = job.recipe.id;
-  result.recipe_sha256 = job.recipe.sha256;
-  result.focus = focus_settings(job.recipe);
-  result.min_valid_fraction = job.recipe.min_valid_fraction;
-  result.peak = job.recipe.peak;
-  result.pixel_pitch_x_um = job.recipe.pixel_pitch_x_um;
-  result.pixel_pitch_y_um = job.recipe.pixel_pitch_y_um;
+  note_recipe(job.recipe, result);
   if (const auto failure = open_devices()) {
     end_job(job, {.error = failure->code, .message = failure->message, .failure = failure});
     return;

@@ -77,8 +77,7 @@ std::vector<MeasuredValue> measurements_of(const ResultData& data, const HeightS
   return all;
 }
 
-std::vector<Warning> warnings_of(const Result& result) {
-  std::vector<Warning> warnings;
+std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warnings) {
   if (const int missing = result.slices.planned - result.slices.measured; missing > 0) {
     warnings.push_back({"slices_missing", std::to_string(missing) + " of " + std::to_string(result.slices.planned) +
                                               " slices are missing; heights near them are less certain"});
@@ -124,7 +123,7 @@ Result evaluate(const ResultData& data, const HeightSummary& summary) {
   result.provenance = {data.software_version, data.simulated, data.created, data.source};
   result.measurements = measurements_of(data, summary);
   result.verdict = verdict_of(result.measurements);
-  result.warnings = warnings_of(result);
+  result.warnings = warnings_of(result, data.warnings);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/continuous_scan.hpp"
+#include "daemon/pipeline/reconstruct.hpp"
 
 namespace fvd {
 
@@ -82,7 +83,6 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   const CameraSettings settings = deps.camera.configure(recipe.camera);
   StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe),
                             deps.pool);
-  result.state_bytes_per_pixel = stack.state_bytes_per_pixel();
   if (!deps.stage.status().homed) deps.stage.home(stop);
   result.times.prepare_ms = milliseconds_since(deps.clock, started);
 
@@ -98,9 +98,9 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   plan.time_offset = deps.time_offset;
   acquire(plan, settings, deps, timed, stack, result, stop);
   result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
-  result.map = stack.finish(recipe.peak);
+  reconstruct(stack, recipe, result);
   result.times.finish_ms = milliseconds_since(deps.clock, acquired);
-  for (const PeakMethod method : recipe.extra_peaks) result.extra_maps.emplace_back(method, stack.finish(method));
+  reconstruct_further(stack, recipe, result);
 }
 
 }  // namespace fvd

@@ -21,8 +21,8 @@ namespace fvd {
 
 /// One value that was measured, and what was decided about it.
 struct MeasuredValue {
-  std::string name;  ///< unique in the result
-  std::string kind;  ///< what kind of quantity: "height", "sigma", "fraction"
+  std::string name;             ///< unique in the result
+  std::string kind;             ///< what kind of quantity: "height", "sigma", "fraction"
   std::optional<double> value;  ///< in `unit`; absent = could not be measured
   std::string unit;
   std::optional<double> u;           ///< standard uncertainty, in `unit`

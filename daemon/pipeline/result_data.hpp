@@ -49,6 +49,7 @@ struct ResultData {
   StepLog steps;
   StepSummary step_summary;
   PhaseTimes times;
+  std::vector<Warning> warnings;  ///< noted on the way; evaluation adds its own
 };
 
 }  // namespace fvd

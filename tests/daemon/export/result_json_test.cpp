@@ -28,10 +28,10 @@ Result full_result() {
   result.job = {"J7", 4711, "part-42"};
   result.recipe = {"chapter", "abc"};
   result.verdict = Verdict::kFail;
-  result.measurements = {{"step", "height_step", 50.125, "um", 0.25, 0.5, 2.0, 90, 0.75, Limits{49.5, 50.5}, Verdict::kPass},
-                         {"open", "height", std::nullopt, "um", {}, {}, {}, 0, 0.0, Limits{std::nullopt, 3.0},
-                          Verdict::kInvalid},
-                         {"height_min", "height", 2.5, "um", {}, {}, {}, 16, 0.875, {}, {}}};
+  result.measurements = {
+      {"step", "height_step", 50.125, "um", 0.25, 0.5, 2.0, 90, 0.75, Limits{49.5, 50.5}, Verdict::kPass},
+      {"open", "height", std::nullopt, "um", {}, {}, {}, 0, 0.0, Limits{std::nullopt, 3.0}, Verdict::kInvalid},
+      {"height_min", "height", 2.5, "um", {}, {}, {}, 16, 0.875, {}, {}}};
   result.warnings = {{"slices_missing", "1 of 3"}, {"range_last", "20 %"}};
   result.points = 18;
   result.valid_points = 16;
@@ -56,7 +56,8 @@ Result full_result() {
   result.steps = {20, 0.25, 0.5, 0.75, 0.125, 0.375, 12.5, 13.5};
   result.stage = {true, "none", 0.25, 0.125};
   result.times = {1.5, 2.5, 3.5, 4.5};
-  result.provenance = {"1.2.3", true, std::chrono::system_clock::time_point(std::chrono::milliseconds(1'700'000'000'123)),
+  result.provenance = {"1.2.3", true,
+                       std::chrono::system_clock::time_point(std::chrono::milliseconds(1'700'000'000'123)),
                        "camera and stage"};
   result.files = {{"slices/", 22, 1000}, {"height.tiff", std::nullopt, 77}};
   return result;

@@ -20,9 +20,7 @@ namespace {
 using nlohmann::json;
 using test::ScratchDir;
 
-std::string json_of(const ResultData& data) {
-  return result_json_text(evaluate(data, test::summary_of(data.map)));
-}
+std::string json_of(const ResultData& data) { return result_json_text(evaluate(data, test::summary_of(data.map))); }
 
 TEST(ResultWriter, WritesEveryFileAndNothingElse) {
   const ScratchDir scratch;
@@ -92,11 +90,11 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
   EXPECT_EQ(result["frames"],
             json({{"expected", 4}, {"ok", 3}, {"incomplete", 1}, {"missing", 0}, {"stale", 0}, {"underrun", 0}}));
   EXPECT_EQ(result["slices"], json({{"planned", 3},
-                                     {"measured", 2},
-                                     {"first_um", 0.0},
-                                     {"last_um", 20.0},
-                                     {"scan_mode", "step"},
-                                     {"suspect", json::array()}}));
+                                    {"measured", 2},
+                                    {"first_um", 0.0},
+                                    {"last_um", 20.0},
+                                    {"scan_mode", "step"},
+                                    {"suspect", json::array()}}));
   EXPECT_EQ(result["steps"]["error_max_um"], 0.0625);
   EXPECT_EQ(result["times"], json({{"prepare_ms", 100.0}, {"scan_ms", 2000.0}, {"finish_ms", 5.0}, {"write_ms", 0.0}}));
   EXPECT_EQ(result["provenance"], json({{"recipe", "chapter"},
