@@ -128,7 +128,7 @@ std::string shape(int width, int height, PixelFormat format) {
 }
 
 constexpr std::size_t kMapBytesPerPixel =
-    3 * sizeof(float) + sizeof(std::uint8_t) + sizeof(std::uint16_t);  // HeightMap's planes
+    3 * sizeof(float) + sizeof(MaskReasons) + sizeof(std::uint16_t);  // HeightMap's planes
 
 }  // namespace
 

@@ -1,10 +1,10 @@
 #include "core/surface/statistics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -41,7 +41,7 @@ float quantile(Values& values, double fraction) {
   return rank < middle ? ranked(values, 0, rank, middle) : ranked(values, middle, rank, values.size());
 }
 
-void count_reasons(std::uint8_t reasons, std::size_t points, HoleCounts& holes) {
+void count_reasons(MaskReasons reasons, std::size_t points, HoleCounts& holes) {
   if ((reasons & mask_reason::kLowProminence) != 0) holes.low_prominence += points;
   if ((reasons & mask_reason::kFirstSlice) != 0) holes.first_slice += points;
   if ((reasons & mask_reason::kLastSlice) != 0) holes.last_slice += points;
@@ -54,13 +54,13 @@ void count_reasons(std::uint8_t reasons, std::size_t points, HoleCounts& holes) 
 }  // namespace
 
 HeightSummary summarize_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
-                                const Plane<std::uint8_t>& mask) {
+                                const Plane<MaskReasons>& mask) {
   HeightSummary summary;
   summary.points = mask.pixels().size();
-  std::array<std::size_t, 256> points_of{};
-  for (const std::uint8_t reasons : mask.pixels()) ++points_of[reasons];
-  for (std::size_t reasons = 0; reasons < points_of.size(); ++reasons) {
-    count_reasons(static_cast<std::uint8_t>(reasons), points_of[reasons], summary.holes);
+  std::vector<std::size_t> points_of(std::size_t{1} << std::numeric_limits<MaskReasons>::digits);
+  for (const MaskReasons reasons : mask.pixels()) ++points_of[reasons];
+  for (std::size_t reasons = 1; reasons < points_of.size(); ++reasons) {
+    if (points_of[reasons] > 0) count_reasons(static_cast<MaskReasons>(reasons), points_of[reasons], summary.holes);
   }
   Values valid;
   valid.reserve(summary.points);

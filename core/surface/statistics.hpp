@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/image/image.hpp"
+#include "core/surface/mask_reason.hpp"
 
 namespace fvd {
 
@@ -29,6 +30,7 @@ struct HoleCounts {
   std::size_t saturated = 0;
   std::size_t insignificant = 0;
   std::size_t edge_bleeding = 0;
+  bool operator==(const HoleCounts&) const = default;
 };
 
 struct HeightSummary {
@@ -46,6 +48,6 @@ struct HeightSummary {
 /// height_m, sigma_m: metres, NaN exactly where mask != 0. mask: 0 valid, else mask_reason bits. All of one shape
 /// [height][width]. Needs 4 bytes per pixel for the time of the call.
 [[nodiscard]] HeightSummary summarize_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
-                                              const Plane<std::uint8_t>& mask);
+                                              const Plane<MaskReasons>& mask);
 
 }  // namespace fvd

@@ -103,6 +103,7 @@ ordered_json full_result_json(const JobStatus& job, const std::string& result_te
   for (const char* key : {"values", "focus", "frames", "slices", "steps", "times"}) json[key] = result.at(key);
   // Per estimator figures and the list of files stand in the directory's result.json.
   json["focus"].erase("extra_peaks");
+  json["slices"].erase("suspect");
   json["simulated"] = result.at("provenance").at("simulated");
   return json;
 }

@@ -6,9 +6,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "config/strict_json.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_stack.hpp"
 #include "daemon/ctl/progress_line.hpp"
+#include "daemon/recipes/recipe_book.hpp"
 
 namespace fvd::ctl {
 
@@ -26,12 +28,64 @@ std::vector<std::string> operator_names() {
   return names;
 }
 
-ZSource z_source(const ProcessArguments& arguments) {
+/// Beside slices that a job recorded.
+constexpr const char* kRecordedHeights = "z.txt";
+
+ZSource z_source(const ProcessArguments& arguments, const Recipe& recipe) {
   if (!arguments.z_file.empty()) return ZFile{arguments.z_file, *length_unit_from_name(arguments.z_unit)};
-  if (arguments.z_step_um == 0.0) {
-    throw UsageError("the z of the slices is not known: give --z-step-um (not 0) or --z-file");
+  if (arguments.z_step_um == 0.0 || (arguments.recipe.empty() && !arguments.z_step_um)) {
+    throw UsageError("the z of the slices is not known: give --z-step-um (not 0), --z-file or --recipe");
   }
-  return ZSpacing{arguments.z_start_um, arguments.z_step_um};
+  const std::filesystem::path recorded = std::filesystem::path(arguments.source) / kRecordedHeights;
+  if (!arguments.z_step_um && !arguments.z_start_um && std::filesystem::exists(recorded))
+    return ZFile{recorded, LengthUnit::kMicrometre};
+  return ZSpacing{arguments.z_start_um.value_or(arguments.recipe.empty() ? 0.0 : recipe.start_um),
+                  arguments.z_step_um.value_or(recipe.step_um)};
+}
+
+/// Puts what was typed in the place of what the recipe says, and remembers the names of the options.
+class Overrides {
+ public:
+  template <typename Value, typename Typed>
+  void set(const char* option, const std::optional<Typed>& typed, Value& value) {
+    if (!typed) return;
+    value = *typed;
+    note(option);
+  }
+  void note(const char* option) { options_ += (options_.empty() ? "" : ", ") + std::string(option); }
+  [[nodiscard]] const std::string& options() const { return options_; }
+
+ private:
+  std::string options_;
+};
+
+template <typename Value, typename FromName>
+std::optional<Value> named(const std::optional<std::string>& name, FromName from_name) {
+  return name ? from_name(*name) : std::nullopt;  // the parser lets only known names through
+}
+
+Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
+  Overrides overrides;
+  overrides.set("--operator", named<FocusOperator>(arguments.focus_operator, focus_operator_from_name),
+                recipe.focus.focus_operator);
+  overrides.set("--window", arguments.window_px, recipe.focus.window_px);
+  overrides.set("--distance", arguments.distance_px, recipe.focus.distance_px);
+  overrides.set("--min-prominence", arguments.min_prominence, recipe.focus.min_prominence);
+  overrides.set("--min-significance", arguments.min_significance, recipe.focus.min_significance);
+  overrides.set("--bin", arguments.bin_slices, recipe.bin_slices);
+  overrides.set("--peak", named<PeakMethod>(arguments.peak, peak_method_from_name), recipe.peak);
+  overrides.set("--pixel-pitch-um", arguments.pixel_pitch_um, recipe.pixel_pitch_x_um);
+  if (arguments.pixel_pitch_um) recipe.pixel_pitch_y_um = *arguments.pixel_pitch_um;
+  if (arguments.stage_correction) {
+    recipe.focus.stage_correction = true;
+    overrides.note("--stage-correction");
+  }
+  if (!arguments.extra_peaks.empty()) {
+    recipe.extra_peaks.clear();
+    for (const auto& name : arguments.extra_peaks) recipe.extra_peaks.push_back(*peak_method_from_name(name));
+    overrides.note("--extra-peak");
+  }
+  return overrides;
 }
 
 ProcessOptions options_of(const ProcessArguments& arguments) {
@@ -39,43 +93,42 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   options.source = arguments.source;
   options.out = arguments.out;
   options.part_id = arguments.part_id;
-  options.z = z_source(arguments);
-  options.focus.focus_operator = *focus_operator_from_name(arguments.focus_operator);
-  options.focus.window_px = options.focus.focus_operator == FocusOperator::kIntensity ? 1 : arguments.window_px;
-  options.focus.distance_px = arguments.distance_px;
-  options.focus.min_prominence = arguments.min_prominence;
-  options.focus.min_significance = arguments.min_significance;
-  options.focus.bin_slices = arguments.bin_slices;
-  options.focus.stage_correction = arguments.stage_correction;
-  options.peak = *peak_method_from_name(arguments.peak);  // the parser lets only known names through
-  for (const auto& name : arguments.extra_peaks) options.extra_peaks.push_back(*peak_method_from_name(name));
-  if (arguments.pixel_pitch_um != 0.0) options.pixel_pitch_um = arguments.pixel_pitch_um;
+  if (arguments.recipe.empty()) {
+    options.recipe.focus.stage_correction = false;  // recorded z are taken as they are unless asked for
+    options.recipe.bin_slices = 1;
+  } else {
+    const std::filesystem::path file = arguments.recipe;
+    options.recipe = parse_recipe(read_text_file(file), file.stem().string());
+  }
+  options.z = z_source(arguments, options.recipe);
+  const Overrides overrides = apply(arguments, options.recipe);
+  if (!arguments.recipe.empty() && !overrides.options().empty()) {
+    options.recipe.sha256.clear();  // of what the file says
+    options.warnings.push_back({"recipe_overridden", "the recipe was changed by " + overrides.options()});
+  }
+  options.knows_pixel_pitch = arguments.pixel_pitch_um || !arguments.recipe.empty();
   options.threads = arguments.threads;
   return options;
 }
 
-constexpr double kWorthTellingPercent = 5.0;
-
 void print_summary(std::ostream& out, const ProcessReport& report, const std::filesystem::path& directory) {
+  const Result& result = report.result;
+  const auto um = [&result](std::string_view name) { return result.find(name)->value; };
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
-  text << "slices    " << report.slices_text << ", " << report.width << " x " << report.height << " pixels\n";
-  text << "valid     " << 100.0 * report.summary.valid_fraction() << " %\n";
-  if (const auto& height = report.summary.height) {
-    text << "heights   " << height->min_um << " to " << height->max_um << " um, median " << height->median_um
+  text << "slices    " << report.slices_text << ", " << result.focus.width_px << " x " << result.focus.height_px
+       << " pixels\n";
+  text << "valid     " << 100.0 * result.valid_fraction() << " %\n";
+  if (um("height_median")) {
+    text << "heights   " << *um("height_min") << " to " << *um("height_max") << " um, median " << *um("height_median")
          << " um\n";
   } else {
     text << "heights   none: every point is a hole, see hole_points in result.json\n";
   }
-  const double points = static_cast<double>(std::max<std::size_t>(1, report.summary.points));
-  const double first = 100.0 * static_cast<double>(report.summary.holes.first_slice) / points;
-  const double last = 100.0 * static_cast<double>(report.summary.holes.last_slice) / points;
-  if (first + last > kWorthTellingPercent) {
-    text << std::setprecision(1) << "range     " << first << " % of the points are sharpest at the first slice and "
-         << last << " % at the last: the surface may reach beyond the recorded range\n";
-  }
-  text << "memory    " << std::setprecision(1) << report.state_bytes_per_pixel << " bytes per pixel, whatever the "
-       << "number of slices\n";
+  if (result.verdict) text << "verdict   " << verdict_name(*result.verdict) << "\n";
+  for (const Warning& warning : result.warnings) text << "warning   " << warning.text << "\n";
+  text << "memory    " << std::setprecision(1) << result.focus.state_bytes_per_pixel
+       << " bytes per pixel, whatever the number of slices\n";
   text << "result    " << directory.string() << "\n";
   out << text.str() << std::flush;
 }
@@ -85,32 +138,36 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
 void add_process_options(CLI::App& command, ProcessArguments& a) {
   command.add_option("source", a.source, "folder of slices (PNG, TIFF, JPEG, PGM), or a multi-page TIFF")->required();
   command.add_option("--out", a.out, "directory to make for the result; must not exist")->required();
+  command.add_option("--recipe", a.recipe, "file of a recipe: as a live job of it would; the options below change it")
+      ->check(CLI::ExistingFile);
   CLI::Option* step = command.add_option("--z-step-um", a.z_step_um, "z from one slice to the next, may be negative");
-  command.add_option("--z-start-um", a.z_start_um, "z of the first slice")->needs(step)->capture_default_str();
-  CLI::Option* file = command.add_option("--z-file", a.z_file, "z of each slice, one number a line, # for comments");
-  file->excludes(step);
+  CLI::Option* start =
+      command.add_option("--z-start-um", a.z_start_um, "z of the first slice; default: the recipe's, else 0");
+  CLI::Option* file = command.add_option(
+      "--z-file", a.z_file,
+      "z of each slice, one number a line, # for comments; with a recipe, the source's own z.txt is used by itself");
+  file->excludes(step)->excludes(start);
   command.add_option("--z-unit", a.z_unit, "unit of the z file")
       ->needs(file)
       ->check(CLI::IsMember({"um", "mm", "m"}))
       ->capture_default_str();
-  command.add_option("--window", a.window_px, "side of the focus window in pixels, odd, 3..63; the intensity has none")
-      ->capture_default_str();
-  command.add_option("--operator", a.focus_operator, "what is summed over the window as the measure of sharpness")
-      ->check(CLI::IsMember(operator_names()))
-      ->capture_default_str();
-  command.add_option("--distance", a.distance_px, "from a pixel to the neighbours its operator looks at, 1..7 pixels")
-      ->capture_default_str();
-  command.add_option("--bin", a.bin_slices, "slices summed to one sample of the focus curve, 1..64")
-      ->capture_default_str();
-  command.add_option("--peak", a.peak, "how heights are taken from the focus curve")
-      ->check(CLI::IsMember(peak_names()))
-      ->capture_default_str();
+  command.add_option("--window", a.window_px,
+                     "side of the focus window in pixels, odd, 3..63, default 9; the intensity has none");
+  command
+      .add_option("--operator", a.focus_operator,
+                  "what is summed over the window as the measure of sharpness, default modified_laplacian")
+      ->check(CLI::IsMember(operator_names()));
+  command.add_option("--distance", a.distance_px,
+                     "from a pixel to the neighbours its operator looks at, 1..7 pixels, default 2");
+  command.add_option("--bin", a.bin_slices, "slices summed to one sample of the focus curve, 1..64, default 1");
+  command.add_option("--peak", a.peak, "how heights are taken from the focus curve, default five_sample")
+      ->check(CLI::IsMember(peak_names()));
   command.add_option("--extra-peak", a.extra_peaks, "further height maps, may be repeated")
       ->check(CLI::IsMember(peak_names()));
-  command.add_option("--min-prominence", a.min_prominence, "points with a flatter focus curve become holes, 0..1")
-      ->capture_default_str();
-  command.add_option("--min-significance", a.min_significance, "points whose curve rises by less noise become holes")
-      ->capture_default_str();
+  command.add_option("--min-prominence", a.min_prominence,
+                     "points with a flatter focus curve become holes, 0..1, default 0.5");
+  command.add_option("--min-significance", a.min_significance,
+                     "points whose curve rises by less noise become holes, default 6");
   command.add_flag("--stage-correction", a.stage_correction,
                    "seek the stage's errors in the focus curves and correct heights by them");
   command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");
@@ -126,7 +183,7 @@ int run_process(const ProcessArguments& arguments, const Terminal& terminal) {
   });
   progress.end();
   print_summary(terminal.out, report, options.out);
-  return kExitOk;
+  return report.result.verdict == Verdict::kFail ? kExitVerdictFail : kExitOk;
 }
 
 }  // namespace fvd::ctl

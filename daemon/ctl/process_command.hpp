@@ -2,11 +2,11 @@
 
 /// The command `fvdctl process`: arguments in, summary out.
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "core/focus/measure/focus_settings.hpp"
 #include "daemon/ctl/fvdctl.hpp"
 
 namespace CLI {
@@ -21,31 +21,33 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// As typed.
+/// As typed. What is absent is as the recipe has it, or its default.
 struct ProcessArguments {
   std::string source;
   std::string out;
   std::string part_id;
+  std::string recipe;  ///< file; empty = the defaults of recipes, and the stage is not corrected
   std::string z_file;
   std::string z_unit = "um";
-  double z_step_um = 0.0;
-  double z_start_um = 0.0;
-  int window_px = 9;
-  int distance_px = 2;
-  std::string focus_operator = "modified_laplacian";
-  int bin_slices = 1;
-  bool stage_correction = false;  ///< recorded z are taken as they are unless asked for
-  double min_significance = FocusSettings{}.min_significance;
-  double min_prominence = 0.5;
-  std::string peak = "five_sample";
+  std::optional<double> z_step_um;
+  std::optional<double> z_start_um;
+  std::optional<int> window_px;
+  std::optional<int> distance_px;
+  std::optional<std::string> focus_operator;
+  std::optional<int> bin_slices;
+  bool stage_correction = false;
+  std::optional<double> min_significance;
+  std::optional<double> min_prominence;
+  std::optional<std::string> peak;
   std::vector<std::string> extra_peaks;
-  double pixel_pitch_um = 0.0;  ///< 0 = unknown
+  std::optional<double> pixel_pitch_um;
   int threads = 0;
 };
 
 void add_process_options(CLI::App& command, ProcessArguments& arguments);
 
-/// Progress on err, the summary on out. Throws UsageError, Error.
+/// Progress on err, the summary on out; kExitVerdictFail where the recipe's limits are not met. Throws UsageError,
+/// Error.
 [[nodiscard]] int run_process(const ProcessArguments& arguments, const Terminal& terminal);
 
 }  // namespace fvd::ctl

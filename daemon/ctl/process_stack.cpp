@@ -12,6 +12,7 @@
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/result_writer.hpp"
+#include "daemon/pipeline/reconstruct.hpp"
 #include "drivers/replay/recorded_stack.hpp"
 
 namespace fvd::ctl {
@@ -26,10 +27,11 @@ double milliseconds_since(SteadyClock::time_point start) {
 
 /// What would only come out after minutes of computing otherwise.
 void check_options(const ProcessOptions& options) {
-  check_focus_settings(options.focus);
-  if (options.pixel_pitch_um && !(std::isfinite(*options.pixel_pitch_um) && *options.pixel_pitch_um > 0)) {
+  check_focus_settings(focus_settings(options.recipe));
+  for (const double pitch_um : {options.recipe.pixel_pitch_x_um, options.recipe.pixel_pitch_y_um}) {
+    if (std::isfinite(pitch_um) && pitch_um > 0) continue;
     throw Error(ErrorCode::kBadInput,
-                "a pixel pitch of " + std::to_string(*options.pixel_pitch_um) + " um: it must be finite and above 0");
+                "a pixel pitch of " + std::to_string(pitch_um) + " um: it must be finite and above 0");
   }
   if (std::filesystem::exists(options.out)) {
     throw Error(ErrorCode::kStorageWrite, options.out.string() + " exists already: give another name, or move it away");
@@ -53,10 +55,12 @@ void describe(ResultData& data, const ProcessOptions& options, const RecordedSta
   if (!source.has_filename()) source = source.parent_path();  // a trailing slash
   data.part_id = options.part_id.empty() ? source.filename().string() : options.part_id;
   data.source = source.string() + ": " + stack.list().description;
-  data.focus = options.focus;
-  data.peak = options.peak;
-  data.pixel_pitch_x_um = options.pixel_pitch_um;
-  data.pixel_pitch_y_um = options.pixel_pitch_um;
+  note_recipe(options.recipe, data);
+  if (!options.knows_pixel_pitch) {
+    data.pixel_pitch_x_um.reset();
+    data.pixel_pitch_y_um.reset();
+  }
+  data.warnings = options.warnings;
   data.slices_planned = stack.slices();
 }
 
@@ -83,24 +87,14 @@ void push_slices(StreamingFocusStack& focus, WorkerPool& pool, const RecordedSta
   }
 }
 
-void compute_maps(const StreamingFocusStack& focus, const ProcessOptions& options, ResultData& data) {
-  data.map = focus.finish(options.peak);
-  std::vector<PeakMethod> done{options.peak};
-  for (const PeakMethod method : options.extra_peaks) {
-    if (std::find(done.begin(), done.end(), method) != done.end()) continue;
-    done.push_back(method);
-    data.extra_maps.emplace_back(method, focus.finish(method));
-  }
-}
-
 /// From the slices to the maps. The memory of curves and slices is free again when the result is written.
 void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyClock::time_point start,
              const std::function<void(int, int)>& on_slice, ResultData& data) {
   const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
-  StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), options.focus, pool, stack.colour());
-  data.state_bytes_per_pixel = focus.state_bytes_per_pixel();
+  StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), focus_settings(options.recipe), pool,
+                            stack.colour());
   data.times.prepare_ms = milliseconds_since(start);
 
   const auto scan_start = SteadyClock::now();
@@ -108,8 +102,9 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
   data.times.scan_ms = milliseconds_since(scan_start);
 
   const auto finish_start = SteadyClock::now();
-  compute_maps(focus, options, data);
+  reconstruct(focus, options.recipe, data);
   data.times.finish_ms = milliseconds_since(finish_start);
+  reconstruct_further(focus, options.recipe, data);
 }
 
 }  // namespace
@@ -123,8 +118,7 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   measure(options, stack, start, on_slice, data);
   release_kept_memory();  // there is no next scan
   data.step_summary = summarize_steps(data.steps);
-  const HeightSummary summary = write_result(options.out, data);
-  return {stack.list().description, stack.slices(), stack.width(), stack.height(), data.state_bytes_per_pixel, summary};
+  return {stack.list().description, write_result(options.out, data)};
 }
 
 }  // namespace fvd::ctl

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/focus/measure/focus_settings.hpp"
-#include "core/surface/statistics.hpp"
+#include "daemon/pipeline/result.hpp"
+#include "daemon/recipes/recipe.hpp"
 #include "drivers/replay/slice_heights.hpp"
 
 namespace fvd::ctl {
@@ -18,21 +18,16 @@ struct ProcessOptions {
   std::filesystem::path source;  ///< folder of slices or multi-page TIFF
   std::filesystem::path out;     ///< result directory, must not exist
   ZSource z;
-  FocusSettings focus;
-  PeakMethod peak = PeakMethod::kFiveSample;
-  std::vector<PeakMethod> extra_peaks;
-  std::optional<double> pixel_pitch_um;  ///< > 0
-  int threads = 0;                       ///< 0 = one a core
-  std::string part_id;                   ///< empty = the name of the source
+  Recipe recipe;                   ///< what of it is no business of the scan; its id may be empty
+  bool knows_pixel_pitch = false;  ///< false: the recipe's is a default, and the files carry pixels
+  int threads = 0;                 ///< 0 = one a core
+  std::string part_id;             ///< empty = the name of the source
+  std::vector<Warning> warnings;   ///< further ones for the result
 };
 
 struct ProcessReport {
   std::string slices_text;  ///< which files were taken for slices
-  int slices = 0;
-  int width = 0;
-  int height = 0;
-  double state_bytes_per_pixel = 0.0;
-  HeightSummary summary;
+  Result result;
 };
 
 /// Reads a few slices at a time; writes only after the last one was good. on_slice(done, total) follows each slice.

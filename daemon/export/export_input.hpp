@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/surface/statistics.hpp"
-#include "daemon/export/result_data.hpp"
+#include "daemon/pipeline/result_data.hpp"
 
 namespace fvd {
 

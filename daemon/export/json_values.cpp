@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <string_view>
 
 namespace fvd {
 
@@ -26,6 +27,21 @@ std::string iso8601_utc(std::chrono::system_clock::time_point time) {
   const auto length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
   const std::string fraction = std::to_string(1000 + (millis - seconds).count()).substr(1);
   return std::string(text, length) + "." + fraction + "Z";
+}
+
+std::optional<std::chrono::system_clock::time_point> from_iso8601_utc(const std::string& text) {
+  std::tm utc{};
+  const char* const rest = strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S", &utc);
+  if (rest == nullptr) return std::nullopt;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const std::string_view fraction(rest);  // ".123Z"
+  if (fraction.size() != 5 || fraction[0] != '.' || fraction[4] != 'Z') return std::nullopt;
+  int millis = 0;
+  for (const char c : fraction.substr(1, 3)) {
+    if (!is_digit(c)) return std::nullopt;
+    millis = 10 * millis + (c - '0');
+  }
+  return std::chrono::system_clock::from_time_t(timegm(&utc)) + std::chrono::milliseconds(millis);
 }
 
 }  // namespace fvd

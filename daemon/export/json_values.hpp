@@ -19,4 +19,7 @@ namespace fvd {
 /// "2026-11-23T14:05:59.123Z".
 [[nodiscard]] std::string iso8601_utc(std::chrono::system_clock::time_point time);
 
+/// Back from that; nothing for any other text.
+[[nodiscard]] std::optional<std::chrono::system_clock::time_point> from_iso8601_utc(const std::string& text);
+
 }  // namespace fvd

@@ -1,7 +1,5 @@
 #include "daemon/export/mask_png.hpp"
 
-#include <algorithm>
-
 #include <opencv2/core.hpp>
 
 #include "daemon/export/export_input.hpp"
@@ -10,10 +8,8 @@
 namespace fvd {
 
 std::string encode_mask_png(const HeightMap& map) {
-  cv::Mat image(map.mask.height(), map.mask.width(), CV_8U);
-  std::transform(map.mask.pixels().begin(), map.mask.pixels().end(), image.begin<std::uint8_t>(),
-                 [](std::uint8_t mask) { return mask == 0 ? std::uint8_t{255} : mask; });
-  return png_bytes(image);
+  static_assert(sizeof(MaskReasons) == 2);
+  return png_bytes(cv::Mat(map.mask.height(), map.mask.width(), CV_16U, const_cast<MaskReasons*>(map.mask.row(0))));
 }
 
 std::string mask_png_file(const ExportInput& input) { return encode_mask_png(input.map); }

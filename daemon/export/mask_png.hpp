@@ -10,7 +10,7 @@ namespace fvd {
 
 struct ExportInput;
 
-/// 8 bit: 255 = valid, else the mask_reason bits. Throws Error kInternal.
+/// 16 bit: 0 = valid, else the mask_reason bits. Throws Error kInternal.
 [[nodiscard]] std::string encode_mask_png(const HeightMap& map);
 
 /// The exporter: encode_mask_png() of the input's map.

@@ -33,12 +33,12 @@ using page_colour::kPaleInk;
 const cv::Scalar kHole(170, 170, 170);
 
 /// Robust limits, widened where the map is flat or empty so that they always differ.
-struct Limits {
+struct ColourRange {
   double low_um = 0.0;
   double high_um = 1.0;
 };
 
-Limits colour_limits(const HeightSummary& summary) {
+ColourRange colour_limits(const HeightSummary& summary) {
   if (!summary.height) return {};
   const double low = summary.height->low_um;
   const double high = summary.height->high_um;
@@ -97,7 +97,7 @@ cv::Mat viridis(const cv::Mat& levels) {
   return colours;
 }
 
-cv::Mat coloured(const DrawnMap& drawn, const Limits& limits) {
+cv::Mat coloured(const DrawnMap& drawn, const ColourRange& limits) {
   const double scale = 255.0 / (limits.high_um - limits.low_um);
   cv::Mat levels;
   drawn.height_um.convertTo(levels, CV_8U, scale, -limits.low_um * scale);
@@ -106,7 +106,7 @@ cv::Mat coloured(const DrawnMap& drawn, const Limits& limits) {
   return colours;
 }
 
-void draw_colour_bar(cv::Mat& page, const cv::Rect& map, const Limits& limits, bool empty) {
+void draw_colour_bar(cv::Mat& page, const cv::Rect& map, const ColourRange& limits, bool empty) {
   const cv::Rect bar(map.br().x + kMargin, map.y, kBarWidth, map.height);
   cv::Mat ramp(bar.height, 1, CV_8U);
   for (int y = 0; y < bar.height; ++y) {
@@ -166,7 +166,7 @@ PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
 
 std::string encode_preview_png(const HeightMap& map, const HeightSummary& summary, const PreviewText& text) {
   try {
-    const Limits limits = colour_limits(summary);
+    const ColourRange limits = colour_limits(summary);
     const cv::Mat picture = coloured(resample(map), limits);
     // Maps that are narrow still get a page wide enough for their text.
     const int map_space = std::max(picture.cols, kMinMapSide);

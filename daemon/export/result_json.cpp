@@ -1,6 +1,9 @@
 #include "daemon/export/result_json.hpp"
 
-#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -15,14 +18,49 @@ using Json = nlohmann::ordered_json;
 Json um(double value) { return rounded(value, 4); }
 Json ms(double value) { return rounded(value, 3); }
 
-Json height_values(const HeightSummary& summary) {
-  Json json;
-  const auto& height = summary.height;
-  json["min_um"] = height ? um(height->min_um) : Json(nullptr);
-  json["max_um"] = height ? um(height->max_um) : Json(nullptr);
-  json["mean_um"] = height ? um(height->mean_um) : Json(nullptr);
-  json["median_um"] = height ? um(height->median_um) : Json(nullptr);
+Json um_or_null(const std::optional<double>& value) { return value ? um(*value) : Json(nullptr); }
+Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+/// Of format 1, for its readers: the same heights by other names.
+Json height_values(const std::optional<double>& min, const std::optional<double>& max,
+                   const std::optional<double>& mean, const std::optional<double>& median) {
+  return {{"min_um", um_or_null(min)},
+          {"max_um", um_or_null(max)},
+          {"mean_um", um_or_null(mean)},
+          {"median_um", um_or_null(median)}};
+}
+
+std::optional<double> value_of(const Result& result, std::string_view name) {
+  const MeasuredValue* const measured = result.find(name);
+  return measured == nullptr ? std::nullopt : measured->value;
+}
+
+Json measurement(const MeasuredValue& measured) {
+  const int decimals = measured.unit == "um" ? 4 : 6;
+  Json json{{"kind", measured.kind}, {"value", rounded(measured.value, decimals)}, {"unit", measured.unit}};
+  if (measured.u) json["u"] = *measured.u;
+  if (measured.expanded_u) json["U"] = *measured.expanded_u;
+  if (measured.k) json["k"] = *measured.k;
+  json["points"] = measured.points;
+  json["valid_fraction"] = rounded(measured.valid_fraction, 6);
+  if (measured.limits) {
+    json["limits"] = {{"lower", number_or_null(measured.limits->lower)},
+                      {"upper", number_or_null(measured.limits->upper)}};
+  }
+  if (measured.verdict) json["verdict"] = verdict_name(*measured.verdict);
   return json;
+}
+
+Json measurements(const std::vector<MeasuredValue>& values) {
+  Json json = Json::object();
+  for (const MeasuredValue& value : values) json[value.name] = measurement(value);
+  return json;
+}
+
+Json warnings(const std::vector<Warning>& warnings) {
+  Json list = Json::array();
+  for (const Warning& warning : warnings) list.push_back({{"code", warning.code}, {"text", warning.text}});
+  return list;
 }
 
 Json holes(const HoleCounts& counts) {
@@ -32,47 +70,39 @@ Json holes(const HoleCounts& counts) {
           {"edge_bleeding", counts.edge_bleeding}};
 }
 
-Json values(const HeightSummary& summary) {
-  Json json;
-  json["height"] = height_values(summary);
-  json["points"] = summary.points;
-  json["valid_points"] = summary.valid;
-  json["valid_fraction"] = rounded(summary.valid_fraction(), 6);
-  json["hole_points"] = holes(summary.holes);
-  json["sigma_median_um"] = summary.sigma_median_um ? um(*summary.sigma_median_um) : Json(nullptr);
-  return json;
+Json values(const Result& result) {
+  return {{"height", height_values(value_of(result, "height_min"), value_of(result, "height_max"),
+                                   value_of(result, "height_mean"), value_of(result, "height_median"))},
+          {"points", result.points},
+          {"valid_points", result.valid_points},
+          {"valid_fraction", rounded(result.valid_fraction(), 6)},
+          {"hole_points", holes(result.holes)},
+          {"sigma_median_um", um_or_null(value_of(result, "sigma_median"))}};
 }
 
-Json focus(const ResultData& data) {
+Json focus(const Result::Focus& focus) {
   Json json;
-  json["width_px"] = data.map.height_m.width();
-  json["height_px"] = data.map.height_m.height();
-  json["pixel_pitch_x_um"] = data.pixel_pitch_x_um ? Json(*data.pixel_pitch_x_um) : Json(nullptr);
-  json["pixel_pitch_y_um"] = data.pixel_pitch_y_um ? Json(*data.pixel_pitch_y_um) : Json(nullptr);
-  json["operator"] = focus_operator_name(data.focus.focus_operator);
-  json["window_px"] = data.focus.window_px;
-  json["distance_px"] = data.focus.distance_px;
-  json["min_prominence"] = data.focus.min_prominence;
-  json["min_significance"] = data.focus.min_significance;
-  json["bin_slices"] = data.focus.bin_slices;
-  json["noise_grey"] = rounded(data.map.noise_grey, 3);
-  json["curve_width_um"] = data.map.curve_width_um > 0.0 ? um(data.map.curve_width_um) : Json(nullptr);
-  json["peak"] = peak_method_name(data.peak);
+  json["width_px"] = focus.width_px;
+  json["height_px"] = focus.height_px;
+  json["pixel_pitch_x_um"] = number_or_null(focus.pixel_pitch_x_um);
+  json["pixel_pitch_y_um"] = number_or_null(focus.pixel_pitch_y_um);
+  json["operator"] = focus_operator_name(focus.settings.focus_operator);
+  json["window_px"] = focus.settings.window_px;
+  json["distance_px"] = focus.settings.distance_px;
+  json["min_prominence"] = focus.settings.min_prominence;
+  json["min_significance"] = focus.settings.min_significance;
+  json["bin_slices"] = focus.settings.bin_slices;
+  json["noise_grey"] = rounded(focus.noise_grey, 3);
+  json["curve_width_um"] = um_or_null(focus.curve_width_um);
+  json["peak"] = peak_method_name(focus.peak);
   Json extra = Json::array();
-  for (const auto& [method, map] : data.extra_maps) {
-    extra.push_back({{"peak", peak_method_name(method)},
-                     {"height", height_values(summarize_heights(map.height_m, map.sigma_m, map.mask))}});
+  for (const FurtherHeights& further : focus.extra_peaks) {
+    extra.push_back({{"peak", peak_method_name(further.peak)},
+                     {"height", height_values(further.min_um, further.max_um, further.mean_um, further.median_um)}});
   }
   json["extra_peaks"] = std::move(extra);
-  json["state_bytes_per_pixel"] = rounded(data.state_bytes_per_pixel, 3);
+  json["state_bytes_per_pixel"] = rounded(focus.state_bytes_per_pixel, 3);
   return json;
-}
-
-Json stage_health(const StageCorrection& stage) {
-  return {{"corrected", stage.applied},
-          {"reason", text_or_null(stage.reason)},
-          {"offsets_rms_um", um(stage.rms_um)},
-          {"offset_error_um", um(stage.standard_error_um)}};
 }
 
 Json frames(const FrameCounts& counts) {
@@ -80,15 +110,17 @@ Json frames(const FrameCounts& counts) {
           {"missing", counts.missing},   {"stale", counts.stale}, {"underrun", counts.underrun}};
 }
 
-Json slices(const ResultData& data) {
-  std::size_t measured = 0;
-  for (const StepRecord& step : data.steps) measured += step.measured ? 1 : 0;
-  Json json{{"planned", data.slices_planned}, {"measured", measured}};
-  json["scan_mode"] = data.scan_mode == ScanMode::kContinuous ? "continuous" : "step";
-  if (data.scan_mode == ScanMode::kContinuous) {
-    json["speed_um_per_s"] = um(data.speed_um_per_s);
-    json["ramp_frames"] = data.ramp_frames;
+Json slices(const Result::Slices& slices) {
+  Json json{{"planned", slices.planned},
+            {"measured", slices.measured},
+            {"first_um", um_or_null(slices.first_um)},
+            {"last_um", um_or_null(slices.last_um)}};
+  json["scan_mode"] = slices.mode == ScanMode::kContinuous ? "continuous" : "step";
+  if (slices.mode == ScanMode::kContinuous) {
+    json["speed_um_per_s"] = um(slices.speed_um_per_s);
+    json["ramp_frames"] = slices.ramp_frames;
   }
+  json["suspect"] = slices.suspect;
   return json;
 }
 
@@ -103,56 +135,63 @@ Json steps(const StepSummary& summary) {
           {"move_max_ms", ms(summary.move_max_ms)}};
 }
 
-Json provenance(const ResultData& data) {
-  return {{"recipe", text_or_null(data.recipe_id)},
-          {"recipe_sha256", text_or_null(data.recipe_sha256)},
-          {"software_version", text_or_null(data.software_version)},
-          {"simulated", data.simulated},
-          {"created", iso8601_utc(data.created)},
-          {"source", text_or_null(data.source)}};
+Json stage(const Result::Stage& stage) {
+  return {{"corrected", stage.corrected},
+          {"reason", text_or_null(stage.reason)},
+          {"offsets_rms_um", um(stage.offsets_rms_um)},
+          {"offset_error_um", um(stage.offset_error_um)}};
 }
 
-/// One entry a file; the files of a folder, e.g. recorded slices, share one.
-Json file_list(const std::vector<AtomicDirectory::File>& files) {
+Json times(const PhaseTimes& times) {
+  return {{"prepare_ms", ms(times.prepare_ms)},
+          {"scan_ms", ms(times.scan_ms)},
+          {"finish_ms", ms(times.finish_ms)},
+          {"write_ms", ms(times.write_ms)}};
+}
+
+/// The recipe stands here for readers of format 1.
+Json provenance(const Result& result) {
+  return {{"recipe", text_or_null(result.recipe.id)},
+          {"recipe_sha256", text_or_null(result.recipe.sha256)},
+          {"software_version", text_or_null(result.provenance.software_version)},
+          {"simulated", result.provenance.simulated},
+          {"created", iso8601_utc(result.provenance.created)},
+          {"source", text_or_null(result.provenance.source)}};
+}
+
+Json file_list(const std::vector<ResultFile>& files) {
   Json list = Json::array();
-  std::map<std::string, std::size_t> folders;  // name -> place in the list
-  for (const auto& file : files) {
-    const auto slash = file.name.find('/');
-    if (slash == std::string::npos) {
-      list.push_back({{"name", file.name}, {"size_bytes", file.size_bytes}});
-      continue;
-    }
-    const std::string folder = file.name.substr(0, slash + 1);
-    const auto [place, is_new] = folders.try_emplace(folder, list.size());
-    if (is_new) list.push_back({{"name", folder}, {"files", 0}, {"size_bytes", 0}});
-    Json& entry = list[place->second];
-    entry["files"] = entry["files"].get<std::uint64_t>() + 1;
-    entry["size_bytes"] = entry["size_bytes"].get<std::uint64_t>() + file.size_bytes;
+  for (const ResultFile& file : files) {
+    Json entry{{"name", file.name}};
+    if (file.files) entry["files"] = *file.files;
+    entry["size_bytes"] = file.size_bytes;
+    list.push_back(std::move(entry));
   }
   return list;
 }
 
 }  // namespace
 
-std::string result_json_text(const ResultData& data, const HeightSummary& summary,
-                             const std::optional<WriteReport>& report) {
+std::string result_json_text(const Result& result) {
   Json json;
-  json["job"] = {{"job_id", text_or_null(data.job_id)},
-                 {"seq", data.seq ? Json(*data.seq) : Json(nullptr)},
-                 {"part_id", text_or_null(data.part_id)},
-                 {"recipe", text_or_null(data.recipe_id)}};
-  json["values"] = values(summary);
-  json["focus"] = focus(data);
-  json["frames"] = frames(data.frames);
-  json["slices"] = slices(data);
-  json["steps"] = steps(data.step_summary);
-  json["stage_in_curves"] = stage_health(data.map.stage);
-  json["times"] = {{"prepare_ms", ms(data.times.prepare_ms)},
-                   {"scan_ms", ms(data.times.scan_ms)},
-                   {"finish_ms", ms(data.times.finish_ms)}};
-  if (report) json["times"]["write_ms"] = ms(report->write_ms);
-  json["provenance"] = provenance(data);
-  if (report) json["files"] = file_list(report->files);
+  json["format"] = Result::kFormat;
+  json["job"] = {{"job_id", text_or_null(result.job.id)},
+                 {"seq", result.job.seq ? Json(*result.job.seq) : Json(nullptr)},
+                 {"part_id", text_or_null(result.job.part_id)},
+                 {"recipe", text_or_null(result.recipe.id)}};
+  json["recipe"] = {{"id", text_or_null(result.recipe.id)}, {"sha256", text_or_null(result.recipe.sha256)}};
+  json["verdict"] = result.verdict ? Json(verdict_name(*result.verdict)) : Json(nullptr);
+  json["measurements"] = measurements(result.measurements);
+  json["warnings"] = warnings(result.warnings);
+  json["values"] = values(result);
+  json["focus"] = focus(result.focus);
+  json["frames"] = frames(result.frames);
+  json["slices"] = slices(result.slices);
+  json["steps"] = steps(result.steps);
+  json["stage_in_curves"] = stage(result.stage);
+  json["times"] = times(result.times);
+  json["provenance"] = provenance(result);
+  json["files"] = file_list(result.files);
   return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,26 +1,20 @@
 #pragma once
 
-/// result.json: everything about a result except its pixels.
+/// result.json: everything about a result except its pixels. Written here and read back here, nowhere else.
 
-#include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
-#include "core/surface/statistics.hpp"
-#include "daemon/export/atomic_directory.hpp"
-#include "daemon/export/result_data.hpp"
+#include "daemon/pipeline/result.hpp"
 
 namespace fvd {
 
-/// What is known only once the other files are written.
-struct WriteReport {
-  std::vector<AtomicDirectory::File> files;
-  double write_ms = 0.0;
-};
-
 /// Pretty-printed JSON, ASCII only, keys in a fixed order, null for whatever is unknown or not finite; heights rounded
-/// to 0.1 nm. With a report also "files" and times.write_ms.
-[[nodiscard]] std::string result_json_text(const ResultData& data, const HeightSummary& summary,
-                                           const std::optional<WriteReport>& report = {});
+/// to 0.1 nm. Holds the keys of format 1 as well.
+[[nodiscard]] std::string result_json_text(const Result& result);
+
+/// What result_json_text() wrote, to its roundings; null where a number is expected reads as NaN. Throws Error
+/// kBadInput with the JSON pointer of what is missing or wrong, and for another format.
+[[nodiscard]] Result read_result_json(std::string_view text);
 
 }  // namespace fvd

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "core/base/mutex.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/export/result_json.hpp"
+#include "daemon/pipeline/evaluate.hpp"
 
 namespace fvd {
 
@@ -59,6 +61,26 @@ std::vector<std::size_t> order_of(const std::vector<Task>& tasks) {
   return order;
 }
 
+/// One entry a file; the files of a folder, e.g. recorded slices, share one.
+std::vector<ResultFile> listed(const std::vector<AtomicDirectory::File>& files) {
+  std::vector<ResultFile> list;
+  std::map<std::string, std::size_t> folders;  // name -> place in the list
+  for (const auto& file : files) {
+    const auto slash = file.name.find('/');
+    if (slash == std::string::npos) {
+      list.push_back({file.name, std::nullopt, file.size_bytes});
+      continue;
+    }
+    const std::string folder = file.name.substr(0, slash + 1);
+    const auto [place, is_new] = folders.try_emplace(folder, list.size());
+    if (is_new) list.push_back({folder, 0, 0});
+    ResultFile& entry = list[place->second];
+    ++*entry.files;
+    entry.size_bytes += file.size_bytes;
+  }
+  return list;
+}
+
 /// The directory, for exporters that run beside each other.
 class SharedDirectory {
  public:
@@ -85,7 +107,7 @@ class SharedDirectory {
 
 }  // namespace
 
-HeightSummary write_result(AtomicDirectory& directory, const ResultData& data, std::span<const Exporter> exporters) {
+Result write_result(AtomicDirectory& directory, const ResultData& data, std::span<const Exporter> exporters) {
   const auto start = std::chrono::steady_clock::now();
   const std::shared_future<HeightSummary> summary = std::async(
       std::launch::deferred, [&data] { return summarize_heights(data.map.height_m, data.map.sigma_m, data.map.mask); });
@@ -100,16 +122,18 @@ HeightSummary write_result(AtomicDirectory& directory, const ResultData& data, s
     files[before + index] = shared.write(tasks[index]);
   };
   WorkerPool(kExportersAtOnce).run(static_cast<int>(order.size()), std::ref(write));
-  const double write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  directory.add_file("result.json", result_json_text(data, summary.get(), WriteReport{std::move(files), write_ms}));
-  return summary.get();
+  Result result = evaluate(data, summary.get());
+  result.files = listed(files);
+  result.times.write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  directory.add_file("result.json", result_json_text(result));
+  return result;
 }
 
-HeightSummary write_result(const std::filesystem::path& final_dir, const ResultData& data) {
+Result write_result(const std::filesystem::path& final_dir, const ResultData& data) {
   AtomicDirectory directory(final_dir);
-  const HeightSummary summary = write_result(directory, data);
+  Result result = write_result(directory, data);
   directory.commit();
-  return summary;
+  return result;
 }
 
 }  // namespace fvd

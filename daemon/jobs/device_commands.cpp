@@ -14,7 +14,7 @@
 #include "core/focus/grey_statistics.hpp"
 #include "core/scan/slice_capture.hpp"
 #include "daemon/export/image_png.hpp"
-#include "daemon/pipeline/preview_hub.hpp"
+#include "daemon/export/preview_hub.hpp"
 
 namespace fvd {
 

@@ -17,7 +17,7 @@
 #include "daemon/devices/device_slot.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/pipeline/measurement.hpp"
-#include "daemon/pipeline/preview_hub.hpp"
+#include "daemon/export/preview_hub.hpp"
 #include "daemon/recipes/recipe.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/store/stage_history.hpp"

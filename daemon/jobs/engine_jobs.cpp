@@ -5,12 +5,14 @@
 
 #include <spdlog/spdlog.h>
 
-#include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/recorded_slices.hpp"
+#include "daemon/export/result_json.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/jobs/engine.hpp"
+#include "daemon/pipeline/evaluate.hpp"
+#include "daemon/pipeline/reconstruct.hpp"
 
 namespace fvd {
 
@@ -40,12 +42,7 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
   result.job_id = job.status.job_id;
   result.seq = job.status.request.seq;
   result.part_id = job.status.request.part_id;
-  result.recipe_id = job.recipe.id;
-  result.recipe_sha256 = job.recipe.sha256;
-  result.focus = focus_settings(job.recipe);
-  result.peak = job.recipe.peak;
-  result.pixel_pitch_x_um = job.recipe.pixel_pitch_x_um;
-  result.pixel_pitch_y_um = job.recipe.pixel_pitch_y_um;
+  note_recipe(job.recipe, result);
   if (const auto failure = open_devices()) {
     end_job(job, {.error = failure->code, .message = failure->message, .failure = failure});
     return;
@@ -67,16 +64,15 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
     // In a continuous scan nobody commands the stage to be just there.
     if (job.recipe.mode == ScanMode::kStep) stage_history_.add(stage_.get().info().feedback, result.steps);
     if (recorder) recorder->finish("job " + job.status.job_id + (result.simulated ? ", simulated" : ""));
-    write_result(directory, result);
+    const Result written = write_result(directory, result);
     directory.commit();
-    const std::string text = read_text_file(directory.final_dir() / "result.json");
-    JobEnd end{.state = JobState::kCompleted, .directory = directory.final_dir().string(), .result_text = text};
-    try {
-      check_valid_points(job.recipe, result.map);
-    } catch (const Error& error) {
+    JobEnd end{.state = JobState::kCompleted,
+               .directory = directory.final_dir().string(),
+               .result_text = result_json_text(written)};
+    if (const auto shortage = shortfall(written)) {
       end.state = JobState::kFailed;
-      end.error = error.code();
-      end.message = error.what();
+      end.error = shortage->code;
+      end.message = shortage->message;
     }
     end.failure = lost_device();
     end_job(job, end);

@@ -12,7 +12,7 @@ namespace fvd {
 namespace {
 
 /// A map beside the first: heights, errors, prominence, reasons, texture.
-constexpr std::size_t kMapBytesPerPixel = 3 * sizeof(float) + sizeof(std::uint8_t) + sizeof(std::uint16_t);
+constexpr std::size_t kMapBytesPerPixel = 3 * sizeof(float) + sizeof(MaskReasons) + sizeof(std::uint16_t);
 /// The preview's picture is drawn and encoded while the largest file of four bytes a point is made beside it.
 constexpr std::size_t kEncodingBytesPerPixel = 12;
 

@@ -1,12 +1,11 @@
 #include "daemon/pipeline/measurement.hpp"
 
-#include <algorithm>
-#include <sstream>
 #include <utility>
 
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/continuous_scan.hpp"
+#include "daemon/pipeline/reconstruct.hpp"
 
 namespace fvd {
 
@@ -84,7 +83,6 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   const CameraSettings settings = deps.camera.configure(recipe.camera);
   StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe),
                             deps.pool);
-  result.state_bytes_per_pixel = stack.state_bytes_per_pixel();
   if (!deps.stage.status().homed) deps.stage.home(stop);
   result.times.prepare_ms = milliseconds_since(deps.clock, started);
 
@@ -100,29 +98,9 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   plan.time_offset = deps.time_offset;
   acquire(plan, settings, deps, timed, stack, result, stop);
   result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
-  result.map = stack.finish(recipe.peak);
+  reconstruct(stack, recipe, result);
   result.times.finish_ms = milliseconds_since(deps.clock, acquired);
-  for (const PeakMethod method : recipe.extra_peaks) result.extra_maps.emplace_back(method, stack.finish(method));
-}
-
-void check_valid_points(const Recipe& recipe, const HeightMap& map) {
-  const auto mask = map.mask.pixels();
-  const auto total = static_cast<double>(mask.size());
-  const auto valid = static_cast<double>(std::count(mask.begin(), mask.end(), 0));
-  if (valid >= recipe.min_valid_fraction * total) return;
-  constexpr unsigned kEnds = mask_reason::kFirstSlice | mask_reason::kLastSlice;
-  const auto at_ends = static_cast<double>(
-      std::count_if(mask.begin(), mask.end(), [](std::uint8_t reasons) { return (reasons & kEnds) != 0; }));
-  std::ostringstream message;
-  message << "only " << 100.0 * valid / total << " % of the points are valid, the recipe asks for "
-          << 100.0 * recipe.min_valid_fraction << " %; ";
-  if (at_ends > (total - valid) / 2) {
-    message << "most of the others are sharpest at an end of the scan: move or widen the range of " << recipe.start_um
-            << ".." << recipe.start_um + (recipe.slices - 1) * recipe.step_um << " um";
-    throw Error(ErrorCode::kFocusRange, message.str());
-  }
-  message << "most of the others have too little texture or are saturated: check light and exposure";
-  throw Error(ErrorCode::kTooFewValid, message.str());
+  reconstruct_further(stack, recipe, result);
 }
 
 }  // namespace fvd

@@ -15,7 +15,7 @@
 #include "core/scan/focus_worker.hpp"
 #include "core/scan/scan_plan.hpp"
 #include "core/scan/scan_runner.hpp"
-#include "daemon/export/result_data.hpp"
+#include "daemon/pipeline/result_data.hpp"
 #include "daemon/recipes/recipe.hpp"
 
 namespace fvd {
@@ -44,8 +44,5 @@ struct MeasurementObserver {
 /// Throws what camera, stage and scan throw.
 void measure(const Recipe& recipe, const MeasurementDependencies& dependencies, const MeasurementObserver& observer,
              ResultData& result, std::stop_token stop);
-
-/// Throws Error kFocusRange or kTooFewValid if fewer points are valid than the recipe asks for.
-void check_valid_points(const Recipe& recipe, const HeightMap& map);
 
 }  // namespace fvd

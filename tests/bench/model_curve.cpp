@@ -113,7 +113,7 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
   std::vector<float> height_m(kCurves);
   std::vector<float> variance_m2(kCurves);
   std::vector<float> prominence(kCurves);
-  std::vector<std::uint8_t> mask(kCurves);
+  std::vector<MaskReasons> mask(kCurves);
   const std::vector<float> least(kCurves);
   fit.find_noise(row.curve, noise_grey.data(), kCurves, noise.data());
   fit.fit(row.curve, noise.data(), least.data(), kCurves,

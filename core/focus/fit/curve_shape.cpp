@@ -111,7 +111,7 @@ VertexBias bias_of_fit(double bend, double p) {
   std::array<float, kCurves> height_m{};
   std::array<float, kCurves> variance_m2{};
   std::array<float, kCurves> prominence{};
-  std::array<std::uint8_t, kCurves> mask{};
+  std::array<MaskReasons, kCurves> mask{};
   focus_kernels().fit_five({previous.data(), previous2.data(), peak.data(), left.data(), left2.data(), right.data(),
                             right2.data(), minimum.data(), index.data(), saturated.data()},
                            heights, nothing.data(), nothing.data(), kCurves, parameters,

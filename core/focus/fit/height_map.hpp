@@ -13,7 +13,7 @@ namespace fvd {
 /// All planes have shape [height][width] of the slices.
 struct HeightMap {
   Plane<float> height_m;     ///< metres, NaN exactly where mask != 0
-  Plane<std::uint8_t> mask;  ///< 0 valid, else mask_reason bits
+  Plane<MaskReasons> mask;   ///< 0 valid, else mask_reason bits
   Plane<float> sigma_m;      ///< expected standard error of the height, metres; NaN where mask != 0
   Plane<float> prominence;   ///< 0..1
   PixelFormat texture_format = PixelFormat::kMono8;
@@ -29,7 +29,7 @@ struct HeightMap {
 [[nodiscard]] inline HeightMap empty_map(int width, int height, PixelFormat format) {
   HeightMap map;
   map.height_m = Plane<float>::unset(width, height);
-  map.mask = Plane<std::uint8_t>::unset(width, height);
+  map.mask = Plane<MaskReasons>::unset(width, height);
   map.sigma_m = Plane<float>::unset(width, height);
   map.prominence = Plane<float>::unset(width, height);
   map.texture_format = format;

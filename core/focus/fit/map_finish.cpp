@@ -166,7 +166,7 @@ class MapFinish {
       std::vector<float> height_m(count);
       std::vector<float> variance_m2(count);
       std::vector<float> prominence(count);
-      std::vector<std::uint8_t> mask(count);
+      std::vector<MaskReasons> mask(count);
       const std::vector<float> least(count);
       for (int row = rows * band / bands; row < rows * (band + 1) / bands; ++row) {
         const int y = every / 2 + row * every;

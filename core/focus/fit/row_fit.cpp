@@ -102,7 +102,7 @@ void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* l
     const double sigma_m = valid ? position->sigma_um * kMetresPerMicrometer : std::nan("");
     out.variance_m2[x] = static_cast<float>(sigma_m * sigma_m);
     out.prominence[x] = static_cast<float>(prominence);
-    out.mask[x] = static_cast<std::uint8_t>(mask);
+    out.mask[x] = static_cast<MaskReasons>(mask);
   }
 }
 

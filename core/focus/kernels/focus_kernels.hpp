@@ -13,6 +13,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/surface/mask_reason.hpp"
+
 namespace fvd {
 
 /// One row's state of focus curves that pass by once, as columns. Sharpness is in codes, see sharpness_code.hpp.
@@ -72,7 +74,7 @@ struct FitRow {
   float* height_m;
   float* variance_m2;  ///< of the height
   float* prominence;
-  std::uint8_t* mask;
+  MaskReasons* mask;
 };
 
 struct FocusKernels {

@@ -346,7 +346,7 @@ inline __attribute__((always_inline)) void fetch_below(const CurveRow& row, cons
   for (const float* plane : {out.height_m, out.variance_m2, out.prominence}) {
     fetch<4 * kFitPixels>(plane + first, std::ptrdiff_t{4} * width, true);
   }
-  fetch<kFitPixels>(out.mask + first, width, true);
+  fetch<2 * kFitPixels>(out.mask + first, std::ptrdiff_t{2} * width, true);
 }
 
 void fit_five(const CurveRow& row, HeightTable table, const float* noise, const float* least_amplitude, int width,
@@ -368,7 +368,7 @@ void fit_five(const CurveRow& row, HeightTable table, const float* noise, const 
     judge(count, noise + first, least_amplitude + first, parameters, at, out.prominence + first);
     find_heights(count, noise + first, parameters, at, out.height_m + first, out.variance_m2 + first);
     auto* const mask = out.mask + first;
-    for (int x = 0; x < count; ++x) mask[x] = static_cast<std::uint8_t>(at.mask[x]);
+    for (int x = 0; x < count; ++x) mask[x] = static_cast<MaskReasons>(at.mask[x]);
   }
 }
 

@@ -55,7 +55,7 @@ TEST(FocusHoles, TwoSlicesBracketNothing) {
   EXPECT_EQ(middle(map_of({{0, 50}, {10, 10}})), mask_reason::kFirstSlice);
   EXPECT_EQ(middle(map_of({{0, 10}, {10, 50}})), mask_reason::kLastSlice);
   const HeightMap map = map_of({{0, 10}, {10, 50}});
-  for (const std::uint8_t reasons : map.mask.pixels()) EXPECT_NE(reasons, 0);
+  for (const MaskReasons reasons : map.mask.pixels()) EXPECT_NE(reasons, 0);
 }
 
 TEST(FocusHoles, ATripleWhoseHeightsDoNotRunOneWayIsNotBracketed) {
@@ -124,7 +124,7 @@ TEST(FocusHoles, NoiseAloneIsInsignificantWhateverItsProminence) {
   EXPECT_NEAR(map.noise_grey, 3.0, 0.3);
   int prominent = 0;
   int valid = 0;
-  for (const std::uint8_t reasons : map.mask.pixels()) {
+  for (const MaskReasons reasons : map.mask.pixels()) {
     prominent += (reasons & mask_reason::kLowProminence) == 0 ? 1 : 0;
     valid += reasons == 0 ? 1 : 0;
   }

@@ -14,7 +14,7 @@ namespace {
 HeightMap scanned(double offset_um, unsigned seed) {
   HeightMap map;
   map.height_m = Plane<float>(64, 48);
-  map.mask = Plane<std::uint8_t>(64, 48);
+  map.mask = Plane<MaskReasons>(64, 48);
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.1);
   for (int y = 0; y < 48; ++y) {
@@ -44,7 +44,7 @@ TEST(LagCalibration, RefusesWhatTellsNothing) {
   test::expect_error(ErrorCode::kTooFewValid, {"texture"}, [&] { (void)measure_lag(holes, scanned(0.0, 2), 100.0); });
   HeightMap small;
   small.height_m = Plane<float>(8, 8);
-  small.mask = Plane<std::uint8_t>(8, 8);
+  small.mask = Plane<MaskReasons>(8, 8);
   test::expect_error(ErrorCode::kBadInput, {"shapes"}, [&] { (void)measure_lag(small, scanned(0.0, 2), 100.0); });
 }
 

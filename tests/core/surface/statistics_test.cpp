@@ -15,14 +15,14 @@ constexpr double kFloatUm = 1e-5;  // what float32 metres can tell apart at thes
 /// height[y][x] = x + 10 y um, all points valid with a standard error of 0.2 um.
 struct Surface {
   Surface(int width, int height)
-      : height_m(width, height), sigma_m(width, height, 0.2e-6F), mask(width, height, std::uint8_t{0}) {
+      : height_m(width, height), sigma_m(width, height, 0.2e-6F), mask(width, height, MaskReasons{0}) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) height_m.at(x, y) = static_cast<float>((x + 10 * y) * kMetresPerMicrometer);
     }
   }
 
   void make_hole(int x, int y, unsigned reasons) {
-    mask.at(x, y) = static_cast<std::uint8_t>(reasons);
+    mask.at(x, y) = static_cast<MaskReasons>(reasons);
     height_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
     sigma_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
   }
@@ -31,7 +31,7 @@ struct Surface {
 
   Plane<float> height_m;
   Plane<float> sigma_m;
-  Plane<std::uint8_t> mask;
+  Plane<MaskReasons> mask;
 };
 
 TEST(HeightSummary, DescribesTheValidPoints) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <ostream>
 #include <sstream>
@@ -129,6 +130,101 @@ TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
     }
   }
   EXPECT_GT(valid, 1000);
+}
+
+/// For slices of write_stack().
+constexpr const char* kRecipe = R"({
+  "scan": {"start_um": 0, "step_um": 10, "slices": 11},
+  "camera": {"pixel_format": "Mono8", "exposure_us": 5000},
+  "focus": {"window_px": 7, "distance_px": 1, "peak": "log_parabola", "extra_peaks": ["nearest"],
+            "stage_correction": false},
+  "lateral": {"pixel_pitch_x_um": 2.0, "pixel_pitch_y_um": 4.0},
+  "result": {"min_valid_fraction": 0.5}})";
+
+class AProcessWithARecipe : public testing::Test {
+ protected:
+  AProcessWithARecipe() {
+    test::write_stack(scratch_ / "in", "s", ".png", 11, 4.0);
+    test::write_text(scratch_ / "part.json", kRecipe);
+  }
+  Outcome run(std::vector<std::string> more) {
+    std::vector<std::string> arguments{scratch_ / "in", "--recipe", scratch_ / "part.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return process(arguments);
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return test::read_text(scratch_ / name); }
+  [[nodiscard]] nlohmann::json result(const std::string& out) const {
+    return nlohmann::json::parse(file(out + "/result.json"));
+  }
+
+  ScratchDir scratch_;
+};
+
+TEST_F(AProcessWithARecipe, MeasuresAsTheOptionsThatSayTheSame) {
+  ASSERT_EQ(run({"--out", scratch_ / "by_recipe"}).code, kExitOk);
+  ASSERT_EQ(process({scratch_ / "in", "--z-step-um", "10", "--window", "7", "--distance", "1", "--peak", "log_parabola",
+                     "--extra-peak", "nearest", "--out", scratch_ / "by_options"})
+                .code,
+            kExitOk);
+  for (const char* name : {"height.tiff", "height_nearest.tiff", "sigma.tiff"}) {
+    const cv::Mat one = read_float(scratch_ / "by_recipe" / name);
+    const cv::Mat other = read_float(scratch_ / "by_options" / name);
+    ASSERT_EQ(one.total(), 40U * 30U) << name;
+    EXPECT_EQ(std::memcmp(one.data, other.data, one.total() * one.elemSize()), 0) << name;
+  }
+  EXPECT_EQ(file("by_recipe/mask.png"), file("by_options/mask.png"));
+  EXPECT_EQ(file("by_recipe/texture.png"), file("by_options/texture.png"));
+}
+
+TEST_F(AProcessWithARecipe, TellsTheRecipeAndJudgesByIt) {
+  const Outcome outcome = run({"--out", scratch_ / "out"});
+  ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("verdict   pass"));
+  const auto told = result("out");
+  EXPECT_EQ(told["recipe"]["id"], "part");
+  EXPECT_EQ(told["recipe"]["sha256"].get<std::string>().size(), 64U);
+  EXPECT_EQ(told["verdict"], "pass");
+  EXPECT_EQ(told["focus"]["pixel_pitch_y_um"], 4.0);
+  EXPECT_TRUE(told["warnings"].empty());
+}
+
+TEST_F(AProcessWithARecipe, EndsAsFailedWhereTooFewPointsAreValid) {
+  const Outcome outcome = run({"--min-significance", "1000000", "--out", scratch_ / "out"});
+  EXPECT_EQ(outcome.code, kExitVerdictFail) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("verdict   fail"));
+  EXPECT_EQ(result("out")["verdict"], "fail");
+}
+
+TEST_F(AProcessWithARecipe, IsChangedByOptionsAndSaysSo) {
+  ASSERT_EQ(run({"--window", "9", "--extra-peak", "parabola", "--out", scratch_ / "out"}).code, kExitOk);
+  const auto told = result("out");
+  EXPECT_EQ(told["focus"]["window_px"], 9);
+  EXPECT_EQ(told["focus"]["distance_px"], 1) << "of the recipe";
+  EXPECT_EQ(told["focus"]["extra_peaks"][0]["peak"], "parabola");
+  EXPECT_TRUE(told["recipe"]["sha256"].is_null()) << "it is not that recipe any more";
+  EXPECT_EQ(told["warnings"][0]["code"], "recipe_overridden");
+  EXPECT_THAT(told["warnings"][0]["text"].get<std::string>(), HasSubstr("--window, --extra-peak"));
+}
+
+TEST_F(AProcessWithARecipe, TakesHeightsFromTheSlicesOwnFileBeforeTheRecipes) {
+  ASSERT_EQ(run({"--out", scratch_ / "planned"}).code, kExitOk);
+  EXPECT_EQ(result("planned")["slices"]["last_um"], 100.0);
+  std::string heights;
+  for (int i = 0; i < 11; ++i) heights += std::to_string(5 * i) + "\n";
+  test::write_text(scratch_ / "in/z.txt", heights);
+  ASSERT_EQ(run({"--out", scratch_ / "recorded"}).code, kExitOk);
+  EXPECT_EQ(result("recorded")["slices"]["last_um"], 50.0);
+  ASSERT_EQ(run({"--z-step-um", "3", "--out", scratch_ / "typed"}).code, kExitOk);
+  EXPECT_EQ(result("typed")["slices"]["last_um"], 30.0);
+}
+
+TEST_F(AProcessWithARecipe, RefusesABadRecipeAndLeavesNothing) {
+  test::write_text(scratch_ / "part.json", R"({"scan": {"start_um": 0, "step_um": -1, "slices": 11}})");
+  const Outcome outcome = run({"--out", scratch_ / "out"});
+  EXPECT_EQ(outcome.code, kExitBadData);
+  EXPECT_THAT(outcome.err, HasSubstr("/scan/step_um"));
+  EXPECT_FALSE(fs::exists(scratch_ / "out"));
+  EXPECT_EQ(process({scratch_ / "in", "--recipe", scratch_ / "none.json", "--out", scratch_ / "out"}).code, kExitUsage);
 }
 
 /// What goes wrong, which file the message must name, and the exit code.

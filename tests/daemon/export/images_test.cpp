@@ -62,13 +62,16 @@ TEST(HeightTiff, SaysWhatItHolds) {
   TIFFClose(tiff);
 }
 
-TEST(MaskPng, Is255WhereValidAndTheReasonsElsewhere) {
+TEST(MaskPng, HasNoBitWhereValidAndTheReasonsElsewhere) {
   HeightMap map = test::sample_map();
+  constexpr unsigned kLastBit = 1U << 13U;
+  test::make_hole(map, 5, 0, kLastBit | mask_reason::kSaturated);
   test::make_hole(map, 1, 2, mask_reason::kLastSlice | mask_reason::kLowProminence);
   const cv::Mat image = decode(encode_mask_png(map));
-  ASSERT_EQ(image.type(), CV_8UC1);
-  EXPECT_EQ(image.at<std::uint8_t>(0, 0), 255);
-  EXPECT_EQ(image.at<std::uint8_t>(2, 1), mask_reason::kLastSlice | mask_reason::kLowProminence);
+  ASSERT_EQ(image.type(), CV_16UC1);
+  EXPECT_EQ(image.at<std::uint16_t>(0, 0), 0);
+  EXPECT_EQ(image.at<std::uint16_t>(2, 1), mask_reason::kLastSlice | mask_reason::kLowProminence);
+  EXPECT_EQ(image.at<std::uint16_t>(0, 5), kLastBit | mask_reason::kSaturated);
 }
 
 TEST(TexturePng, KeepsTheGreyLevelsOfTheCamera) {

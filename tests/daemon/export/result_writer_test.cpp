@@ -9,6 +9,7 @@
 
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/step_csv.hpp"
+#include "daemon/pipeline/evaluate.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
@@ -19,7 +20,7 @@ namespace {
 using nlohmann::json;
 using test::ScratchDir;
 
-std::string json_of(const ResultData& data) { return result_json_text(data, test::summary_of(data.map)); }
+std::string json_of(const ResultData& data) { return result_json_text(evaluate(data, test::summary_of(data.map))); }
 
 TEST(ResultWriter, WritesEveryFileAndNothingElse) {
   const ScratchDir scratch;
@@ -51,7 +52,7 @@ TEST(ResultWriter, ListsTheFilesWithTheirTrueSizes) {
     if (file["name"] == "slices/") continue;
     EXPECT_EQ(file["size_bytes"], std::filesystem::file_size(scratch / "job" / file["name"].get<std::string>()));
   }
-  EXPECT_GE(result["times"]["write_ms"].get<double>(), 0.0);
+  EXPECT_GT(result["times"]["write_ms"].get<double>(), 0.0);
 }
 
 TEST(ResultWriter, LeavesNothingWhenTheTargetExists) {
@@ -88,9 +89,14 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
   EXPECT_EQ(result["focus"]["state_bytes_per_pixel"], 24.0);
   EXPECT_EQ(result["frames"],
             json({{"expected", 4}, {"ok", 3}, {"incomplete", 1}, {"missing", 0}, {"stale", 0}, {"underrun", 0}}));
-  EXPECT_EQ(result["slices"], json({{"planned", 3}, {"measured", 2}, {"scan_mode", "step"}}));
+  EXPECT_EQ(result["slices"], json({{"planned", 3},
+                                    {"measured", 2},
+                                    {"first_um", 0.0},
+                                    {"last_um", 20.0},
+                                    {"scan_mode", "step"},
+                                    {"suspect", json::array()}}));
   EXPECT_EQ(result["steps"]["error_max_um"], 0.0625);
-  EXPECT_EQ(result["times"], json({{"prepare_ms", 100.0}, {"scan_ms", 2000.0}, {"finish_ms", 5.0}}));
+  EXPECT_EQ(result["times"], json({{"prepare_ms", 100.0}, {"scan_ms", 2000.0}, {"finish_ms", 5.0}, {"write_ms", 0.0}}));
   EXPECT_EQ(result["provenance"], json({{"recipe", "chapter"},
                                         {"recipe_sha256", "abc"},
                                         {"software_version", "1.2.3"},
@@ -117,12 +123,6 @@ TEST(ResultJson, HasNullWhereNothingIsKnown) {
   EXPECT_TRUE(result["values"]["height"]["median_um"].is_null());
   EXPECT_EQ(result["values"]["valid_fraction"], 0.0);
   EXPECT_EQ(text.find(": nan"), std::string::npos);
-}
-
-TEST(ResultJson, SurvivesTextThatIsNotUtf8) {
-  ResultData data = test::sample_result();
-  data.source = "folder \xFF\xFE";
-  EXPECT_TRUE(json::accept(json_of(data)));
 }
 
 TEST(StepCsv, HasOneRowASliceUnderNamesWithUnits) {

@@ -8,14 +8,14 @@
 #include "core/base/units.hpp"
 #include "core/surface/mask_reason.hpp"
 #include "core/surface/statistics.hpp"
-#include "daemon/export/result_data.hpp"
+#include "daemon/pipeline/result_data.hpp"
 
 namespace fvd::test {
 
 /// height[y][x] = x + 10 y um; the points of `hole` in the first row carry one reason each.
 inline HeightMap sample_map(int width = 6, int height = 3) {
   HeightMap map = empty_map(width, height, PixelFormat::kMono8);
-  map.mask = Plane<std::uint8_t>(width, height);
+  map.mask = Plane<MaskReasons>(width, height);
   map.prominence = Plane<float>(width, height, 0.9F);
   map.sigma_m = Plane<float>(width, height, 0.2e-6F);
   map.noise_grey = 1.5;
@@ -30,7 +30,7 @@ inline HeightMap sample_map(int width = 6, int height = 3) {
 }
 
 inline void make_hole(HeightMap& map, int x, int y, unsigned reasons) {
-  map.mask.at(x, y) = static_cast<std::uint8_t>(reasons);
+  map.mask.at(x, y) = static_cast<MaskReasons>(reasons);
   map.height_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
   map.sigma_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
 }
@@ -75,7 +75,7 @@ inline ResultData sample_result() {
   data.steps[1].measured = false;
   data.steps[1].triggers = 4;
   data.step_summary = {2, 0.0625, 0.0, 0.0625, 0.0, 0.0, 12.5, 12.5};
-  data.times = {100.0, 2000.0, 5.0};
+  data.times = {100.0, 2000.0, 5.0, 0.0};
   return data;
 }
 

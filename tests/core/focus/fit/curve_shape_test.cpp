@@ -78,7 +78,7 @@ struct Curves {
     std::vector<float> height_m(count);
     std::vector<float> variance_m2(count);
     std::vector<float> prominence(count);
-    std::vector<std::uint8_t> mask(count);
+    std::vector<MaskReasons> mask(count);
     const std::vector<float> nothing(count);
     fit.fit(row(), nothing.data(), nothing.data(), static_cast<int>(count),
             {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
@@ -136,7 +136,7 @@ TEST(CurveShape, TakesNoVertexToOrBeyondTheNeighbours) {
   std::vector<float> height_m(count);
   std::vector<float> variance_m2(count);
   std::vector<float> prominence(count);
-  std::vector<std::uint8_t> mask(count);
+  std::vector<MaskReasons> mask(count);
   const std::vector<float> nothing(count);
   fit.fit(curves.row(), nothing.data(), nothing.data(), static_cast<int>(count),
           {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});

@@ -130,7 +130,7 @@ void expect_as_the_reference(PixelFormat format, int bin_slices, VertexBias bias
   std::vector<float> height_m(Curves::kWidth);
   std::vector<float> variance_m2(Curves::kWidth);
   std::vector<float> prominence(Curves::kWidth);
-  std::vector<std::uint8_t> mask(Curves::kWidth);
+  std::vector<MaskReasons> mask(Curves::kWidth);
   fit.fit(curves.row(), curves.noise.data(), curves.least.data(), Curves::kWidth,
           {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
   int compared = 0;

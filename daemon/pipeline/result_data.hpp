@@ -1,6 +1,6 @@
 #pragma once
 
-/// All that goes into a result directory.
+/// What was acquired for a result: its pixels, and what was noted on the way.
 
 #include <chrono>
 #include <cstdint>
@@ -15,15 +15,9 @@
 #include "core/scan/scan_plan.hpp"
 #include "core/stage/stage_accuracy.hpp"
 #include "core/stage/step_log.hpp"
+#include "daemon/pipeline/result.hpp"
 
 namespace fvd {
-
-/// Wall-clock durations of the job's phases in ms.
-struct PhaseTimes {
-  double prepare_ms = 0.0;  ///< devices, homing, take-up
-  double scan_ms = 0.0;     ///< first move to last frame
-  double finish_ms = 0.0;   ///< last frame to height map
-};
 
 struct ResultData {
   std::string software_version;
@@ -41,6 +35,7 @@ struct ResultData {
   PeakMethod peak = PeakMethod::kParabola;
   std::optional<double> pixel_pitch_x_um;  ///< absent = unknown: files then carry pixels
   std::optional<double> pixel_pitch_y_um;
+  double min_valid_fraction = 0.0;  ///< that the recipe asks for; 0 = it does not judge
   double state_bytes_per_pixel = 0.0;
 
   HeightMap map;
@@ -54,6 +49,7 @@ struct ResultData {
   StepLog steps;
   StepSummary step_summary;
   PhaseTimes times;
+  std::vector<Warning> warnings;  ///< noted on the way; evaluation adds its own
 };
 
 }  // namespace fvd

@@ -1,4 +1,4 @@
-#include "daemon/pipeline/preview_hub.hpp"
+#include "daemon/export/preview_hub.hpp"
 
 #include <algorithm>
 #include <memory>

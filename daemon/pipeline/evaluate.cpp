@@ -1,0 +1,145 @@
+#include "daemon/pipeline/evaluate.hpp"
+
+#include <sstream>
+#include <utility>
+
+namespace fvd {
+
+namespace {
+
+constexpr const char* kValidFraction = "valid_fraction";
+/// Of all points, sharpest at one end of the scan: the surface may reach beyond it.
+constexpr double kFractionAtEndWorthTelling = 0.05;
+
+FurtherHeights further_heights(PeakMethod peak, const HeightMap& map) {
+  const auto height = summarize_heights(map.height_m, map.sigma_m, map.mask).height;
+  if (!height) return {peak, {}, {}, {}, {}};
+  return {peak, height->min_um, height->max_um, height->mean_um, height->median_um};
+}
+
+Result::Focus focus_of(const ResultData& data) {
+  Result::Focus focus;
+  focus.width_px = data.map.height_m.width();
+  focus.height_px = data.map.height_m.height();
+  focus.pixel_pitch_x_um = data.pixel_pitch_x_um;
+  focus.pixel_pitch_y_um = data.pixel_pitch_y_um;
+  focus.settings = data.focus;
+  focus.noise_grey = data.map.noise_grey;
+  if (data.map.curve_width_um > 0.0) focus.curve_width_um = data.map.curve_width_um;
+  focus.peak = data.peak;
+  for (const auto& [method, map] : data.extra_maps) focus.extra_peaks.push_back(further_heights(method, map));
+  focus.state_bytes_per_pixel = data.state_bytes_per_pixel;
+  return focus;
+}
+
+Result::Slices slices_of(const ResultData& data) {
+  Result::Slices slices;
+  slices.planned = data.slices_planned;
+  for (const StepRecord& step : data.steps) slices.measured += step.measured ? 1 : 0;
+  if (!data.steps.empty()) {
+    slices.first_um = data.steps.front().commanded_um;
+    slices.last_um = data.steps.back().commanded_um;
+  }
+  slices.mode = data.scan_mode;
+  slices.speed_um_per_s = data.speed_um_per_s;
+  slices.ramp_frames = data.ramp_frames;
+  return slices;
+}
+
+std::vector<MeasuredValue> measurements_of(const ResultData& data, const HeightSummary& summary) {
+  std::vector<MeasuredValue> all;
+  const auto add = [&](const char* name, const char* kind, const char* unit, std::optional<double> value) {
+    MeasuredValue measured;
+    measured.name = name;
+    measured.kind = kind;
+    measured.unit = unit;
+    measured.value = value;
+    measured.points = summary.valid;
+    measured.valid_fraction = summary.valid_fraction();
+    all.push_back(std::move(measured));
+  };
+  const auto height = [&summary](double HeightValues::*of) {
+    return summary.height ? std::optional(*summary.height.*of) : std::nullopt;
+  };
+  add("height_min", "height", "um", height(&HeightValues::min_um));
+  add("height_max", "height", "um", height(&HeightValues::max_um));
+  add("height_mean", "height", "um", height(&HeightValues::mean_um));
+  add("height_median", "height", "um", height(&HeightValues::median_um));
+  add("sigma_median", "sigma", "um", summary.sigma_median_um);
+  add(kValidFraction, "fraction", "1", summary.valid_fraction());
+  if (data.min_valid_fraction > 0.0) {
+    MeasuredValue& valid = all.back();
+    valid.points = summary.points;  // it rests on all of them
+    valid.valid_fraction = 1.0;
+    valid.limits = Limits{data.min_valid_fraction, std::nullopt};
+    valid.verdict = judge(valid.value, *valid.limits);
+  }
+  return all;
+}
+
+std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warnings) {
+  if (const int missing = result.slices.planned - result.slices.measured; missing > 0) {
+    warnings.push_back({"slices_missing", std::to_string(missing) + " of " + std::to_string(result.slices.planned) +
+                                              " slices are missing; heights near them are less certain"});
+  }
+  const auto at_end = [&](std::size_t points, const char* code, const char* end) {
+    const double fraction = result.points == 0 ? 0.0 : static_cast<double>(points) / static_cast<double>(result.points);
+    if (fraction <= kFractionAtEndWorthTelling) return;
+    std::ostringstream text;
+    text.precision(3);
+    text << 100.0 * fraction << " % of the points are sharpest at the " << end
+         << " slice: the surface may reach beyond the range of the scan";
+    warnings.push_back({code, text.str()});
+  };
+  at_end(result.holes.first_slice, "range_first", "first");
+  at_end(result.holes.last_slice, "range_last", "last");
+  return warnings;
+}
+
+std::optional<Verdict> verdict_of(const std::vector<MeasuredValue>& measurements) {
+  std::vector<Verdict> verdicts;
+  for (const MeasuredValue& value : measurements) {
+    if (value.verdict) verdicts.push_back(*value.verdict);
+  }
+  return joined_verdict(verdicts);
+}
+
+}  // namespace
+
+Result evaluate(const ResultData& data, const HeightSummary& summary) {
+  Result result;
+  result.job = {data.job_id, data.seq, data.part_id};
+  result.recipe = {data.recipe_id, data.recipe_sha256};
+  result.points = summary.points;
+  result.valid_points = summary.valid;
+  result.holes = summary.holes;
+  result.focus = focus_of(data);
+  result.frames = data.frames;
+  result.slices = slices_of(data);
+  result.steps = data.step_summary;
+  result.stage = {data.map.stage.applied, data.map.stage.reason, data.map.stage.rms_um,
+                  data.map.stage.standard_error_um};
+  result.times = data.times;
+  result.provenance = {data.software_version, data.simulated, data.created, data.source};
+  result.measurements = measurements_of(data, summary);
+  result.verdict = verdict_of(result.measurements);
+  result.warnings = warnings_of(result, data.warnings);
+  return result;
+}
+
+std::optional<Shortfall> shortfall(const Result& result) {
+  const MeasuredValue* const valid = result.find(kValidFraction);
+  if (valid == nullptr || !valid->limits || valid->verdict == Verdict::kPass) return std::nullopt;
+  std::ostringstream message;
+  message << "only " << 100.0 * result.valid_fraction() << " % of the points are valid, the recipe asks for "
+          << 100.0 * valid->limits->lower.value_or(0.0) << " %; ";
+  if (result.holes.first_slice + result.holes.last_slice > (result.points - result.valid_points) / 2) {
+    message << "most of the others are sharpest at an end of the scan: move or widen the range of "
+            << result.slices.first_um.value_or(0.0) << ".." << result.slices.last_um.value_or(0.0) << " um";
+    return Shortfall{ErrorCode::kFocusRange, message.str()};
+  }
+  message << "most of the others have too little texture or are saturated: check light and exposure";
+  return Shortfall{ErrorCode::kTooFewValid, message.str()};
+}
+
+}  // namespace fvd

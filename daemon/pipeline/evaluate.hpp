@@ -1,0 +1,29 @@
+#pragma once
+
+/// From what was acquired to the result with its verdict: before anything of it is written.
+
+#include <optional>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "core/surface/statistics.hpp"
+#include "daemon/pipeline/result.hpp"
+#include "daemon/pipeline/result_data.hpp"
+
+namespace fvd {
+
+/// summary: of data.map. The result lacks its files and how long they took. Heights of the further maps are counted
+/// here: 4 bytes per pixel for that time.
+[[nodiscard]] Result evaluate(const ResultData& data, const HeightSummary& summary);
+
+/// Why a job fails though it has a result.
+struct Shortfall {
+  ErrorCode code;
+  std::string message;
+};
+
+/// Fewer points are valid than the recipe asks for: kFocusRange where most of the others are sharpest at an end of the
+/// scan, else kTooFewValid; nothing where the result is as good as was asked for.
+[[nodiscard]] std::optional<Shortfall> shortfall(const Result& result);
+
+}  // namespace fvd

@@ -1,0 +1,30 @@
+#include "daemon/pipeline/reconstruct.hpp"
+
+#include <algorithm>
+
+namespace fvd {
+
+void note_recipe(const Recipe& recipe, ResultData& data) {
+  data.recipe_id = recipe.id;
+  data.recipe_sha256 = recipe.sha256;
+  data.focus = focus_settings(recipe);
+  data.peak = recipe.peak;
+  data.pixel_pitch_x_um = recipe.pixel_pitch_x_um;
+  data.pixel_pitch_y_um = recipe.pixel_pitch_y_um;
+  data.min_valid_fraction = recipe.min_valid_fraction;
+}
+
+void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
+  data.state_bytes_per_pixel = stack.state_bytes_per_pixel();
+  data.map = stack.finish(recipe.peak);
+}
+
+void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
+  for (const PeakMethod method : recipe.extra_peaks) {
+    const bool done = method == recipe.peak || std::any_of(data.extra_maps.begin(), data.extra_maps.end(),
+                                                           [method](const auto& map) { return map.first == method; });
+    if (!done) data.extra_maps.emplace_back(method, stack.finish(method));
+  }
+}
+
+}  // namespace fvd

@@ -1,0 +1,20 @@
+#pragma once
+
+/// From the slices that a stack has seen to the surfaces of a recipe: the same for a live scan and for recorded slices.
+
+#include "core/focus/streaming_focus_stack.hpp"
+#include "daemon/pipeline/result_data.hpp"
+#include "daemon/recipes/recipe.hpp"
+
+namespace fvd {
+
+/// Notes of the recipe what its result tells: id, digest, settings, scale, what it asks for.
+void note_recipe(const Recipe& recipe, ResultData& data);
+
+/// Heights by recipe.peak. Throws Error kBadSlice without slices, as the next.
+void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data);
+
+/// Heights by each of recipe.extra_peaks, once.
+void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data);
+
+}  // namespace fvd

@@ -1,0 +1,147 @@
+#pragma once
+
+/// The result of a job or of recorded slices: everything but its pixels.
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/scan/frame_ledger.hpp"
+#include "core/scan/scan_plan.hpp"
+#include "core/stage/stage_accuracy.hpp"
+#include "core/surface/statistics.hpp"
+#include "core/surface/verdict.hpp"
+
+namespace fvd {
+
+/// One value that was measured, and what was decided about it.
+struct MeasuredValue {
+  std::string name;             ///< unique in the result
+  std::string kind;             ///< what kind of quantity: "height", "sigma", "fraction"
+  std::optional<double> value;  ///< in `unit`; absent = could not be measured
+  std::string unit;
+  std::optional<double> u;           ///< standard uncertainty, in `unit`
+  std::optional<double> expanded_u;  ///< k * u
+  std::optional<double> k;           ///< coverage factor
+  std::size_t points = 0;            ///< valid points it rests on
+  double valid_fraction = 0.0;       ///< of the points it was to rest on, 0..1
+  std::optional<Limits> limits;
+  std::optional<Verdict> verdict;  ///< present where limits are
+  bool operator==(const MeasuredValue&) const = default;
+};
+
+/// What lowers trust in the result.
+struct Warning {
+  std::string code;  ///< stable, for programs
+  std::string text;  ///< for people
+  bool operator==(const Warning&) const = default;
+};
+
+/// Wall-clock durations of the job's phases in ms; NaN = unknown.
+struct PhaseTimes {
+  double prepare_ms = 0.0;  ///< devices, homing, take-up
+  double scan_ms = 0.0;     ///< first move to last frame
+  double finish_ms = 0.0;   ///< last frame to height map
+  double write_ms = 0.0;    ///< of the other files
+  bool operator==(const PhaseTimes&) const = default;
+};
+
+/// Heights of another peak method.
+struct FurtherHeights {
+  PeakMethod peak = PeakMethod::kParabola;
+  std::optional<double> min_um;  ///< absent, as the others, where every point is a hole
+  std::optional<double> max_um;
+  std::optional<double> mean_um;
+  std::optional<double> median_um;
+  bool operator==(const FurtherHeights&) const = default;
+};
+
+/// A file of the result, or all files of one of its folders.
+struct ResultFile {
+  std::string name;                    ///< a folder's ends with '/'
+  std::optional<std::uint64_t> files;  ///< number of files in a folder
+  std::uint64_t size_bytes = 0;
+  bool operator==(const ResultFile&) const = default;
+};
+
+struct Result {
+  static constexpr int kFormat = 2;  ///< of result.json and of mask.png beside it
+
+  struct Job {
+    std::string id;                   ///< empty = no job, as of recorded slices
+    std::optional<std::int64_t> seq;  ///< absent likewise
+    std::string part_id;
+    bool operator==(const Job&) const = default;
+  };
+  struct Recipe {
+    std::string id;      ///< empty = none
+    std::string sha256;  ///< of its canonical JSON; empty = none
+    bool operator==(const Recipe&) const = default;
+  };
+  struct Focus {
+    int width_px = 0;
+    int height_px = 0;
+    std::optional<double> pixel_pitch_x_um;  ///< absent = unknown
+    std::optional<double> pixel_pitch_y_um;
+    FocusSettings settings;  ///< all but stage_correction
+    double noise_grey = 0.0;
+    std::optional<double> curve_width_um;
+    PeakMethod peak = PeakMethod::kParabola;
+    std::vector<FurtherHeights> extra_peaks;
+    double state_bytes_per_pixel = 0.0;
+  };
+  struct Slices {
+    int planned = 0;
+    int measured = 0;
+    std::optional<double> first_um;  ///< commanded z of the first and the last slice that was taken
+    std::optional<double> last_um;
+    ScanMode mode = ScanMode::kStep;
+    double speed_um_per_s = 0.0;  ///< continuous
+    int ramp_frames = 0;          ///< continuous
+    std::vector<int> suspect;     ///< indices of slices that were used though something speaks against them
+    bool operator==(const Slices&) const = default;
+  };
+  /// What the focus curves say of the stage.
+  struct Stage {
+    bool corrected = false;
+    std::string reason;  ///< why not
+    double offsets_rms_um = 0.0;
+    double offset_error_um = 0.0;
+    bool operator==(const Stage&) const = default;
+  };
+  struct Provenance {
+    std::string software_version;
+    bool simulated = false;
+    std::chrono::system_clock::time_point created;  ///< to 1 ms
+    std::string source;                             ///< camera and stage, or the folder of recorded slices
+    bool operator==(const Provenance&) const = default;
+  };
+
+  Job job;
+  Recipe recipe;
+  std::optional<Verdict> verdict;  ///< absent = nothing was judged. Apart from whether the job ended well.
+  std::vector<MeasuredValue> measurements;
+  std::vector<Warning> warnings;
+  std::size_t points = 0;
+  std::size_t valid_points = 0;
+  HoleCounts holes;
+  Focus focus;
+  FrameCounts frames;
+  Slices slices;
+  StepSummary steps;
+  Stage stage;
+  PhaseTimes times;
+  Provenance provenance;
+  std::vector<ResultFile> files;  ///< but result.json itself
+
+  /// nullptr if there is none of that name.
+  [[nodiscard]] const MeasuredValue* find(std::string_view name) const noexcept;
+  [[nodiscard]] double valid_fraction() const noexcept;
+};
+
+}  // namespace fvd

@@ -1,0 +1,108 @@
+#include "daemon/pipeline/evaluate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/daemon/export/sample_result.hpp"
+
+namespace fvd {
+namespace {
+
+using testing::HasSubstr;
+
+Result evaluated(const ResultData& data) { return evaluate(data, test::summary_of(data.map)); }
+
+std::vector<std::string> codes(const Result& result) {
+  std::vector<std::string> codes;
+  for (const Warning& warning : result.warnings) codes.push_back(warning.code);
+  return codes;
+}
+
+TEST(Evaluate, MeasuresHeightsWithWhatTheyRestOn) {
+  const Result result = evaluated(test::sample_result());
+  const MeasuredValue* const median = result.find("height_median");
+  ASSERT_NE(median, nullptr);
+  EXPECT_EQ(median->kind, "height");
+  EXPECT_EQ(median->unit, "um");
+  EXPECT_NEAR(median->value.value(), 13.5, 1e-4);
+  EXPECT_EQ(median->points, 16U);
+  EXPECT_DOUBLE_EQ(median->valid_fraction, 16.0 / 18.0);
+  EXPECT_FALSE(median->limits);
+  EXPECT_FALSE(median->verdict);
+  EXPECT_EQ(result.find("no_such_value"), nullptr);
+}
+
+TEST(Evaluate, DoesNotJudgeWhereTheRecipeDoesNot) {
+  ResultData data = test::sample_result();
+  data.min_valid_fraction = 0.0;
+  const Result result = evaluated(data);
+  EXPECT_FALSE(result.verdict);
+  EXPECT_FALSE(result.find("valid_fraction")->verdict);
+  EXPECT_FALSE(shortfall(result));
+}
+
+TEST(Evaluate, JudgesTheValidFractionAgainstTheRecipe) {
+  ResultData data = test::sample_result();
+  data.min_valid_fraction = 16.0 / 18.0;
+  const Result good = evaluated(data);
+  EXPECT_EQ(good.verdict, Verdict::kPass);
+  EXPECT_EQ(good.find("valid_fraction")->limits, (Limits{16.0 / 18.0, std::nullopt}));
+  EXPECT_FALSE(shortfall(good));
+
+  data.min_valid_fraction = 0.9;
+  const Result bad = evaluated(data);
+  EXPECT_EQ(bad.verdict, Verdict::kFail);
+  EXPECT_EQ(bad.find("valid_fraction")->verdict, Verdict::kFail);
+}
+
+TEST(Evaluate, SaysThatLightOrTextureIsShort) {
+  ResultData data = test::sample_result();
+  data.min_valid_fraction = 0.9;
+  test::make_hole(data.map, 2, 0, mask_reason::kSaturated);
+  const auto found = shortfall(evaluated(data));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->code, ErrorCode::kTooFewValid);
+  EXPECT_THAT(found->message, HasSubstr("only 83.3333 % of the points are valid, the recipe asks for 90 %"));
+  EXPECT_THAT(found->message, HasSubstr("texture"));
+}
+
+TEST(Evaluate, SaysThatTheRangeIsShort) {
+  ResultData data = test::sample_result();
+  data.min_valid_fraction = 0.9;
+  for (int x = 2; x < 6; ++x) test::make_hole(data.map, x, 0, mask_reason::kLastSlice);
+  const auto found = shortfall(evaluated(data));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->code, ErrorCode::kFocusRange);
+  EXPECT_THAT(found->message, HasSubstr("the range of 0..20 um"));
+}
+
+TEST(Evaluate, WarnsOfMissingSlicesAndOfARangeThatEndsTooEarly) {
+  ResultData data = test::sample_result();
+  EXPECT_THAT(codes(evaluated(data)), testing::ElementsAre("slices_missing", "range_first"));
+  EXPECT_THAT(evaluated(data).warnings[0].text, HasSubstr("1 of 3 slices"));
+  test::make_hole(data.map, 2, 0, mask_reason::kLastSlice);
+  data.steps[1].measured = true;
+  EXPECT_THAT(codes(evaluated(data)), testing::ElementsAre("range_first", "range_last"));
+}
+
+TEST(Evaluate, HasNoWarningForAGoodScan) {
+  ResultData data = test::sample_result();
+  data.map = test::sample_map();
+  data.steps[1].measured = true;
+  EXPECT_THAT(codes(evaluated(data)), testing::IsEmpty());
+}
+
+TEST(Evaluate, KeepsNamesWithoutValuesWhereEveryPointIsAHole) {
+  ResultData data = test::sample_result();
+  data.min_valid_fraction = 0.1;
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 6; ++x) test::make_hole(data.map, x, y, mask_reason::kLowProminence);
+  }
+  const Result result = evaluated(data);
+  EXPECT_FALSE(result.find("height_mean")->value);
+  EXPECT_EQ(result.find("valid_fraction")->value, 0.0);
+  EXPECT_EQ(result.verdict, Verdict::kFail);
+}
+
+}  // namespace
+}  // namespace fvd
