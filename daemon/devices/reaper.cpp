@@ -13,24 +13,25 @@ Reaper::~Reaper() = default;
 void Reaper::enqueue(std::shared_ptr<void> device) {
   {
     const MutexLock lock(mutex_);
-    dead_.push_back(std::move(device));
+    given_up_.push_back(std::move(device));
   }
   changed_.notify_one();
 }
 
 void Reaper::run(std::stop_token stop) {
-  MutexLock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, stop, [this] {
-      mutex_.assert_held();
-      return !dead_.empty();
-    });
-    if (dead_.empty()) return;  // stop requested and nothing left
-    auto device = std::move(dead_.front());
-    dead_.pop_front();
-    lock.unlock();
+    std::shared_ptr<void> device;
+    {
+      MutexLock lock(mutex_);
+      changed_.wait(lock, stop, [this] {
+        mutex_.assert_held();
+        return !given_up_.empty();
+      });
+      if (given_up_.empty()) return;  // stop was requested and nothing is left
+      device = std::move(given_up_.front());
+      given_up_.pop_front();
+    }
     device.reset();
-    lock.lock();
   }
 }
 
