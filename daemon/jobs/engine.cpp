@@ -140,6 +140,8 @@ JobStatus Engine::job(const JobKey& key) const {
   return store_.find(key).status;
 }
 
+std::optional<JobStatus> Engine::highest(const std::string& client) const { return store_.highest(client); }
+
 JobStatus Engine::abort(const JobKey& key) {
   {
     const MutexLock lock(mutex_);

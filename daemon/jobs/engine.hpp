@@ -50,6 +50,7 @@ class Engine final : public MachineView,
 
   Started start(const JobRequest& request) override;
   [[nodiscard]] JobStatus job(const JobKey& key) const override;
+  [[nodiscard]] std::optional<JobStatus> highest(const std::string& client) const override;
   JobStatus abort(const JobKey& key) override;
   [[nodiscard]] std::string result_json(const JobKey& key) const override;
   [[nodiscard]] std::string result_dir(const JobKey& key) const override;

@@ -30,8 +30,8 @@ MeasurementObserver Engine::observer_of_current() {
 }
 
 void Engine::run_job(const PendingJob& job, std::stop_token stop) {
-  spdlog::info("job {} starts: seq {}, part '{}', recipe {}", job.status.job_id, job.status.request.seq,
-               job.status.request.part_id, job.recipe.id);
+  spdlog::info("job {} starts: client {}, seq {}, part '{}', recipe {}", job.status.job_id, job.status.request.client,
+               job.status.request.seq, job.status.request.part_id, job.recipe.id);
   preview_.clear();
   ResultData result;
   result.software_version = kVersion;
