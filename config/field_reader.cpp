@@ -197,6 +197,15 @@ void FieldReader::choices(std::string_view name, std::vector<std::string>& value
   values = std::move(read);
 }
 
+void FieldReader::any(std::string_view name, std::string& json_text, std::size_t max_bytes,
+                      std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  std::string text = found->dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > max_bytes) return refuse(name, *found, "at most " + std::to_string(max_bytes) + " bytes as JSON");
+  json_text = std::move(text);
+}
+
 bool FieldReader::object_list(std::string_view name, const ObjectList& list, IntegerRange count,
                               std::string_view /*meaning*/) {
   const json* found = find(name);

@@ -81,6 +81,9 @@ class SchemaWriter final : public Fields {
     put(name, {{"type", "array"}, {"items", {{"enum", accepted}}}, {"uniqueItems", true}, {"default", values}},
         meaning);
   }
+  void any(std::string_view name, std::string&, std::size_t, std::string_view meaning) override {
+    put(name, ordered_json::object(), meaning);
+  }
   bool object_list(std::string_view name, const ObjectList& list, IntegerRange count,
                    std::string_view meaning) override {
     const ordered_json values =

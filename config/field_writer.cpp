@@ -29,6 +29,9 @@ class ValueWriter final : public Fields {
                std::string_view) override {
     put(name, values);
   }
+  void any(std::string_view name, std::string& json_text, std::size_t, std::string_view) override {
+    if (!json_text.empty()) put(name, ordered_json::parse(json_text));
+  }
   bool object_list(std::string_view name, const ObjectList& list, IntegerRange, std::string_view) override {
     ordered_json elements = ordered_json::array();
     for (std::size_t i = 0; i < list.size; ++i) {

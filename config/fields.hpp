@@ -93,6 +93,9 @@ class Fields {
   virtual void choices(std::string_view name, std::vector<std::string>& values,
                        const std::vector<std::string>& accepted, std::string_view meaning) = 0;
 
+  /// Any JSON value of at most max_bytes as text, kept as its text; empty = none.
+  virtual void any(std::string_view name, std::string& json_text, std::size_t max_bytes, std::string_view meaning) = 0;
+
   /// True where the elements made by describe_new replace the structure's. list() is the typed form.
   [[nodiscard]] virtual bool object_list(std::string_view name, const ObjectList& list, IntegerRange count,
                                          std::string_view meaning) = 0;

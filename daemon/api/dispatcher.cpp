@@ -6,8 +6,8 @@
 #include <spdlog/spdlog.h>
 
 #include "config/strict_json.hpp"
+#include "daemon/api/access.hpp"
 #include "daemon/api/json_shapes.hpp"
-#include "daemon/api/methods.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/rpc_errors.hpp"
 
@@ -78,29 +78,43 @@ ordered_json refuse_batch(const json& batch, const std::string& why) {
   return replies;
 }
 
-}  // namespace
-
-Dispatcher::Dispatcher(const Services& services) : services_(services) {
-  add_system_methods(methods_, services, std::chrono::steady_clock::now());
-  add_recipe_methods(methods_, services);
-  add_job_methods(methods_, services);
-  add_result_methods(methods_, services);
-  add_device_methods(methods_, services);
+/// Throws ProtocolError unless the caller may call the method in this form.
+void require_callable(const std::string& name, const MethodDescription& about, const Caller& caller,
+                      bool is_notification) {
+  if (!may_call(caller, about)) {
+    spdlog::warn("{} was refused to {}", name, text_of(caller));
+    throw ProtocolError{kNotAllowed,
+                        name + " may not be called by the role " + std::string(role_name(caller.role)),
+                        {{"error", kNotAllowedName}, {"retry", false}}};
+  }
+  if (about.needs_id && is_notification) {
+    spdlog::warn("a {} without an id was refused to {}: it could not be told what became of it", name, text_of(caller));
+    throw ProtocolError{json_rpc::kInvalidRequest, name + " needs an id"};
+  }
 }
 
-Handled Dispatcher::handle(std::string_view line) const { return handle_line(line, true).value_or(Handled{}); }
+}  // namespace
 
-std::optional<Handled> Dispatcher::try_handle(std::string_view line) const { return handle_line(line, false); }
+Dispatcher::Dispatcher(MethodTable methods, const Services& services)
+    : services_(services), methods_(std::move(methods)) {}
 
-std::optional<Handled> Dispatcher::handle_line(std::string_view line, bool may_block) const {
+Handled Dispatcher::handle(std::string_view line, const Caller& caller) const {
+  return handle_line(line, caller, true).value_or(Handled{});
+}
+
+std::optional<Handled> Dispatcher::try_handle(std::string_view line, const Caller& caller) const {
+  return handle_line(line, caller, false);
+}
+
+std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Caller& caller, bool may_block) const {
   Problems problems;
   const auto document = parse_strict_json(line, problems, JsonComments::kRefused);
   if (!document) {
     const std::string why = "parse error: " + shortened_parse_error(problems.front().message);
     return Handled{reply_line(failure_reply(nullptr, json_rpc::kParseError, why)), std::nullopt, true};
   }
-  Answer answer =
-      document->is_array() ? handle_batch(*document, may_block) : handle_request(*document, {may_block, false});
+  Outcome answer = document->is_array() ? handle_batch(*document, caller, may_block)
+                                        : handle_request(*document, caller, {may_block, false});
   if (answer.would_block) return std::nullopt;
   Handled handled;
   if (answer.reply) handled.reply = reply_line(*answer.reply);
@@ -108,7 +122,7 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, bool may_b
   return handled;
 }
 
-Dispatcher::Answer Dispatcher::handle_batch(const json& batch, bool may_block) const {
+Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& caller, bool may_block) const {
   if (batch.empty()) return {failure_reply(nullptr, json_rpc::kInvalidRequest, "an empty batch")};
   ordered_json replies = ordered_json::array();
   if (const auto fault = fault_of_batch(batch)) {
@@ -116,7 +130,7 @@ Dispatcher::Answer Dispatcher::handle_batch(const json& batch, bool may_block) c
   } else {
     for (const json& request : batch) {
       // What was answered so far came from the snapshot: it can be answered again.
-      Answer answer = handle_request(request, {may_block, true});
+      Outcome answer = handle_request(request, caller, {may_block, true});
       if (answer.would_block) return answer;
       if (answer.reply) replies.push_back(std::move(*answer.reply));
     }
@@ -125,15 +139,15 @@ Dispatcher::Answer Dispatcher::handle_batch(const json& batch, bool may_block) c
   return {std::move(replies)};
 }
 
-Dispatcher::Answer Dispatcher::handle_request(const json& request, Mode mode) const {
+Dispatcher::Outcome Dispatcher::handle_request(const json& request, const Caller& caller, Mode mode) const {
   const json id = usable_id(request);
   if (const auto fault = fault_of(request)) return {failure_reply(id, json_rpc::kInvalidRequest, *fault)};
   const bool is_notification = !request.contains("id");
-  Answer answer;
+  Outcome answer;
   try {
-    answer = run_method(request, id, mode);
+    answer = run_method(request, id, caller, mode);
   } catch (const ProtocolError& error) {
-    answer.reply = failure_reply(id, error.code, error.message);
+    answer.reply = failure_reply(id, error.code, error.message, error.data);
   } catch (const Error& error) {
     answer.reply = failure_reply(id, error.code(), error.what(), scan_state_name(services_.machine.snapshot()->state));
   } catch (const std::exception& error) {
@@ -144,7 +158,7 @@ Dispatcher::Answer Dispatcher::handle_request(const json& request, Mode mode) co
   return answer;
 }
 
-Dispatcher::Answer Dispatcher::run_method(const json& request, const json& id, Mode mode) const {
+Dispatcher::Outcome Dispatcher::run_method(const json& request, const json& id, Caller caller, Mode mode) const {
   const auto& name = request["method"].get_ref<const std::string&>();
   const auto found = methods_.find(name);
   if (found == methods_.end()) {
@@ -152,19 +166,18 @@ Dispatcher::Answer Dispatcher::run_method(const json& request, const json& id, M
   }
   const Method& method = found->second;
   const bool is_notification = !request.contains("id");
-  if (method.needs_id && is_notification) {
-    spdlog::warn("a {} without an id was refused: its caller could not be told what became of it", name);
-    throw ProtocolError{json_rpc::kInvalidRequest, name + " needs an id"};
-  }
+  require_callable(name, method.about, caller, is_notification);
   const auto given = request.find("params");
-  const json params = checked_params(name, method.params, given == request.end() ? json(nullptr) : *given);
-  const Call call{params, !mode.in_batch && !is_notification};
-  std::optional<Reply> reply;
-  if (method.peek) reply = method.peek(call);
-  if (!reply && !mode.may_block) return {.would_block = true};
-  if (!reply) reply = method.run(call);
-  if (auto* deferred = std::get_if<Deferred>(&*reply)) return {.waiting = WaitingRequest{id, std::move(*deferred)}};
-  return {success_reply(id, std::get<ordered_json>(std::move(*reply)))};
+  const json params = checked_params(name, method.about.params, given == request.end() ? json(nullptr) : *given);
+  if (const auto client = params.find("client"); client != params.end()) caller.name = client->get<std::string>();
+  const Call call{caller, name, params, !mode.in_batch && !is_notification};
+  std::optional<Answer> answer;
+  if (method.peek) answer = method.peek(call);
+  if (!answer && !mode.may_block) return {.would_block = true};
+  if (!answer && method.about.needs_id) spdlog::info("{} for {}", name, text_of(caller));
+  if (!answer) answer = method.run(call);
+  if (auto* deferred = std::get_if<Deferred>(&*answer)) return {.waiting = WaitingRequest{id, std::move(*deferred)}};
+  return {success_reply(id, std::get<Reply>(std::move(*answer)))};
 }
 
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {

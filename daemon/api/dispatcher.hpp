@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/api/method.hpp"
+#include "daemon/jobs/services.hpp"
 
 namespace fvd {
 
@@ -33,15 +34,17 @@ class Dispatcher {
   static constexpr std::size_t kMaxLineBytes = 65536;
   static constexpr std::size_t kMaxBatch = 16;
 
-  explicit Dispatcher(const Services& services);
-  Dispatcher(const Dispatcher&) = delete;  // a method refers to the table
-  Dispatcher& operator=(const Dispatcher&) = delete;
+  /// services: where the state of the machine and of jobs that are waited for comes from.
+  Dispatcher(MethodTable methods, const Services& services);
 
   /// One request or batch. Never throws. Replies are ASCII. May block for files and the database.
-  [[nodiscard]] Handled handle(std::string_view line) const;
+  [[nodiscard]] Handled handle(std::string_view line, const Caller& caller) const;
   /// The same for what needs neither file nor database; never blocks. Nothing, and nothing executed, if handle() has to
   /// take the line.
-  [[nodiscard]] std::optional<Handled> try_handle(std::string_view line) const;
+  [[nodiscard]] std::optional<Handled> try_handle(std::string_view line, const Caller& caller) const;
+
+  /// Every method with its description.
+  [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
 
   /// The answer to a waiting request if what it waits for has come, or, with `timed_out`, in any case. May block.
   [[nodiscard]] std::optional<std::string> resume(const WaitingRequest& waiting, bool timed_out) const;
@@ -67,19 +70,19 @@ class Dispatcher {
     bool in_batch = false;
   };
   /// What became of one request.
-  struct Answer {
+  struct Outcome {
     std::optional<OrderedJson> reply{};
     std::optional<WaitingRequest> waiting{};
     bool would_block = false;  ///< nothing was done
   };
 
-  [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, bool may_block) const;
-  [[nodiscard]] Answer handle_request(const Json& request, Mode mode) const;
-  [[nodiscard]] Answer handle_batch(const Json& batch, bool may_block) const;
-  [[nodiscard]] Answer run_method(const Json& request, const Json& id, Mode mode) const;
+  [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;
+  [[nodiscard]] Outcome handle_request(const Json& request, const Caller& caller, Mode mode) const;
+  [[nodiscard]] Outcome handle_batch(const Json& batch, const Caller& caller, bool may_block) const;
+  [[nodiscard]] Outcome run_method(const Json& request, const Json& id, Caller caller, Mode mode) const;
 
   Services services_;
-  MethodTable methods_;  // not changed after construction
+  const MethodTable methods_;
 };
 
 }  // namespace fvd

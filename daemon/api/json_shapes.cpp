@@ -1,8 +1,10 @@
 #include "daemon/api/json_shapes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "daemon/api/result_fields.hpp"
 #include "daemon/api/rpc_errors.hpp"
 
 namespace fvd {
@@ -11,10 +13,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kLongestMessage = 200;
+constexpr std::size_t kLongestMessage_bytes = 200;
+/// What a full result repeats of result.json.
+constexpr std::array kFullGroups{"values", "focus", "frames", "slices", "steps", "times"};
 
 std::string shortened(const std::string& text) {
-  return text.size() <= kLongestMessage ? text : text.substr(0, kLongestMessage - 3) + "...";
+  return text.size() <= kLongestMessage_bytes ? text : text.substr(0, kLongestMessage_bytes - 3) + "...";
 }
 
 int code_of(const std::optional<ErrorCode>& error) { return error ? rpc_error(*error).code : 0; }
@@ -25,11 +29,34 @@ ordered_json error_of(const std::optional<ErrorCode>& error) {
 
 }  // namespace
 
+void describe_job_status(Fields& fields) {
+  const ResultFields result(fields);
+  result.text("job_id", "the job's id");
+  result.integer("seq", "its client's number");
+  result.text("client", "whose seq");
+  result.text("part_id", "as given");
+  result.text("recipe", "recipe id");
+  result.text("state", "processing, completed, aborted, failed");
+  result.text("phase", "preparing, acquiring, computing, storing; empty when ended");
+  result.boolean("done", "the job has ended");
+  result.boolean("acquired", "the part may be moved");
+  result.number("progress", "0..1, of the slices");
+  result.integer("slices_done", "so far");
+  result.integer("slices_planned", "of the recipe");
+  result.integer("frames_expected", "so far, repeated ones too");
+  result.integer("frames_ok", "so far");
+  result.boolean("acknowledged", "by result.ack");
+  result.integer("error_code", "why it failed or was aborted; 0 = no error");
+  result.text("error", "the error's name; empty = no error");
+  result.text("error_message", "for people, at most 200 bytes");
+}
+
 ordered_json job_status_json(const JobStatus& job) {
   const bool done = job.state != JobState::kProcessing;
   const double progress = job.slices_planned > 0 ? static_cast<double>(job.slices_done) / job.slices_planned : 0.0;
   return {{"job_id", job.job_id},
           {"seq", job.request.seq},
+          {"client", job.request.client},
           {"part_id", job.request.part_id},
           {"recipe", job.request.recipe},
           {"state", job_state_name(job.state)},
@@ -47,6 +74,28 @@ ordered_json job_status_json(const JobStatus& job) {
           {"error_message", shortened(job.error_message)}};
 }
 
+void describe_machine_status(Fields& fields) {
+  const ResultFields result(fields);
+  result.text("state", "preoperational, initialized, ready, executing, error, halted");
+  result.boolean("ready", "a job would be accepted");
+  result.boolean("busy", "a job runs, or a command that moves the stage");
+  result.boolean("acquiring", "the part must not move");
+  result.boolean("part_release", "the part may be taken: standstill was measured");
+  result.boolean("result_valid", "the latest job is completed and not acknowledged");
+  result.integer("results_waiting", "ended jobs that are not acknowledged");
+  result.integer("error_code", "why the state is error; 0 = no error");
+  result.text("error", "the error's name; empty = no error");
+  result.text("error_message", "for people, at most 200 bytes");
+  result.integer("epoch", "counts the daemon's starts");
+  result.integer("hb", "heartbeat: counts up once a second");
+  result.integer("seq", "of the running or latest job; 0 = none");
+  result.text("client", "whose seq; empty = no job");
+  result.text("job_id", "of the running or latest job; empty = none");
+  result.text("recipe", "the prepared recipe; empty = none");
+  result.boolean("simulated", "a device is simulated");
+  result.text("mode", "automatic");
+}
+
 ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) {
   return {{"state", scan_state_name(machine.state)},
           {"ready", machine.signals.ready},
@@ -61,15 +110,50 @@ ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) 
           {"epoch", machine.epoch},
           {"hb", hb},
           {"seq", machine.job ? machine.job->request.seq : 0},
+          {"client", machine.job ? machine.job->request.client : ""},
           {"job_id", machine.job ? machine.job->job_id : ""},
           {"recipe", machine.recipe},
           {"simulated", machine.simulated},
           {"mode", "automatic"}};
 }
 
+namespace {
+
+void describe_compact(Fields& fields, Presence presence) {
+  const ResultFields result(fields);
+  result.text("job_id", "the job's id");
+  result.integer("seq", "its client's number", presence);
+  result.text("client", "whose seq", presence);
+  result.text("part_id", "as given", presence);
+  result.text("state", "completed, aborted, failed; processing while there is no result", presence);
+  result.integer("error_code", "0 = no error", presence);
+  result.number("valid_fraction", "of the points", Presence::kSometimes);
+  result.number("height_min_um", "of the valid points", Presence::kSometimes);
+  result.number("height_max_um", "of the valid points", Presence::kSometimes);
+  result.number("height_mean_um", "of the valid points", Presence::kSometimes);
+  result.integer("frames_expected", "compact: repeated ones too", Presence::kSometimes);
+  result.integer("frames_ok", "compact", Presence::kSometimes);
+  result.boolean("simulated", "a device was simulated", Presence::kSometimes);
+}
+
+}  // namespace
+
+void describe_next_result(Fields& fields) { describe_compact(fields, Presence::kSometimes); }
+
+void describe_result(Fields& fields) {
+  describe_compact(fields, Presence::kAlways);
+  const ResultFields result(fields);
+  result.text("recipe", "full: recipe id", Presence::kSometimes);
+  result.text("error", "full: the error's name", Presence::kSometimes);
+  result.text("error_message", "full: for people", Presence::kSometimes);
+  result.text("directory", "full: where the files are", Presence::kSometimes);
+  for (const char* group : kFullGroups) result.any(group, "full: as in result.json", Presence::kSometimes);
+}
+
 ordered_json compact_result_json(const JobStatus& job, const std::string& result_text) {
   ordered_json json{{"job_id", job.job_id},
                     {"seq", job.request.seq},
+                    {"client", job.request.client},
                     {"part_id", job.request.part_id},
                     {"state", job_state_name(job.state)},
                     {"error_code", code_of(job.error)}};
@@ -89,6 +173,7 @@ ordered_json compact_result_json(const JobStatus& job, const std::string& result
 ordered_json full_result_json(const JobStatus& job, const std::string& result_text, const std::string& directory) {
   ordered_json json{{"job_id", job.job_id},
                     {"seq", job.request.seq},
+                    {"client", job.request.client},
                     {"part_id", job.request.part_id},
                     {"recipe", job.request.recipe},
                     {"state", job_state_name(job.state)},
@@ -98,12 +183,29 @@ ordered_json full_result_json(const JobStatus& job, const std::string& result_te
                     {"directory", directory}};
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);
-  for (const char* key : {"values", "focus", "frames", "slices", "steps", "times"}) json[key] = result.at(key);
+  for (const char* key : kFullGroups) json[key] = result.at(key);
   // Per estimator figures and the list of files stand in the directory's result.json.
   json["focus"].erase("extra_peaks");
   json["slices"].erase("suspect");
   json["simulated"] = result.at("provenance").at("simulated");
   return json;
+}
+
+void describe_stage_history(Fields& fields) {
+  const ResultFields result(fields);
+  result.integer("scans", "step scans so far");
+  result.integer("steps", "of all scans");
+  result.integer("lost_steps", "ended beside their target");
+  result.boolean("observable", "the stage measures its position itself");
+  for (const char* name : {"error_mean_um", "error_sd_um", "error_max_um", "error_p95_um"}) {
+    result.any(name, "measured minus commanded position; null = not observable");
+  }
+  for (const char* name : {"increment_error_mean_um", "increment_error_sd_um", "increment_error_max_um"}) {
+    result.any(name, "measured minus commanded distance of neighbours; null = not observable");
+  }
+  for (const char* name : {"move_p50_ms", "move_p95_ms", "move_max_ms"}) {
+    result.any(name, "time of a step; null = none yet");
+  }
 }
 
 nlohmann::ordered_json stage_history_json(const std::optional<StepHistorySummary>& history) {

@@ -1,83 +1,66 @@
 #pragma once
 
-/// What a method of the API is: its name, its parameters, and how it is answered.
+/// What a method of the API is: its description, and how it is answered.
 
-#include <chrono>
-#include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
-#include <variant>
+#include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "daemon/jobs/services.hpp"
+#include "core/base/error.hpp"
+#include "daemon/api/call.hpp"
+#include "daemon/api/params.hpp"
 
 namespace fvd {
 
-/// Integers up to here survive a client that keeps numbers as doubles.
-inline constexpr std::int64_t kLargestExactInteger = (std::int64_t{1} << 53U) - 1;
-
-/// The value of a whole number within +-kLargestExactInteger, written as 4711 or as 4711.0; nothing for all else.
-[[nodiscard]] std::optional<std::int64_t> exact_integer(const nlohmann::json& value);
-
-enum class ParamType { kText, kInteger, kNumber, kAny };
-
-/// Both ends belong to it.
-struct ParamRange {
-  double least = 0.0;
-  double most = 0.0;
+/// From it follow the check of the parameters, rpc.discover and the tables of daemon/README.md.
+struct MethodDescription {
+  std::string summary;
+  DescribeFields params;                          ///< on values of its own, at their defaults
+  DescribeFields result;                          ///< likewise; every key is required unless it is optional
+  std::vector<ErrorCode> errors{};                ///< beside those of JSON-RPC and kInternal
+  std::vector<Role> callers = {Role::kOperator};  ///< who may call it
+  bool moves_stage = false;                       ///< the part is not free while it runs
+  bool may_wait = false;                          ///< the reply may come later; in a batch it comes at once or not
+  bool needs_id = false;                          ///< refused as a notification: somebody has to know what became of it
 };
-
-struct Param {
-  std::string name;
-  ParamType type = ParamType::kText;
-  bool required = false;
-  std::string meaning;
-  std::optional<ParamRange> range{};  ///< of integers and numbers
-};
-
-/// What a method is given.
-struct Call {
-  const nlohmann::json& params;  ///< checked, by name; integers as integers
-  bool may_wait = false;         ///< the reply may come later: not in a batch
-};
-
-/// The reply comes when a job has got so far (until_acquired, else until it has ended).
-struct JobWait {
-  std::string job_id;
-  bool until_acquired = false;
-};
-
-/// The reply comes later.
-struct Deferred {
-  std::variant<JobWait, std::shared_ptr<DeviceTask>> awaited;
-  std::chrono::milliseconds timeout{0};
-};
-
-using Reply = std::variant<nlohmann::ordered_json, Deferred>;
 
 /// context: peek and run on any thread.
 struct Method {
-  std::string summary;
-  std::vector<Param> params;
+  MethodDescription about;
   /// Answers from the machine's snapshot alone: no file, no database, no lock that is held across either. Nothing if
   /// that does not suffice and run has to answer.
-  std::function<std::optional<Reply>(const Call&)> peek{};
+  std::function<std::optional<Answer>(const Call&)> peek{};
   /// May block for files, the database and the devices' state. Throws Error, ProtocolError.
-  std::function<Reply(const Call&)> run{};
-  bool needs_id = false;  ///< refused as a notification: it moves something, and somebody has to know
+  std::function<Answer(const Call&)> run{};
 };
 
 using MethodTable = std::map<std::string, Method>;
 
-/// The parameters by name, every one known and of its type and range, the required ones there; texts have at most 64
-/// bytes. given: an object, a list in the order of the method's parameters, or null. Throws ProtocolError that names
-/// the parameter and its range.
-[[nodiscard]] nlohmann::json checked_params(const std::string& method_name, const std::vector<Param>& known,
-                                            const nlohmann::json& given);
+/// For methods without parameters.
+struct NoParams {
+  void describe(Fields& /*fields*/) {}
+};
+
+/// The description of a structure of parameters, which describes itself: void Params::describe(Fields&).
+template <typename Params>
+[[nodiscard]] DescribeFields described() {
+  return [](Fields& fields) { Params{}.describe(fields); };
+}
+
+template <typename Params>
+[[nodiscard]] Params params_of(const Call& call) {
+  Params params;
+  read_params(call.params, [&params](Fields& fields) { params.describe(fields); });
+  return params;
+}
+
+/// Has a function of a structure of parameters answer a call: handler(call, params).
+template <typename Params, typename Handler>
+[[nodiscard]] auto with(Handler handler) {
+  return [handler = std::move(handler)](const Call& call) { return handler(call, params_of<Params>(call)); };
+}
 
 }  // namespace fvd

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "daemon/api/method.hpp"
+#include "daemon/api/params.hpp"
 #include "daemon/api/rpc_errors.hpp"
 
 namespace fvd {

@@ -14,6 +14,7 @@ namespace fvd {
 struct ProtocolError {
   int code = 0;
   std::string message;
+  nlohmann::ordered_json data = nullptr;
 };
 
 /// Text from outside appears in no reply beyond this size.

@@ -16,6 +16,10 @@ inline constexpr int kInvalidParams = -32602;
 inline constexpr int kInternalError = -32603;
 }  // namespace json_rpc
 
+/// A caller whose role may not call the method.
+inline constexpr int kNotAllowed = 1004;
+inline constexpr const char* kNotAllowedName = "not_allowed";
+
 struct RpcError {
   int code = 0;
   bool retry = false;  ///< the same request may succeed later without anybody doing anything

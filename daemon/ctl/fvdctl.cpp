@@ -26,6 +26,7 @@ struct Arguments {
   std::string runtime_dir = "/run/fvd";
   std::string job;
   std::string seq = "auto";
+  std::string client = kClientName;
   StartOptions start;
   bool watch = false;
   std::string format = "compact";
@@ -68,7 +69,7 @@ int start(Arguments& arguments, const Terminal& terminal) {
     arguments.start.seq = std::stoll(arguments.seq);  // digits only, checked by the parser
   }
   RpcClient client = connect(arguments);
-  const Json job = start_job(client, arguments.start);
+  const Json job = start_job(client, arguments.start, arguments.client);
   print(terminal.out, job);
   if (!arguments.watch) return kExitOk;
   return report_end(watch_job(client, job_key(client, job.value("job_id", "")), terminal.out, terminal.out_is_terminal),
@@ -77,20 +78,21 @@ int start(Arguments& arguments, const Terminal& terminal) {
 
 int wait(const Arguments& arguments, const Terminal& terminal) {
   RpcClient client = connect(arguments);
-  const Json status = wait_for_job(client, job_key(client, arguments.job));
+  const Json status = wait_for_job(client, job_key(client, arguments.job, arguments.client));
   print(terminal.out, status);
   return report_end(status, terminal);
 }
 
 int watch(const Arguments& arguments, const Terminal& terminal) {
   RpcClient client = connect(arguments);
-  return report_end(watch_job(client, job_key(client, arguments.job), terminal.out, terminal.out_is_terminal),
-                    terminal);
+  return report_end(
+      watch_job(client, job_key(client, arguments.job, arguments.client), terminal.out, terminal.out_is_terminal),
+      terminal);
 }
 
 int result(const Arguments& arguments, const Terminal& terminal) {
   RpcClient client = connect(arguments);
-  Json params = job_key(client, arguments.job);
+  Json params = job_key(client, arguments.job, arguments.client);
   params["format"] = arguments.format;
   print(terminal.out, client.call("result.get", params));
   return kExitOk;
@@ -172,12 +174,12 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
     sub->callback([&chosen, run = std::move(run)] { chosen = run; });
     return sub;
   };
-  const char* const job_help = "job id, or sequence number (digits); default: the latest job";
+  const char* const job_help = "job id, or sequence number (digits) of --client; default: the latest job";
 
   command("state", "print the state of the machine", [&] { return state(a, terminal); });
 
   CLI::App* sub = command("start", "start a job", [&] { return start(a, terminal); });
-  sub->add_option("--seq", a.seq, "sequence number, the same number is the same job; auto: one after the latest")
+  sub->add_option("--seq", a.seq, "sequence number, the same number is the same job; auto: one after the highest")
       ->check(CLI::Validator(check_seq, "N|auto"))
       ->capture_default_str();
   sub->add_option("--part", a.start.part_id, "part id")->required();
@@ -223,6 +225,8 @@ int run(std::vector<std::string> arguments, const Terminal& terminal) {
   CLI::Option* address = app.add_option("--address", values.address, "host:port of the daemon");
   app.add_option("--runtime-dir", values.runtime_dir, "where the daemon's rpc.json tells its port")
       ->excludes(address)
+      ->capture_default_str();
+  app.add_option("--client", values.client, "whose sequence numbers are meant; a plain PLC is plc")
       ->capture_default_str();
   add_commands(app, values, terminal, chosen);
   try {

@@ -40,16 +40,6 @@ std::string progress_text(const Json& status) {
   return text;
 }
 
-/// The sequence number that the daemon last saw; 0 if none.
-std::int64_t latest_seq(const Json& state) {
-  for (const Json& place : {state, state.value("job", Json::object())}) {
-    if (place.is_object() && place.contains("seq") && place["seq"].is_number_integer()) {
-      return place["seq"].get<std::int64_t>();
-    }
-  }
-  return 0;
-}
-
 std::string latest_job_id(const Json& state) {
   for (const Json& place : {state, state.value("job", Json::object())}) {
     if (place.is_object() && place.contains("job_id") && place["job_id"].is_string()) {
@@ -61,7 +51,7 @@ std::string latest_job_id(const Json& state) {
 
 }  // namespace
 
-Json job_key(RpcClient& client, const std::string& job) {
+Json job_key(RpcClient& client, const std::string& job, const std::string& owner) {
   if (job.empty()) {
     const std::string id = latest_job_id(client.call("system.state"));
     if (id.empty()) throw Error(ErrorCode::kUnknownJob, "the daemon has run no job yet");
@@ -69,12 +59,13 @@ Json job_key(RpcClient& client, const std::string& job) {
   }
   constexpr std::size_t kMaxSeqDigits = 16;  // of 2^53 - 1
   const bool number = job.size() <= kMaxSeqDigits && job.find_first_not_of("0123456789") == std::string::npos;
-  return number ? Json{{"seq", std::stoll(job)}} : Json{{"job_id", job}};
+  return number ? Json{{"seq", std::stoll(job)}, {"client", owner}} : Json{{"job_id", job}};
 }
 
-Json start_job(RpcClient& client, const StartOptions& options) {
-  const std::int64_t seq = options.seq ? *options.seq : latest_seq(client.call("system.state")) + 1;
-  Json params{{"seq", seq}, {"part_id", options.part_id}};
+Json start_job(RpcClient& client, const StartOptions& options, const std::string& owner) {
+  std::int64_t seq = options.seq.value_or(0);
+  if (!options.seq) seq = client.call("job.latest", {{"client", owner}}).value("seq", std::int64_t{0}) + 1;
+  Json params{{"seq", seq}, {"part_id", options.part_id}, {"client", owner}};
   if (!options.recipe.empty()) params["recipe"] = options.recipe;
   return client.call("job.start", params);
 }

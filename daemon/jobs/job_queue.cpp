@@ -111,6 +111,8 @@ JobStatus JobQueue::job(const JobKey& key) const {
   return deps_.store.find(key).status;
 }
 
+std::optional<JobStatus> JobQueue::highest(const std::string& client) const { return deps_.store.highest(client); }
+
 JobStatus JobQueue::abort(const JobKey& key) {
   const auto job = on_board(key);
   if (!job) return deps_.store.find(key).status;

@@ -39,6 +39,7 @@ class JobQueue final : public JobService, public ResultService {
 
   Started start(const JobRequest& request) override;
   [[nodiscard]] JobStatus job(const JobKey& key) const override;
+  [[nodiscard]] std::optional<JobStatus> highest(const std::string& client) const override;
   JobStatus abort(const JobKey& key) override;
   void prepare(const std::string& recipe_id) override;
 

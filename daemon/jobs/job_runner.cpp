@@ -36,8 +36,8 @@ void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
                      .message = "the job was aborted before it began",
                      .used_devices = false});
   }
-  spdlog::info("job {} starts: seq {}, part '{}', recipe {}", job.status.job_id, job.status.request.seq,
-               job.status.request.part_id, job.recipe.id);
+  spdlog::info("job {} starts: client {}, seq {}, part '{}', recipe {}", job.status.job_id, job.status.request.client,
+               job.status.request.seq, job.status.request.part_id, job.recipe.id);
   deps_.preview.clear();
   if (const auto failure = deps_.hub.open()) {
     return end(job, {.error = failure->code, .message = failure->message, .failure = failure});

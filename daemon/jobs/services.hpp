@@ -61,6 +61,9 @@ class JobService {
   /// Throws Error kUnknownJob.
   [[nodiscard]] virtual JobStatus job(const JobKey& key) const = 0;
 
+  /// The client's job with the highest sequence number.
+  [[nodiscard]] virtual std::optional<JobStatus> highest(const std::string& client) const = 0;
+
   /// Asks the job to end; returns at once with its status. No effect on a job that has ended. Throws Error kUnknownJob.
   virtual JobStatus abort(const JobKey& key) = 0;
 

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <deque>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <set>
@@ -19,11 +16,11 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "daemon/api/dispatcher.hpp"
+#include "daemon/api/methods/methods.hpp"
 #include "daemon/transport/foreign_protocol.hpp"
 #include "daemon/transport/port_file.hpp"
 #include "daemon/transport/tcp_options.hpp"
@@ -41,12 +38,11 @@ namespace {
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
 /// Whoever sends so many lines that are no JSON speaks another language; what it sends next may be JSON by accident.
 constexpr int kMaxParseErrorsInARow = 3;
-/// A refused client has so long to read why.
-constexpr std::chrono::seconds kFarewell{1};
-
-/// Replies that are owed when the server ends are sent within this.
-constexpr std::chrono::milliseconds kLastReplies{500};
-constexpr std::chrono::milliseconds kLeavePoll{5};
+/// Time that a refused client has to read why.
+constexpr std::chrono::seconds kRefusalGrace{1};
+/// Time for the replies that are owed when the server ends.
+constexpr std::chrono::milliseconds kShutdownGrace{500};
+constexpr std::chrono::milliseconds kShutdownPollPeriod{5};
 
 }  // namespace
 
@@ -56,10 +52,10 @@ struct RpcServer::Impl {
   Impl(const RpcConfig& c, const std::filesystem::path& runtime_dir, const Services& s)
       : config(c),
         services(s),
-        dispatcher(s),
+        dispatcher(all_methods(s), s),
         acceptor(context),
         accept_pause(context),
-        farewell_timer(context),
+        shutdown_timer(context),
         port_file(runtime_dir / "rpc.json"),
         worker("fvd-rpc-work") {
     listen();
@@ -71,7 +67,7 @@ struct RpcServer::Impl {
 
   ~Impl() {
     services.machine.on_change({});
-    asio::post(context, [this] { take_leave(std::chrono::steady_clock::now() + kLastReplies); });
+    asio::post(context, [this] { shut_down(std::chrono::steady_clock::now() + kShutdownGrace); });
     thread.join();
     std::error_code ignored;
     std::filesystem::remove(port_file, ignored);
@@ -96,7 +92,7 @@ struct RpcServer::Impl {
 
   void accept();
   /// Answers what has come by now, then ends the network thread; at the deadline at the latest.
-  void take_leave(std::chrono::steady_clock::time_point deadline);
+  void shut_down(std::chrono::steady_clock::time_point deadline);
   [[nodiscard]] bool has_room();
   void resume_all();
 
@@ -106,10 +102,11 @@ struct RpcServer::Impl {
   asio::io_context context;
   tcp::acceptor acceptor;
   asio::steady_timer accept_pause;
-  asio::steady_timer farewell_timer;
+  asio::steady_timer shutdown_timer;
   std::filesystem::path port_file;
   int port = 0;
   std::set<std::shared_ptr<Session>> sessions;  // network thread only
+  std::uint64_t connections = 0;                // since the start; network thread only
   Worker worker;                                // after what its tasks refer to
   std::jthread thread;                          // last
 };
@@ -118,7 +115,11 @@ struct RpcServer::Impl {
 class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
  public:
   Session(Impl& server, tcp::socket socket)
-      : server_(server), socket_(std::move(socket)), idle_(server.context), wait_(server.context) {}
+      : server_(server),
+        socket_(std::move(socket)),
+        caller_{++server.connections, peer_of(socket_.native_handle())},
+        idle_(server.context),
+        wait_(server.context) {}
 
   void start() {
     tune(socket_.native_handle());
@@ -217,10 +218,11 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
       if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
       if (begins_foreign_protocol(line)) return refuse_with(Dispatcher::foreign_protocol());
       watch_idle();
-      if (auto handled = server_.dispatcher.try_handle(line)) {
+      if (auto handled = server_.dispatcher.try_handle(line, caller_)) {
         take(std::move(*handled));
       } else {
-        work<Handled>([line = std::string(line)](const Dispatcher& dispatcher) { return dispatcher.handle(line); },
+        work<Handled>([line = std::string(line),
+                       caller = caller_](const Dispatcher& dispatcher) { return dispatcher.handle(line, caller); },
                       &Session::take_and_go_on);
       }
     }
@@ -287,7 +289,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     refused_ = true;
     input_.clear();
     send(std::move(line));
-    idle_.expires_after(kFarewell);
+    idle_.expires_after(kRefusalGrace);
     idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
       if (!error) self->close();
     });
@@ -316,6 +318,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
 
   Impl& server_;
   tcp::socket socket_;
+  Caller caller_;
   asio::steady_timer idle_;
   asio::steady_timer wait_;
   std::array<char, 4096> chunk_{};
@@ -372,15 +375,15 @@ void RpcServer::Impl::resume_all() {
   for (const auto& session : all) session->resume(false);
 }
 
-void RpcServer::Impl::take_leave(std::chrono::steady_clock::time_point deadline) {
+void RpcServer::Impl::shut_down(std::chrono::steady_clock::time_point deadline) {
   ErrorCodeOf ignored;
   acceptor.close(ignored);
   resume_all();
   const bool all_is_said =
       std::all_of(sessions.begin(), sessions.end(), [](const auto& session) { return session->is_answered(); });
   if (all_is_said || std::chrono::steady_clock::now() >= deadline) return context.stop();
-  farewell_timer.expires_after(kLeavePoll);
-  farewell_timer.async_wait([this, deadline](ErrorCodeOf) { take_leave(deadline); });
+  shutdown_timer.expires_after(kShutdownPollPeriod);
+  shutdown_timer.async_wait([this, deadline](ErrorCodeOf) { shut_down(deadline); });
 }
 
 RpcServer::RpcServer(const RpcConfig& config, const std::filesystem::path& runtime_dir, const Services& services)

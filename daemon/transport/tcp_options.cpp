@@ -1,5 +1,8 @@
 #include "daemon/transport/tcp_options.hpp"
 
+#include <array>
+
+#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
@@ -14,6 +17,20 @@ void tune(int fd) noexcept {
   set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
   set(IPPROTO_TCP, TCP_KEEPCNT, 3);
   set(IPPROTO_TCP, TCP_USER_TIMEOUT, 15000);
+}
+
+std::string peer_of(int fd) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof(address);
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> port{};
+  auto* any = reinterpret_cast<sockaddr*>(&address);
+  if (::getpeername(fd, any, &size) != 0 || ::getnameinfo(any, size, host.data(), host.size(), port.data(), port.size(),
+                                                          NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
+    return "";
+  }
+  const std::string name(host.data());
+  return (address.ss_family == AF_INET6 ? "[" + name + "]" : name) + ":" + port.data();
 }
 
 }  // namespace fvd

@@ -1,41 +1,16 @@
 /// JSON-RPC 2.0 to the letter, and the refusals a PLC programmer will meet.
 
-#include "daemon/api/dispatcher.hpp"
-
 #include <set>
 
 #include "core/base/error.hpp"
 #include "daemon/api/rpc_errors.hpp"
 #include "gtest/gtest.h"
-#include "tests/daemon/api/fake_job_service.hpp"
+#include "tests/daemon/api/dispatcher_fixture.hpp"
 
 namespace fvd {
 namespace {
 
 using nlohmann::json;
-
-class ADispatcher : public testing::Test {
- protected:
-  /// The reply to a line as JSON; a discarded value where there is none.
-  json reply(const std::string& line) {
-    const Handled handled = dispatcher_.handle(line);
-    return handled.reply ? json::parse(*handled.reply) : json(json::value_t::discarded);
-  }
-  int error_of(const std::string& line) {
-    const json answer = reply(line);
-    EXPECT_TRUE(answer.contains("error")) << answer.dump();
-    EXPECT_FALSE(answer.contains("result"));
-    return answer.contains("error") ? answer["error"]["code"].get<int>() : 0;
-  }
-  json result_of(const std::string& method, const json& params = json::object()) {
-    const json answer = reply(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump());
-    EXPECT_TRUE(answer.contains("result")) << answer.dump();
-    return answer.value("result", json());
-  }
-
-  FakeJobService service_;
-  Dispatcher dispatcher_{service_.services()};
-};
 
 TEST_F(ADispatcher, RefusesWhatIsNoJson) {
   for (const char* line :
@@ -85,7 +60,7 @@ TEST_F(ADispatcher, NeverAnswersANotification) {
   for (const char* line : {R"({"jsonrpc":"2.0","method":"system.ping"})", R"({"jsonrpc":"2.0","method":"no.such"})",
                            R"({"jsonrpc":"2.0","method":"job.start","params":{"wrong":1}})",
                            R"([{"jsonrpc":"2.0","method":"system.ping"}])"}) {
-    EXPECT_FALSE(dispatcher_.handle(line).reply.has_value()) << line;
+    EXPECT_FALSE(dispatcher_.handle(line, caller_).reply.has_value()) << line;
   }
 }
 
@@ -94,8 +69,8 @@ TEST_F(ADispatcher, NeverStartsOrMovesAnythingForANotification) {
        {R"({"jsonrpc":"2.0","method":"job.start","params":[1,"p"]})",
         R"([{"jsonrpc":"2.0","method":"job.start","params":[1,"p"]}])",
         R"({"jsonrpc":"2.0","method":"stage.move","params":[10.0]})", R"({"jsonrpc":"2.0","method":"stage.home"})"}) {
-    EXPECT_FALSE(dispatcher_.handle(line).reply.has_value()) << line;
-    EXPECT_FALSE(dispatcher_.handle(line).waiting.has_value()) << line;
+    EXPECT_FALSE(dispatcher_.handle(line, caller_).reply.has_value()) << line;
+    EXPECT_FALSE(dispatcher_.handle(line, caller_).waiting.has_value()) << line;
   }
   EXPECT_EQ(service_.starts, 0);
   EXPECT_EQ(service_.task, nullptr);
@@ -103,10 +78,11 @@ TEST_F(ADispatcher, NeverStartsOrMovesAnythingForANotification) {
 
 TEST_F(ADispatcher, TellsTheEngineWhichCommandsMoveTheStage) {
   for (const char* method : {"camera.snap", "camera.preview", "camera.suggest_exposure", "stage.home"}) {
-    (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":")" + std::string(method) + "\"}");
+    (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":")" + std::string(method) + "\"}", caller_);
   }
-  (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":"stage.move","params":[10.0]})");
-  (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":"stage.autofocus","params":{"from_um":0,"to_um":50}})");
+  (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":"stage.move","params":[10.0]})", caller_);
+  (void)dispatcher_.handle(R"({"jsonrpc":"2.0","id":1,"method":"stage.autofocus","params":{"from_um":0,"to_um":50}})",
+                           caller_);
   using enum TaskMotion;
   EXPECT_EQ(service_.motions, (std::vector<TaskMotion>{kNone, kNone, kNone, kMoves, kMoves, kMoves}));
 }
@@ -121,11 +97,12 @@ TEST_F(ADispatcher, AnswersFromTheSnapshotWhatItCan) {
         R"({"jsonrpc":"2.0","id":1,"method":"system.info"})", R"({"jsonrpc":"2.0","id":1,"method":"rpc.discover"})",
         R"([{"jsonrpc":"2.0","id":1,"method":"system.ping"},{"jsonrpc":"2.0","id":2,"method":"system.state"}])",
         R"({"jsonrpc":"2.0","id":1,"method":"no.such"})", R"({"jsonrpc":"2.0","id":1,"method":"job.start"})", "{"}) {
-    const auto handled = dispatcher_.try_handle(line);
+    const auto handled = dispatcher_.try_handle(line, caller_);
     ASSERT_TRUE(handled.has_value()) << line;
-    EXPECT_EQ(handled->reply, dispatcher_.handle(line).reply) << line;
+    EXPECT_EQ(handled->reply, dispatcher_.handle(line, caller_).reply) << line;
   }
-  const auto status = dispatcher_.try_handle(R"({"jsonrpc":"2.0","id":1,"method":"job.status","params":{"seq":8}})");
+  const auto status =
+      dispatcher_.try_handle(R"({"jsonrpc":"2.0","id":1,"method":"job.status","params":{"seq":8}})", caller_);
   ASSERT_TRUE(status.has_value()) << "the job that runs";
   EXPECT_EQ(json::parse(status->reply.value())["result"]["job_id"], "job-8");
 }
@@ -141,9 +118,9 @@ TEST_F(ADispatcher, LeavesToHandleWhatMayBlock) {
                        {"camera.preview", json::object()}};
   for (const auto& [method, params] : params_of.items()) {
     const json request{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}};
-    EXPECT_FALSE(dispatcher_.try_handle(request.dump()).has_value()) << method;
+    EXPECT_FALSE(dispatcher_.try_handle(request.dump(), caller_).has_value()) << method;
     const json ping{{"jsonrpc", "2.0"}, {"id", 2}, {"method", "system.ping"}};
-    EXPECT_FALSE(dispatcher_.try_handle(json{ping, request}.dump()).has_value()) << method << " in a batch";
+    EXPECT_FALSE(dispatcher_.try_handle(json{ping, request}.dump(), caller_).has_value()) << method << " in a batch";
   }
   EXPECT_EQ(service_.starts, 0);
   EXPECT_EQ(service_.task, nullptr);
@@ -222,11 +199,11 @@ TEST_F(ADispatcher, NamesTheRangeOfEveryNumberBeyondIt) {
                              Case{"result.get", R"({"seq":0})", "1..9007199254740991"},
                              Case{"result.ack", R"({"seq":18446744073709551615})", "1..9007199254740991"},
                              Case{"job.wait", R"({"seq":1,"timeout_ms":30001})", "0..30000"},
-                             Case{"camera.snap", R"({"exposure_us":-1})", "0.001..60000000"},
+                             Case{"camera.snap", R"({"exposure_us":-1})", "0.001..6e+07"},
                              Case{"camera.preview", R"({"gain_db":101})", "0..100"},
                              Case{"camera.suggest_exposure", R"({"target":1})", "0.1..0.95"},
-                             Case{"stage.move", R"({"z_um":1e7})", "-1000000..1000000"},
-                             Case{"stage.autofocus", R"({"from_um":0,"to_um":1e9})", "-1000000..1000000"}}) {
+                             Case{"stage.move", R"({"z_um":1e7})", "-1e+06..1e+06"},
+                             Case{"stage.autofocus", R"({"from_um":0,"to_um":1e9})", "-1e+06..1e+06"}}) {
     const json error = reply(std::string(R"({"jsonrpc":"2.0","id":1,"method":")") + beyond.method + R"(","params":)" +
                              beyond.params + "}")["error"];
     EXPECT_EQ(error["code"], json_rpc::kInvalidParams) << beyond.method << beyond.params;
@@ -253,7 +230,7 @@ TEST_F(ADispatcher, RepeatsNoMoreThan64BytesOfWhatItWasSent) {
            "{\"a\":\"" + run + "\x01\"}",
            run,
        }) {
-    const auto answer = dispatcher_.handle(line).reply;
+    const auto answer = dispatcher_.handle(line, caller_).reply;
     ASSERT_TRUE(answer.has_value()) << line;
     EXPECT_TRUE(json::parse(*answer).contains("error")) << *answer;
     EXPECT_EQ(answer->find(run), std::string::npos) << *answer;
@@ -295,14 +272,14 @@ TEST_F(ADispatcher, NamesAJobByIdOrBySequenceNumberNotByBoth) {
 
 TEST_F(ADispatcher, WaitsForAJobToEnd) {
   result_of("job.start", {{"seq", 3}, {"part_id", "p"}});
-  const Handled handled =
-      dispatcher_.handle(R"({"jsonrpc":"2.0","id":9,"method":"job.wait","params":{"seq":3,"timeout_ms":100}})");
+  const Handled handled = dispatcher_.handle(
+      R"({"jsonrpc":"2.0","id":9,"method":"job.wait","params":{"seq":3,"timeout_ms":100}})", caller_);
   ASSERT_TRUE(handled.waiting.has_value());
   EXPECT_FALSE(handled.reply.has_value());
   EXPECT_FALSE(dispatcher_.resume(*handled.waiting, false).has_value());
   const json late = json::parse(dispatcher_.resume(*handled.waiting, true).value());
   EXPECT_EQ(late["result"]["done"], false);
-  service_.change(3, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  service_.change({3}, [](JobStatus& job) { job.state = JobState::kCompleted; });
   const json ended = json::parse(dispatcher_.resume(*handled.waiting, false).value());
   EXPECT_EQ(ended["id"], 9);
   EXPECT_EQ(ended["result"]["done"], true);
@@ -319,26 +296,28 @@ TEST_F(ADispatcher, RefusesWaitsItCannotKeep) {
 }
 
 TEST_F(ADispatcher, KeepsRepliesWithinWhatPlcsCanTake) {
-  result_of("job.start", {{"seq", 3}, {"part_id", std::string(64, 'p')}});
-  service_.change(3, [](JobStatus& job) {
+  const std::string client(32, 'c');
+  result_of("job.start", {{"seq", 3}, {"part_id", std::string(64, 'p')}, {"client", client}});
+  service_.change({3, client}, [](JobStatus& job) {
     job.state = JobState::kCompleted;
     job.error_message = std::string(5000, 'x');
   });
   const auto size = [&](const char* method, const json& params) {
-    return dispatcher_.handle(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump())
+    return dispatcher_
+        .handle(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump(), caller_)
         .reply->size();
   };
-  EXPECT_LE(size("result.get", {{"seq", 3}}), 440U);
+  EXPECT_LE(size("result.get", {{"seq", 3}, {"client", client}}), 440U);
   EXPECT_LE(size("result.next", json::object()), 440U);
-  EXPECT_LE(size("result.get", {{"seq", 3}, {"format", "full"}}), 1400U);
-  EXPECT_LE(size("job.status", {{"seq", 3}}), 1400U);
+  EXPECT_LE(size("result.get", {{"seq", 3}, {"format", "full"}, {"client", client}}), 1400U);
+  EXPECT_LE(size("job.status", {{"seq", 3}, {"client", client}}), 1400U);
   EXPECT_LE(size("system.state", json::object()), 1400U);
 }
 
 TEST_F(ADispatcher, HandsOutResultsUntilTheyAreAcknowledged) {
   EXPECT_EQ(result_of("result.next")["job_id"], "");
   result_of("job.start", {{"seq", 3}, {"part_id", "p"}});
-  service_.change(3, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  service_.change({3}, [](JobStatus& job) { job.state = JobState::kCompleted; });
   const json result = result_of("result.next");
   EXPECT_EQ(result["seq"], 3);
   EXPECT_EQ(result["valid_fraction"], 0.97);
@@ -348,7 +327,8 @@ TEST_F(ADispatcher, HandsOutResultsUntilTheyAreAcknowledged) {
 }
 
 TEST_F(ADispatcher, AnswersInAscii) {
-  const auto answer = dispatcher_.handle("{\"jsonrpc\":\"2.0\",\"id\":\"\xc3\xa4\",\"method\":\"system.ping\"}").reply;
+  const auto answer =
+      dispatcher_.handle("{\"jsonrpc\":\"2.0\",\"id\":\"\xc3\xa4\",\"method\":\"system.ping\"}", caller_).reply;
   ASSERT_TRUE(answer.has_value());
   for (const char c : *answer) EXPECT_GE(c, ' ');
 }
@@ -357,9 +337,10 @@ TEST_F(ADispatcher, DescribesEveryMethod) {
   const json methods = result_of("rpc.discover")["methods"];
   std::set<std::string> names;
   for (const auto& method : methods) names.insert(method["name"]);
+  EXPECT_EQ(names.size(), dispatcher_.methods().size());
   for (const char* name :
        {"system.ping", "system.info", "system.state", "stage.accuracy", "recipe.list", "recipe.get", "recipe.prepare",
-        "job.start", "job.status", "job.wait", "job.abort", "result.get", "result.next", "result.ack"}) {
+        "job.start", "job.status", "job.latest", "job.wait", "job.abort", "result.get", "result.next", "result.ack"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "core/base/error.hpp"
 #include "daemon/jobs/services.hpp"
@@ -24,19 +25,28 @@ class FakeJobService final : public MachineView,
     const std::lock_guard lock(mutex_);
     if (refusal) throw Error(*refusal, "refused by the test");
     ++starts;
-    if (const auto known = jobs_.find(request.seq); known != jobs_.end()) return {known->second, true};
+    const Key key{request.client, request.seq};
+    if (const auto known = jobs_.find(key); known != jobs_.end()) return {known->second, true};
     JobStatus job;
-    job.job_id = "job-" + std::to_string(request.seq);
+    job.job_id = "job-" + (request.client == kDefaultClient ? "" : request.client + "-") + std::to_string(request.seq);
     job.request = request;
     job.slices_planned = 21;
-    return {jobs_[request.seq] = job, false};
+    return {jobs_[key] = job, false};
   }
   [[nodiscard]] JobStatus job(const JobKey& key) const override {
     const std::lock_guard lock(mutex_);
-    for (const auto& [seq, job] : jobs_) {
+    for (const auto& [unused, job] : jobs_) {
       if (names(key, job)) return job;
     }
     throw Error(ErrorCode::kUnknownJob, "no such job");
+  }
+  [[nodiscard]] std::optional<JobStatus> highest(const std::string& client) const override {
+    const std::lock_guard lock(mutex_);
+    std::optional<JobStatus> found;
+    for (const auto& [key, job] : jobs_) {
+      if (key.first == client) found = job;
+    }
+    return found;
   }
   JobStatus abort(const JobKey& key) override { return job(key); }
   [[nodiscard]] std::string result_json(const JobKey& key) const override {
@@ -49,7 +59,7 @@ class FakeJobService final : public MachineView,
   std::optional<StepHistorySummary> history;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override {
     const std::lock_guard lock(mutex_);
-    for (const auto& [seq, job] : jobs_) {
+    for (const auto& [unused, job] : jobs_) {
       if (job.state != JobState::kProcessing && !job.acknowledged) return job;
     }
     return std::nullopt;
@@ -57,7 +67,7 @@ class FakeJobService final : public MachineView,
   int acknowledge(const JobKey& key) override {
     const JobStatus found = job(key);
     const std::lock_guard lock(mutex_);
-    jobs_[found.request.seq].acknowledged = true;
+    jobs_[{found.request.client, found.request.seq}].acknowledged = true;
     return 0;
   }
   void prepare(const std::string& recipe_id) override {
@@ -81,6 +91,7 @@ class FakeJobService final : public MachineView,
     return task;
   }
   std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override {
+    if (before_preview) before_preview();
     previewed = settings;
     return submit([](const Devices&, std::stop_token) { return std::string(R"({"seq": 1})"); }, TaskMotion::kNone);
   }
@@ -95,11 +106,11 @@ class FakeJobService final : public MachineView,
   }
 
   /// Changes a job and tells the listener, as the engine's thread would.
-  void change(std::int64_t seq, const std::function<void(JobStatus&)>& how) {
+  void change(const ClientSeq& number, const std::function<void(JobStatus&)>& how) {
     std::function<void()> listener;
     {
       const std::lock_guard lock(mutex_);
-      how(jobs_.at(seq));
+      how(jobs_.at({number.client, number.seq}));
       listener = listener_;
     }
     if (listener) listener();
@@ -107,6 +118,8 @@ class FakeJobService final : public MachineView,
 
   /// In a test that has start() block.
   std::function<void()> before_start;
+  /// Likewise preview().
+  std::function<void()> before_preview;
   /// The snapshot's job.
   std::optional<JobStatus> current;
   int starts = 0;
@@ -118,7 +131,8 @@ class FakeJobService final : public MachineView,
 
  private:
   mutable std::mutex mutex_;
-  std::map<std::int64_t, JobStatus> jobs_;
+  using Key = std::pair<std::string, std::int64_t>;
+  std::map<Key, JobStatus> jobs_;
   std::function<void()> listener_;
 };
 

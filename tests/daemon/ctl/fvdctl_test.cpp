@@ -51,18 +51,20 @@ TEST(Fvdctl, StartsAJobWithTheSequenceNumberGiven) {
   FakeRpcServer server({{"job.start", FakeRpcServer::result({{"job_id", "J7"}, {"duplicate", false}})}});
   const Outcome outcome = ask(server, {"start", "--seq", "8", "--part", "P1", "--recipe", "chapter"});
   EXPECT_EQ(outcome.code, kExitOk) << outcome.err;
-  EXPECT_EQ(server.requests().at(0)["params"], json({{"seq", 8}, {"part_id", "P1"}, {"recipe", "chapter"}}));
+  EXPECT_EQ(server.requests().at(0)["params"],
+            json({{"seq", 8}, {"part_id", "P1"}, {"client", "fvdctl"}, {"recipe", "chapter"}}));
 }
 
 TEST(Fvdctl, TakesTheNextSequenceNumberByItself) {
-  FakeRpcServer server({{"system.state", FakeRpcServer::result({{"state", "ready"}, {"seq", 41}})},
+  FakeRpcServer server({{"job.latest", FakeRpcServer::result({{"job_id", "J41"}, {"seq", 41}})},
                         {"job.start", FakeRpcServer::result({{"job_id", "J7"}})}});
   EXPECT_EQ(ask(server, {"start", "--part", "P1"}).code, kExitOk);
-  EXPECT_EQ(server.requests().at(1)["params"], json({{"seq", 42}, {"part_id", "P1"}})) << "no recipe: the prepared one";
+  EXPECT_EQ(server.requests().at(1)["params"], json({{"seq", 42}, {"part_id", "P1"}, {"client", "fvdctl"}}))
+      << "no recipe: the prepared one";
 }
 
 TEST(Fvdctl, StartsAtOneWhereNoJobWasRun) {
-  FakeRpcServer server({{"system.state", FakeRpcServer::result({{"state", "ready"}, {"seq", nullptr}})},
+  FakeRpcServer server({{"job.latest", FakeRpcServer::result({{"job_id", ""}, {"seq", 0}})},
                         {"job.start", FakeRpcServer::result({{"job_id", "J7"}})}});
   EXPECT_EQ(ask(server, {"start", "--part", "P1"}).code, kExitOk);
   EXPECT_EQ(server.requests().at(1)["params"]["seq"], 1);

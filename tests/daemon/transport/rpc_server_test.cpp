@@ -158,7 +158,7 @@ TEST_F(AnRpcServer, AnswersAWaitWhenTheJobEndsAndLaterRequestsAfterIt) {
   client.send(R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})" + std::string("\n") + kPing + "\n");
   EXPECT_TRUE(answers(other)) << "a wait blocks nobody else";
   EXPECT_FALSE(client.line(milliseconds(50)).has_value());
-  service_.change(5, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  service_.change({5}, [](JobStatus& job) { job.state = JobState::kCompleted; });
   const auto ended = client.line();
   ASSERT_TRUE(ended.has_value());
   EXPECT_EQ(json::parse(*ended)["id"], 2);
@@ -172,7 +172,7 @@ TEST_F(AnRpcServer, AnswersWhatHasComeBeforeItEnds) {
   client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
   client.send(R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})" + std::string("\n"));
   EXPECT_FALSE(client.line(milliseconds(50)).has_value());
-  service_.change(5, [](JobStatus& job) { job.state = JobState::kAborted; });
+  service_.change({5}, [](JobStatus& job) { job.state = JobState::kAborted; });
   server_.reset();
   const auto ended = client.line();
   ASSERT_TRUE(ended.has_value()) << "the end of the job is told before the connection closes";
@@ -201,6 +201,23 @@ TEST_F(AnRpcServer, AnswersPingsWhileAnotherClientsStartIsOnTheDisk) {
   const auto ping = starter.line();
   ASSERT_TRUE(ping.has_value());
   EXPECT_EQ(json::parse(*ping)["id"], 1) << "and what came behind it then";
+}
+
+TEST_F(AnRpcServer, AnswersPingsWhileAnotherClientsPictureIsMade) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  service_.before_preview = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  serve(config());
+  LineClient viewer(server_->port());
+  LineClient other(server_->port());
+  viewer.send(R"({"jsonrpc":"2.0","id":3,"method":"camera.preview"})"
+              "\n");
+  begun.get_future().wait();
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(answers(other));
+  released.set_value();
 }
 
 TEST_F(AnRpcServer, ForgetsAClientThatLeavesWhileItsStartIsOnTheDisk) {
@@ -236,7 +253,7 @@ TEST_F(AnRpcServer, AnswersAClientThatHasClosedItsSendingSide) {
   ASSERT_TRUE(started.has_value());
   EXPECT_EQ(json::parse(*started)["id"], 1);
   EXPECT_FALSE(client.line(milliseconds(50)).has_value());
-  service_.change(5, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  service_.change({5}, [](JobStatus& job) { job.state = JobState::kCompleted; });
   const auto ended = client.line();
   ASSERT_TRUE(ended.has_value());
   EXPECT_EQ(json::parse(*ended)["result"]["done"], true);

@@ -1,0 +1,189 @@
+#include "daemon/api/method_docs.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "config/field_writer.hpp"
+#include "daemon/api/rpc_errors.hpp"
+#include "daemon/base/version.hpp"
+
+namespace fvd {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json schema_of(const DescribeFields& describe) {
+  ordered_json schema = fields_to_schema(describe, "");
+  schema.erase("$schema");
+  schema.erase("title");
+  schema["properties"].erase("$schema");
+  return schema;
+}
+
+/// A result has no ranges worth telling, and no defaults.
+ordered_json result_schema(const DescribeFields& describe) {
+  ordered_json schema = schema_of(describe);
+  for (auto& [name, property] : schema["properties"].items()) {
+    for (const char* key : {"minimum", "maximum", "maxLength", "default"}) property.erase(key);
+  }
+  return schema;
+}
+
+bool is_required(const ordered_json& schema, const std::string& name) {
+  if (!schema.contains("required")) return false;
+  const auto& required = schema["required"];
+  return std::find(required.begin(), required.end(), name) != required.end();
+}
+
+ordered_json params_json(const DescribeFields& describe) {
+  const ordered_json schema = schema_of(describe);
+  ordered_json params = ordered_json::array();
+  for (const auto& [name, property] : schema["properties"].items()) {
+    ordered_json own = property;
+    own.erase("description");
+    params.push_back({{"name", name},
+                      {"description", property.value("description", "")},
+                      {"required", is_required(schema, name)},
+                      {"schema", std::move(own)}});
+  }
+  return params;
+}
+
+ordered_json callers_json(const MethodDescription& about) {
+  ordered_json names = ordered_json::array();
+  for (const Role role : about.callers) names.push_back(role_name(role));
+  return names;
+}
+
+ordered_json errors_json(const MethodDescription& about) {
+  ordered_json errors = ordered_json::array();
+  for (const ErrorCode code : about.errors) {
+    errors.push_back({{"code", rpc_error(code).code}, {"message", error_name(code)}});
+  }
+  return errors;
+}
+
+/// What is accepted, from a parameter's schema.
+std::string accepted_text(const ordered_json& schema) {
+  if (schema.contains("enum")) {
+    std::string text;
+    for (const auto& value : schema["enum"]) text += (text.empty() ? "" : " or ") + value.get<std::string>();
+    return text;
+  }
+  if (schema.contains("maxLength")) return "text of at most " + schema["maxLength"].dump() + " bytes";
+  if (schema.contains("maximum")) {
+    std::ostringstream text;
+    text.precision(16);
+    const bool whole = schema.value("type", "") == "integer";
+    text << (whole ? "integer " : "") << schema["minimum"].get<double>() << " .. " << schema["maximum"].get<double>();
+    return text.str();
+  }
+  return schema.value("type", std::string("any JSON"));
+}
+
+std::string default_text(const ordered_json& schema) {
+  if (!schema.contains("default")) return "";
+  const auto& value = schema["default"];
+  if (value.is_string() && value.get_ref<const std::string&>().empty()) return "";
+  return "`" + (value.is_string() ? value.get<std::string>() : value.dump()) + "`";
+}
+
+std::string keys_text(const DescribeFields& describe) {
+  const ordered_json schema = result_schema(describe);
+  std::string text;
+  for (const auto& [name, property] : schema["properties"].items()) {
+    const std::string key = is_required(schema, name) ? "`" + name + "`" : "[`" + name + "`]";
+    text += (text.empty() ? "" : ", ") + key;
+  }
+  return text;
+}
+
+std::string traits_text(const MethodDescription& about) {
+  std::string text;
+  const auto add = [&text](const std::string& trait) { text += (text.empty() ? "" : ", ") + trait; };
+  if (about.moves_stage) add("MOVES the stage");
+  if (about.may_wait) add("may wait");
+  if (about.needs_id) add("needs an id");
+  return text;
+}
+
+std::string callers_text(const MethodDescription& about) {
+  std::string text;
+  for (const Role role : about.callers) text += (text.empty() ? "" : ", ") + std::string(role_name(role));
+  return text;
+}
+
+std::string errors_text(const MethodDescription& about) {
+  std::vector<int> codes;
+  for (const ErrorCode code : about.errors) codes.push_back(rpc_error(code).code);
+  std::sort(codes.begin(), codes.end());
+  std::string text;
+  for (const int code : codes) text += (text.empty() ? "" : " ") + std::to_string(code);
+  return text;
+}
+
+void write_methods(const MethodTable& methods, std::ostream& out) {
+  out << "| method | what | caller | besides | result, [not always] | errors |\n|---|---|---|---|---|---|\n";
+  for (const auto& [name, method] : methods) {
+    const MethodDescription& about = method.about;
+    out << "| `" << name << "` | " << about.summary << " | " << callers_text(about) << " | " << traits_text(about)
+        << " | " << keys_text(about.result) << " | " << errors_text(about) << " |\n";
+  }
+}
+
+void write_params(const MethodTable& methods, std::ostream& out) {
+  out << "| method | parameter, in the order of a list | accepted | default | meaning |\n|---|---|---|---|---|\n";
+  for (const auto& [name, method] : methods) {
+    for (const auto& param : params_json(method.about.params)) {
+      const auto& schema = param["schema"];
+      const std::string preset = param["required"].get<bool>() ? "required" : default_text(schema);
+      out << "| `" << name << "` | `" << param["name"].get<std::string>() << "` | " << accepted_text(schema) << " | "
+          << preset << " | " << param["description"].get<std::string>() << " |\n";
+    }
+  }
+}
+
+void write_errors(std::ostream& out) {
+  std::map<int, std::pair<std::string, bool>> errors{{kNotAllowed, {kNotAllowedName, false}}};
+  for (int i = 0; i <= static_cast<int>(kLastErrorCode); ++i) {
+    const auto code = static_cast<ErrorCode>(i);
+    const RpcError wire = rpc_error(code);
+    errors[wire.code] = {std::string(error_name(code)), wire.retry};
+  }
+  out << "| code | error | may succeed later |\n|---|---|---|\n";
+  for (const auto& [code, error] : errors) {
+    out << "| " << code << " | " << error.first << " | " << (error.second ? "yes" : "") << " |\n";
+  }
+}
+
+}  // namespace
+
+ordered_json openrpc_document(const MethodTable& methods) {
+  ordered_json described = ordered_json::array();
+  for (const auto& [name, method] : methods) {
+    const MethodDescription& about = method.about;
+    described.push_back({{"name", name},
+                         {"summary", about.summary},
+                         {"params", params_json(about.params)},
+                         {"result", {{"name", "result"}, {"schema", result_schema(about.result)}}},
+                         {"errors", errors_json(about)},
+                         {"x-callers", callers_json(about)},
+                         {"x-moves-stage", about.moves_stage},
+                         {"x-may-wait", about.may_wait},
+                         {"x-needs-id", about.needs_id}});
+  }
+  return {{"openrpc", "1.2.6"}, {"info", {{"title", "fvd"}, {"version", kVersion}}}, {"methods", described}};
+}
+
+std::string methods_markdown(const MethodTable& methods) {
+  std::ostringstream out;
+  write_methods(methods, out);
+  out << '\n';
+  write_params(methods, out);
+  out << '\n';
+  write_errors(out);
+  return out.str();
+}
+
+}  // namespace fvd

@@ -1,0 +1,150 @@
+/// Jobs: start, follow, end.
+
+#include <algorithm>
+
+#include "daemon/api/json_shapes.hpp"
+#include "daemon/api/methods/job_key_params.hpp"
+#include "daemon/api/methods/methods.hpp"
+#include "daemon/api/replies.hpp"
+#include "daemon/api/result_fields.hpp"
+#include "daemon/api/rpc_errors.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr std::int64_t kLongestWait_ms = 30000;
+
+struct StartParams {
+  std::int64_t seq = 1;
+  std::string part_id;
+  std::string recipe;
+  ClientParam client;
+
+  void describe(Fields& fields) {
+    describe_seq(fields, seq, "chosen by the client; the same number is the same job");
+    fields.require("seq");
+    fields.text("part_id", part_id, kMaxForeignText_bytes, "1 to 64 printable ASCII characters");
+    fields.require("part_id");
+    fields.text("recipe", recipe, kMaxForeignText_bytes, "recipe id; empty = the prepared one");
+    client.describe(fields);
+  }
+};
+
+struct WaitParams {
+  JobKeyParams job;
+  std::string until = "done";
+  std::int64_t timeout_ms = kLongestWait_ms;
+  ClientParam client;
+
+  void describe(Fields& fields) {
+    job.describe(fields);
+    fields.choice("until", until, {"acquired", "done"}, "acquired = the part may be moved");
+    fields.integer64("timeout_ms", timeout_ms, {0, kLongestWait_ms}, "then the job's status comes as it is");
+    client.describe(fields);
+  }
+};
+
+void describe_started(Fields& fields) {
+  const ResultFields result(fields);
+  result.text("job_id", "the job's id");
+  result.integer("seq", "as given");
+  result.text("client", "whose seq");
+  result.boolean("duplicate", "the number was known: the same job, no second motion");
+  result.text("state", "processing, completed, aborted, failed");
+}
+
+void describe_latest(Fields& fields) {
+  const ResultFields result(fields);
+  result.text("job_id", "empty = the client has started none");
+  result.integer("seq", "the client's highest so far, 0 = none");
+}
+
+const std::string& checked_part_id(const std::string& part_id) {
+  const bool plain = std::all_of(part_id.begin(), part_id.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  if (part_id.empty() || !plain) {
+    throw ProtocolError{json_rpc::kInvalidParams, "part_id must have 1 to 64 printable ASCII characters"};
+  }
+  return part_id;
+}
+
+/// The job of the key if it runs: then the snapshot says what there is to say.
+std::optional<JobStatus> running_job(const MachineView& machine, const JobKey& key) {
+  const auto snapshot = machine.snapshot();
+  const auto& job = snapshot->job;
+  if (!job || job->state != JobState::kProcessing || !names(key, *job)) return std::nullopt;
+  return job;
+}
+
+Answer start_job(JobService& jobs, const StartParams& params) {
+  const auto started =
+      jobs.start({params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked()});
+  return Reply{{"job_id", started.job.job_id},
+               {"seq", params.seq},
+               {"client", params.client.client},
+               {"duplicate", started.duplicate},
+               {"state", job_state_name(started.job.state)}};
+}
+
+Answer wait_for_job(const Services& services, const Call& call, const WaitParams& params) {
+  const JobKey key = params.job.key(params.client);
+  const auto running = running_job(services.machine, key);
+  const JobStatus job = running ? *running : services.jobs.job(key);
+  // In a batch a wait is out of place: there it answers at once.
+  if (!call.may_wait) return job_status_json(job);
+  return Deferred{JobWait{job.job_id, params.until == "acquired"}, std::chrono::milliseconds(params.timeout_ms)};
+}
+
+}  // namespace
+
+void add_job_methods(MethodTable& methods, const Services& services) {
+  using enum ErrorCode;
+  methods["job.start"] = {.about = {.summary = "Starts a measurement; answers once its row is on disk",
+                                    .params = described<StartParams>(),
+                                    .result = describe_started,
+                                    .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale,
+                                               kShuttingDown, kStageLimit, kStorageFull, kDatabase, kMemoryBudget},
+                                    .moves_stage = true,
+                                    .needs_id = true},
+                          .run = with<StartParams>([&jobs = services.jobs](const Call&, const StartParams& params) {
+                            return start_job(jobs, params);
+                          })};
+  methods["job.status"] = {
+      .about = {.summary = "What a job is doing",
+                .params = described<OneJobParams>(),
+                .result = describe_job_status,
+                .errors = {kUnknownJob}},
+      .peek = with<OneJobParams>(
+          [&machine = services.machine](const Call&, const OneJobParams& params) -> std::optional<Answer> {
+            const auto job = running_job(machine, params.key());
+            return job ? std::optional<Answer>(job_status_json(*job)) : std::nullopt;
+          }),
+      .run = with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) {
+        return job_status_json(jobs.job(params.key()));
+      })};
+  methods["job.wait"] = {.about = {.summary = "Answers when the job is acquired or done",
+                                   .params = described<WaitParams>(),
+                                   .result = describe_job_status,
+                                   .errors = {kUnknownJob},
+                                   .may_wait = true},
+                         .run = with<WaitParams>([services](const Call& call, const WaitParams& params) {
+                           return wait_for_job(services, call, params);
+                         })};
+  methods["job.abort"] = {.about = {.summary = "Ends a job; no effect on one that has ended",
+                                    .params = described<OneJobParams>(),
+                                    .result = describe_job_status,
+                                    .errors = {kUnknownJob}},
+                          .run = with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) {
+                            return job_status_json(jobs.abort(params.key()));
+                          })};
+  methods["job.latest"] = {
+      .about = {.summary = "A client's job with the highest seq; its next number is one more",
+                .params = described<ClientParam>(),
+                .result = describe_latest},
+      .run = with<ClientParam>([&jobs = services.jobs](const Call&, const ClientParam& params) -> Answer {
+        const auto job = jobs.highest(params.checked());
+        return Reply{{"job_id", job ? job->job_id : ""}, {"seq", job ? job->request.seq : 0}};
+      })};
+}
+
+}  // namespace fvd

@@ -1,0 +1,23 @@
+#pragma once
+
+/// All methods of the API, a function and a file for each group.
+
+#include <chrono>
+
+#include "daemon/api/method.hpp"
+#include "daemon/jobs/services.hpp"
+
+namespace fvd {
+
+/// All of them. What services name outlives the table; the heartbeat counts from now on.
+[[nodiscard]] MethodTable all_methods(const Services& services);
+
+/// started: from when on the heartbeat counts.
+void add_system_methods(MethodTable& methods, const Services& services, std::chrono::steady_clock::time_point started);
+void add_recipe_methods(MethodTable& methods, const Services& services);
+void add_job_methods(MethodTable& methods, const Services& services);
+void add_result_methods(MethodTable& methods, const Services& services);
+void add_camera_methods(MethodTable& methods, const Services& services);
+void add_stage_methods(MethodTable& methods, const Services& services);
+
+}  // namespace fvd

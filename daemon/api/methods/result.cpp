@@ -1,0 +1,64 @@
+/// Results of jobs that ended.
+
+#include "daemon/api/json_shapes.hpp"
+#include "daemon/api/methods/job_key_params.hpp"
+#include "daemon/api/methods/methods.hpp"
+#include "daemon/api/result_fields.hpp"
+
+namespace fvd {
+
+namespace {
+
+struct GetParams {
+  JobKeyParams job;
+  std::string format = "compact";
+  ClientParam client;
+
+  void describe(Fields& fields) {
+    job.describe(fields);
+    fields.choice("format", format, {"compact", "full"}, "at most 440 bytes, or 1400");
+    client.describe(fields);
+  }
+};
+
+void describe_acknowledged(Fields& fields) {
+  ResultFields(fields).integer("remaining", "results that are not acknowledged yet");
+}
+
+Reply result_of(const Services& services, const JobKey& key, const std::string& format) {
+  const JobStatus job = services.jobs.job(key);
+  if (format == "compact") return compact_result_json(job, services.results.result_json(key));
+  return full_result_json(job, services.results.result_json(key), services.results.result_dir(key));
+}
+
+}  // namespace
+
+void add_result_methods(MethodTable& methods, const Services& services) {
+  using enum ErrorCode;
+  methods["result.get"] = {.about = {.summary = "The result of a job; the same answer every time",
+                                     .params = described<GetParams>(),
+                                     .result = describe_result,
+                                     .errors = {kUnknownJob}},
+                           .run = with<GetParams>([services](const Call&, const GetParams& params) {
+                             return result_of(services, params.job.key(params.client), params.format);
+                           })};
+  methods["result.next"] = {
+      .about = {.summary =
+                    "The oldest result that was not acknowledged, of any client; job_id is empty if there is none",
+                .params = described<NoParams>(),
+                .result = describe_next_result},
+      .run = [services](const Call&) -> Answer {
+        const auto job = services.results.next_unacknowledged();
+        return job ? result_of(services, job->job_id, "compact") : Reply{{"job_id", ""}};
+      }};
+  methods["result.ack"] = {
+      .about = {.summary = "Acknowledges a result; nothing is deleted",
+                .params = described<OneJobParams>(),
+                .result = describe_acknowledged,
+                .errors = {kBusy, kUnknownJob, kDatabase, kStorageFull}},
+      .run = with<OneJobParams>([&results = services.results](const Call&, const OneJobParams& params) {
+        return Reply{{"remaining", results.acknowledge(params.key())}};
+      })};
+}
+
+}  // namespace fvd

@@ -1,0 +1,105 @@
+/// The stage between the jobs.
+
+#include "daemon/api/json_shapes.hpp"
+#include "daemon/api/methods/device_task.hpp"
+#include "daemon/api/methods/methods.hpp"
+#include "daemon/api/result_fields.hpp"
+#include "daemon/jobs/device_commands.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr NumberRange kStageRange_um{-1e6, 1e6};
+
+struct FocusParams {
+  ImageParams image;
+  double from_um = 0.0;
+  double to_um = 0.0;
+  std::optional<double> step_um;
+
+  void describe(Fields& fields) {
+    image.describe(fields);
+    fields.number("from_um", from_um, kStageRange_um, "lower end of the range");
+    fields.require("from_um");
+    fields.number("to_um", to_um, kStageRange_um, "upper end of the range");
+    fields.require("to_um");
+    fields.optional("step_um", step_um, [](Fields& inner, double& value) {
+      inner.number("step_um", value, {1e-3, 1e5}, "of the coarse scan; absent = a tenth of the range");
+    });
+  }
+
+  [[nodiscard]] AutofocusPlan plan() const {
+    AutofocusPlan plan;
+    plan.from = Micrometers{from_um};
+    plan.to = Micrometers{to_um};
+    plan.step = Micrometers{step_um.value_or((to_um - from_um) / 10.0)};
+    return plan;
+  }
+};
+
+struct MoveParams {
+  double z_um = 0.0;
+
+  void describe(Fields& fields) {
+    fields.number("z_um", z_um, kStageRange_um, "where to; the stage's limits hold");
+    fields.require("z_um");
+  }
+};
+
+void describe_focus(Fields& fields) {
+  const ResultFields result(fields);
+  result.number("z_um", "where the stage stands now");
+  result.number("focus", "sharpness there, grey levels");
+  result.any("curve_um_focus", "a list of pairs: position, sharpness");
+}
+
+void describe_homed(Fields& fields) {
+  const ResultFields result(fields);
+  result.number("z_um", "where the stage stands now");
+  result.boolean("homed", "true");
+}
+
+void describe_moved(Fields& fields) { ResultFields(fields).number("z_um", "where the stage stands now"); }
+
+const std::vector<ErrorCode> kMotionErrors{ErrorCode::kStageDisconnected, ErrorCode::kStageLimit,
+                                           ErrorCode::kStageNotHomed, ErrorCode::kStagePosition,
+                                           ErrorCode::kStageAlarm};
+
+}  // namespace
+
+void add_stage_methods(MethodTable& methods, const Services& services) {
+  auto focus_errors = kMotionErrors;
+  focus_errors.insert(
+      focus_errors.end(),
+      {ErrorCode::kUnknownRecipe, ErrorCode::kBadRecipe, ErrorCode::kCameraDisconnected, ErrorCode::kCameraFramesLost,
+       ErrorCode::kCameraTimeout, ErrorCode::kCameraSettings, ErrorCode::kFocusRange});
+  methods["stage.autofocus"] = {
+      .about = task_description("Moves the stage to where the middle of the image is sharpest",
+                                described<FocusParams>(), describe_focus, focus_errors, TaskMotion::kMoves),
+      .run = with<FocusParams>([services](const Call& call, const FocusParams& params) -> Answer {
+        require_wait(call);
+        return reply_when_done(services.tasks.submit(
+            autofocus_work(params.image.settings(services.recipes), params.plan()), TaskMotion::kMoves));
+      })};
+  methods["stage.home"] = {.about = task_description("Finds the stage's reference", described<NoParams>(),
+                                                     describe_homed, kMotionErrors, TaskMotion::kMoves),
+                           .run = [&tasks = services.tasks](const Call& call) -> Answer {
+                             require_wait(call);
+                             return reply_when_done(tasks.submit(home_work(), TaskMotion::kMoves));
+                           }};
+  methods["stage.move"] = {
+      .about = task_description("Moves the stage", described<MoveParams>(), describe_moved, kMotionErrors,
+                                TaskMotion::kMoves),
+      .run = with<MoveParams>([&tasks = services.tasks](const Call& call, const MoveParams& params) -> Answer {
+        require_wait(call);
+        return reply_when_done(tasks.submit(move_work(Micrometers{params.z_um}), TaskMotion::kMoves));
+      })};
+  methods["stage.accuracy"] = {
+      .about = {.summary = "The stage's step errors over all scans, kept in stage_history.json",
+                .params = described<NoParams>(),
+                .result = describe_stage_history},
+      .run = [&tasks = services.tasks](const Call&) { return stage_history_json(tasks.stage_history()); }};
+}
+
+}  // namespace fvd

@@ -1,0 +1,60 @@
+/// The machine as a whole.
+
+#include "daemon/api/json_shapes.hpp"
+#include "daemon/api/methods/methods.hpp"
+#include "daemon/api/replies.hpp"
+#include "daemon/api/result_fields.hpp"
+#include "daemon/base/version.hpp"
+
+namespace fvd {
+
+namespace {
+
+struct PingParams {
+  std::string t_json;  ///< empty = not given
+
+  void describe(Fields& fields) { fields.any("t", t_json, kMaxForeignText_bytes, "returned as it came"); }
+};
+
+void describe_ping(Fields& fields) {
+  const ResultFields result(fields);
+  result.integer("hb", "heartbeat: counts up once a second");
+  result.integer("epoch", "counts the daemon's starts");
+  result.any("t", "as given", Presence::kSometimes);
+}
+
+void describe_info(Fields& fields) {
+  const ResultFields result(fields);
+  result.text("name", "fvd");
+  result.text("version", "of the program");
+  result.integer("api", "version of the wire contract");
+  result.boolean("simulated", "a device is simulated");
+}
+
+}  // namespace
+
+void add_system_methods(MethodTable& methods, const Services& services, std::chrono::steady_clock::time_point started) {
+  const auto heartbeat = [started] {
+    return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - started).count();
+  };
+  methods["system.ping"] = {
+      .about = {.summary = "Heartbeat", .params = described<PingParams>(), .result = describe_ping},
+      .peek = [&machine = services.machine, heartbeat](const Call& call) -> Answer {
+        Reply reply{{"hb", heartbeat()}, {"epoch", machine.snapshot()->epoch}};
+        if (call.params.contains("t")) reply["t"] = call.params["t"];
+        return reply;
+      }};
+  methods["system.info"] = {
+      .about = {.summary = "Who answers", .params = described<NoParams>(), .result = describe_info},
+      .peek = [&machine = services.machine](const Call&) {
+        return Reply{{"name", "fvd"}, {"version", kVersion}, {"api", 1}, {"simulated", machine.snapshot()->simulated}};
+      }};
+  methods["system.state"] = {.about = {.summary = "The machine's state, flat and cheap to poll",
+                                       .params = described<NoParams>(),
+                                       .result = describe_machine_status},
+                             .peek = [&machine = services.machine, heartbeat](const Call&) {
+                               return machine_status_json(*machine.snapshot(), heartbeat());
+                             }};
+}
+
+}  // namespace fvd

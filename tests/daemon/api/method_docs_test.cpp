@@ -1,0 +1,137 @@
+/// The descriptions of the methods against what the methods do, and against the README.
+
+#include "daemon/api/method_docs.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "config/field_reader.hpp"
+#include "daemon/api/dispatcher.hpp"
+#include "daemon/api/methods/methods.hpp"
+#include "tests/daemon/api/fake_job_service.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+
+class EveryMethod : public testing::Test {
+ protected:
+  /// The reply's result, that of a command once it has ended with `task_result`.
+  json result_of(const std::string& method, const json& params, const std::string& task_result = "") {
+    const json request{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}};
+    Handled handled = dispatcher_.handle(request.dump(), caller_);
+    if (handled.waiting) {
+      if (!task_result.empty()) service_.task->end({task_result, std::nullopt, {}});
+      handled.reply = dispatcher_.resume(*handled.waiting, true);
+    }
+    const json answer = json::parse(handled.reply.value());
+    EXPECT_TRUE(answer.contains("result")) << answer.dump();
+    return answer.value("result", json());
+  }
+
+  FakeJobService service_;
+  Caller caller_;
+  Dispatcher dispatcher_{all_methods(service_.services()), service_.services()};
+};
+
+TEST_F(EveryMethod, AnswersAsItIsDescribed) {
+  ASSERT_FALSE(result_of("job.start", {{"seq", 1}, {"part_id", "p"}}).is_null());
+  const json nothing = json::object();
+  const json one{{"seq", 1}};
+  const std::string grey = R"({"min":0,"max":9})";
+  struct Case {
+    const char* method;
+    json params;
+    std::string task_result = "";
+  };
+  std::vector<Case> cases{
+      {"system.ping", {{"t", {1, "x"}}}},
+      {"system.ping", nothing},
+      {"system.info", nothing},
+      {"system.state", nothing},
+      {"rpc.discover", nothing},
+      {"recipe.list", nothing},
+      {"recipe.get", {{"id", "chapter"}}},
+      {"recipe.prepare", {{"id", "chapter"}}},
+      {"job.start", {{"seq", 1}, {"part_id", "p"}}},
+      {"job.status", one},
+      {"job.wait", one},
+      {"job.abort", one},
+      {"job.latest", nothing},
+      {"result.get", one},
+      {"result.next", nothing},
+      {"stage.accuracy", nothing},
+      {"camera.snap", nothing,
+       R"({"path":"/x.png","width_px":1,"height_px":1,"bits":8,"exposure_us":1,"gain_db":0,"z_um":1,"grey":)" + grey +
+           "}"},
+      {"camera.preview", nothing,
+       R"({"seq":1,"width_px":1,"height_px":1,"z_um":0,"focus":1,"saturated_fraction":0,"png_base64":"aa"})"},
+      {"camera.suggest_exposure", nothing, R"({"exposure_us":1,"reached":true,"looks":3,"grey":)" + grey + "}"},
+      {"stage.autofocus", {{"from_um", 0}, {"to_um", 10}}, R"({"z_um":5,"focus":9,"curve_um_focus":[[0,1]]})"},
+      {"stage.home", nothing, R"({"z_um":0,"homed":true})"},
+      {"stage.move", {{"z_um", 1}}, R"({"z_um":1})"}};
+  std::set<std::string> seen{"result.ack"};
+  const auto check = [&](const Case& call) {
+    seen.insert(call.method);
+    const json result = result_of(call.method, call.params, call.task_result);
+    Problems problems;
+    FieldReader reader(result, problems, "/result");
+    dispatcher_.methods().at(call.method).about.result(reader);
+    reader.finish();
+    EXPECT_TRUE(problems.empty()) << to_text(problems, call.method) << result.dump();
+  };
+  for (const Case& call : cases) check(call);
+  service_.change({1}, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  service_.history = StepHistorySummary{};
+  for (const Case& call : {Case{"result.get", one}, Case{"result.get", {{"seq", 1}, {"format", "full"}}},
+                           Case{"result.next", nothing}, Case{"stage.accuracy", nothing}, Case{"result.ack", one}}) {
+    check(call);
+  }
+  EXPECT_EQ(seen.size(), dispatcher_.methods().size()) << "a method is missing in this test";
+}
+
+TEST_F(EveryMethod, StandsInOpenRpcWithAllThatIsKnownOfIt) {
+  const json document = openrpc_document(dispatcher_.methods());
+  for (const json& method : document["methods"]) {
+    EXPECT_FALSE(method["summary"].get<std::string>().empty()) << method["name"];
+    for (const json& param : method["params"]) {
+      EXPECT_FALSE(param["description"].get<std::string>().empty()) << method["name"] << param;
+    }
+    EXPECT_FALSE(method["result"]["schema"]["properties"].empty()) << method["name"];
+    EXPECT_EQ(method["x-callers"], json{"operator"});
+  }
+  const auto start = std::find_if(document["methods"].begin(), document["methods"].end(),
+                                  [](const json& method) { return method["name"] == "job.start"; });
+  ASSERT_NE(start, document["methods"].end());
+  EXPECT_EQ((*start)["x-moves-stage"], true);
+  EXPECT_EQ((*start)["x-may-wait"], false);
+  EXPECT_EQ((*start)["params"][0]["name"], "seq");
+  EXPECT_EQ((*start)["params"][0]["required"], true);
+  EXPECT_EQ((*start)["params"][0]["schema"]["maximum"], kLargestExactInteger);
+  EXPECT_EQ((*start)["params"][3]["schema"]["default"], "plc");
+}
+
+/// With FVD_WRITE_TABLES=1 in the environment the README is written instead of compared.
+TEST_F(EveryMethod, StandsInTheReadme) {
+  const std::filesystem::path file = FVD_SOURCE_DIR "/daemon/README.md";
+  const std::string readme = test::read_text(file);
+  const std::string begin = "<!-- methods: begin (FVD_WRITE_TABLES=1 api_test) -->\n";
+  const std::string end = "<!-- methods: end -->\n";
+  const auto from = readme.find(begin);
+  const auto to = readme.find(end);
+  ASSERT_NE(from, std::string::npos);
+  ASSERT_NE(to, std::string::npos);
+  const std::string wanted =
+      readme.substr(0, from + begin.size()) + methods_markdown(dispatcher_.methods()) + readme.substr(to);
+  if (std::getenv("FVD_WRITE_TABLES") != nullptr) std::ofstream(file) << wanted;
+  EXPECT_TRUE(test::read_text(file) == wanted)
+      << file << " does not hold the tables of the methods: run api_test with FVD_WRITE_TABLES=1";
+}
+
+}  // namespace
+}  // namespace fvd
