@@ -4,7 +4,6 @@
 #include "daemon/api/replies.hpp"
 #include "daemon/api/rpc_errors.hpp"
 #include "daemon/jobs/device_commands.hpp"
-#include "daemon/recipes/recipe_book.hpp"
 
 namespace fvd {
 
@@ -37,7 +36,7 @@ CameraSettings settings_from(const Services& services, const json& params) {
   CameraSettings camera;
   if (params.contains("recipe")) {
     const auto id = params["recipe"].get<std::string>();
-    camera = parse_recipe(services.recipes.recipe_json(id), id).camera;
+    camera = services.recipes.load(id).camera;
   }
   camera.trigger = TriggerMode::kSoftware;
   if (params.contains("exposure_us")) camera.exposure_us = params["exposure_us"].get<double>();

@@ -10,7 +10,6 @@
 #include "daemon/base/systemd_notify.hpp"
 #include "daemon/jobs/device_commands.hpp"
 #include "daemon/pipeline/job_memory.hpp"
-#include "daemon/recipes/recipe_book.hpp"
 
 namespace fvd {
 
@@ -26,6 +25,8 @@ int thread_count(int configured) {
 Engine::Engine(const Config& config, const EngineDependencies& deps)
     : config_(config),
       store_(deps.store),
+      recipes_({config.paths.recipe_dir, config.paths.state_dir / "recipes"},
+               {config.stage.min, config.stage.max, config.stage.take_up}, deps.store.recipe_versions()),
       stage_history_(config.paths.state_dir / "stage_history.json"),
       clock_(deps.clock),
       pool_(thread_count(config.compute.threads)),
@@ -117,7 +118,7 @@ Recipe Engine::load_checked_recipe_locked(const std::string& recipe_id) const {
   if (recipe_id.empty()) {
     throw Error(ErrorCode::kUnknownRecipe, "no recipe is named and none is prepared: name one or call recipe.prepare");
   }
-  Recipe recipe = load_recipe(config_.paths.recipe_dir, recipe_id);
+  Recipe recipe = recipes_.load(recipe_id);
   require_acceptable_locked(recipe);
   return recipe;
 }
@@ -186,12 +187,6 @@ void Engine::prepare(const std::string& recipe_id) {
     publish_locked();
   }
   notify();
-}
-
-std::vector<std::string> Engine::recipe_ids() const { return list_recipes(config_.paths.recipe_dir); }
-
-std::string Engine::recipe_json(const std::string& recipe_id) const {
-  return recipe_text(config_.paths.recipe_dir, recipe_id);
 }
 
 std::shared_ptr<const MachineStatus> Engine::snapshot() const {

@@ -19,6 +19,7 @@
 #include "daemon/pipeline/measurement.hpp"
 #include "daemon/pipeline/preview_hub.hpp"
 #include "daemon/recipes/recipe.hpp"
+#include "daemon/recipes/recipe_book.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/store/stage_history.hpp"
 
@@ -35,18 +36,14 @@ struct EngineDependencies {
 /// that is missing. The stage moves for a job or a command (submit()) alone; one that is found moving when it is opened
 /// is stopped, and the machine is not ready before its standstill was measured.
 /// context: every public function thread-safe.
-class Engine final : public MachineView,
-                     public JobService,
-                     public ResultService,
-                     public TaskService,
-                     public RecipeService {
+class Engine final : public MachineView, public JobService, public ResultService, public TaskService {
  public:
   Engine(const Config& config, const EngineDependencies& dependencies);
   /// finish().
   ~Engine() override;
 
   /// The engine in all its parts, for the API.
-  [[nodiscard]] Services services() { return {*this, *this, *this, *this, *this}; }
+  [[nodiscard]] Services services() { return {*this, *this, *this, *this, recipes_}; }
 
   Started start(const JobRequest& request) override;
   [[nodiscard]] JobStatus job(const JobKey& key) const override;
@@ -56,8 +53,6 @@ class Engine final : public MachineView,
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override;
   int acknowledge(const JobKey& key) override;
   void prepare(const std::string& recipe_id) override;
-  [[nodiscard]] std::vector<std::string> recipe_ids() const override;
-  [[nodiscard]] std::string recipe_json(const std::string& recipe_id) const override;
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override;
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override;
   std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) override;
@@ -127,6 +122,7 @@ class Engine final : public MachineView,
 
   const Config& config_;
   JobStore& store_;
+  RecipeBook recipes_;
   StageHistory stage_history_;
   Clock& clock_;
   WorkerPool pool_;

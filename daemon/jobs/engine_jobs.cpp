@@ -54,7 +54,7 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
     AtomicDirectory directory(config_.paths.state_dir / "results" / job.status.job_id);
     MeasurementObserver observer = observer_of_current();
     std::optional<SliceRecorder> recorder;
-    if (job.recipe.record_slices) recorder.emplace(directory);
+    if (job.recipe.keep_slices) recorder.emplace(directory);
     observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
       if (recorder) recorder->add(pixels, z_um);
       preview_.offer(pixels, z_um);
@@ -67,7 +67,7 @@ void Engine::run_job(const PendingJob& job, std::stop_token stop) {
     // In a continuous scan nobody commands the stage to be just there.
     if (job.recipe.mode == ScanMode::kStep) stage_history_.add(stage_.get().info().feedback, result.steps);
     if (recorder) recorder->finish("job " + job.status.job_id + (result.simulated ? ", simulated" : ""));
-    write_result(directory, result);
+    write_result(directory, result, chosen_exporters(job.recipe.exports));
     directory.commit();
     const std::string text = read_text_file(directory.final_dir() / "result.json");
     JobEnd end{.state = JobState::kCompleted, .directory = directory.final_dir().string(), .result_text = text};

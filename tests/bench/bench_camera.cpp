@@ -21,6 +21,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "config/strict_json.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/continuous_scan.hpp"
 #include "core/scan/focus_worker.hpp"
@@ -28,7 +29,7 @@
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/pipeline/measurement.hpp"
-#include "daemon/recipes/recipe_book.hpp"
+#include "daemon/recipes/recipe_document.hpp"
 #include "drivers/registry/driver_table.hpp"
 #include "sim/camera/gvsp_sender.hpp"
 #include "sim/evaluate/evaluate.hpp"
@@ -399,7 +400,8 @@ class Bench {
 
 Motion run_motion() {
   Bench bench;
-  Recipe moving = load_recipe(FVD_SOURCE_DIR "/config/recipes", "chapter_continuous");
+  Recipe moving =
+      parse_recipe(read_text_file(FVD_SOURCE_DIR "/config/recipes/chapter_continuous.json"), "chapter_continuous");
   Recipe stopping = moving;
   stopping.mode = ScanMode::kStep;
   double moving_s = 0.0;
