@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "config/strict_json.hpp"
+#include "core/base/error.hpp"
 #include "daemon/base/exit_code.hpp"
 #include "daemon/base/version.hpp"
-#include "daemon/recipes/recipe_book.hpp"
+#include "daemon/recipes/recipe_document.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 
 namespace fvd {
@@ -22,6 +24,9 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
       ->allow_extra_args(false);
   app.add_flag("--check-config", options.check_config,
                "say every problem of the configuration on stderr and exit: 0 = none, 78 = some");
+  app.add_option("--check-recipe", options.check_recipe,
+                 "say every problem of a recipe on stderr and exit: 0 = none, 78 = some")
+      ->type_name("FILE");
   app.add_flag("--dump-config", options.dump_config, "print the configuration in force as JSON and exit");
   app.add_flag("--print-config-schema", options.print_config_schema, "print the configuration's JSON schema and exit");
   app.add_flag("--print-recipe-schema", options.print_recipe_schema, "print the recipes' JSON schema and exit");
@@ -34,6 +39,21 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
   return parsed;
 }
 
+namespace {
+
+int check_recipe(const std::filesystem::path& file, std::ostream& err) {
+  try {
+    const Recipe recipe = parse_recipe(read_text_file(file), file.stem().string());
+    for (const std::string& note : recipe.notes) err << file.string() << ": note: " << note << std::endl;
+    return exit_code::kOk;
+  } catch (const Error& error) {
+    err << error.what() << std::endl;
+    return exit_code::kConfig;
+  }
+}
+
+}  // namespace
+
 StartUp start_up(const Options& options, std::ostream& out, std::ostream& err) {
   StartUp result;
   if (options.print_config_schema || options.print_recipe_schema || options.print_drive_schema) {
@@ -41,6 +61,10 @@ StartUp start_up(const Options& options, std::ostream& out, std::ostream& err) {
             : options.print_recipe_schema ? recipe_schema_text()
                                           : drive_profile_schema_text());
     result.exit = exit_code::kOk;
+    return result;
+  }
+  if (!options.check_recipe.empty()) {
+    result.exit = check_recipe(options.check_recipe, err);
     return result;
   }
   LoadedConfig loaded = load_config(options.config_file, options.overrides);

@@ -15,6 +15,7 @@ struct Options {
   Overrides overrides;
   bool check_config = false;
   bool dump_config = false;
+  std::filesystem::path check_recipe;  ///< a recipe's file; empty = none
   bool print_config_schema = false;
   bool print_recipe_schema = false;
   bool print_drive_schema = false;

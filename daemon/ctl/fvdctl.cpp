@@ -12,6 +12,7 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/job_commands.hpp"
 #include "daemon/ctl/process_command.hpp"
+#include "daemon/ctl/recipe_commands.hpp"
 #include "daemon/ctl/rpc_client.hpp"
 #include "daemon/ctl/stage_command.hpp"
 #include "daemon/ctl/suggest_command.hpp"
@@ -35,6 +36,7 @@ struct Arguments {
   ProcessArguments process;
   std::string image;
   StageArguments stage;
+  RecipeArguments recipe;
 };
 
 RpcClient connect(const Arguments& arguments) {
@@ -204,6 +206,7 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_process_options(*sub, a.process);
 
   add_stage_commands(app, a.stage, terminal, chosen);
+  add_recipe_commands(app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
 
   command("suggest", "suggest a recipe's focus settings from one sharp image of a surface",
           [&] { return run_suggest(a.image, terminal); })

@@ -10,7 +10,7 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_stack.hpp"
 #include "daemon/ctl/progress_line.hpp"
-#include "daemon/recipes/recipe_book.hpp"
+#include "daemon/recipes/recipe_document.hpp"
 
 namespace fvd::ctl {
 

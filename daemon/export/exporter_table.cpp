@@ -1,5 +1,6 @@
 #include "daemon/export/exporter_table.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "daemon/export/gsf.hpp"
@@ -25,6 +26,14 @@ std::span<const Exporter> exporter_table() {
       Exporter{"step_log.csv", kResult, kQuick, step_csv_file},
   };
   return kExporters;
+}
+
+std::vector<Exporter> chosen_exporters(const std::optional<std::vector<std::string>>& names) {
+  std::vector<Exporter> chosen;
+  for (const Exporter& exporter : exporter_table()) {
+    if (!names || std::find(names->begin(), names->end(), exporter.name) != names->end()) chosen.push_back(exporter);
+  }
+  return chosen;
 }
 
 }  // namespace fvd

@@ -2,9 +2,11 @@
 
 /// The files of a result, one row each.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "daemon/export/export_input.hpp"
 
@@ -29,5 +31,9 @@ struct Exporter {
 
 /// All exporters, in the order in which result.json lists their files. A new one is a row here and a source of its own.
 [[nodiscard]] std::span<const Exporter> exporter_table();
+
+/// Those of these names, in the order of the table; all of them where no names are given. Names that no exporter has
+/// choose nothing.
+[[nodiscard]] std::vector<Exporter> chosen_exporters(const std::optional<std::vector<std::string>>& names);
 
 }  // namespace fvd

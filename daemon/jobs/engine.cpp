@@ -22,7 +22,8 @@ MachineBoard::Constants constants(const Config& config, const JobStore& store) {
 Engine::Engine(const Config& config, const EngineDependencies& deps)
     : pool_(thread_count(config.compute.threads)),
       history_(config.paths.state_dir / "stage_history.json"),
-      recipes_(config.paths.recipe_dir),
+      recipes_({config.paths.recipe_dir, config.paths.state_dir / "recipes"},
+               {config.stage.min, config.stage.max, config.stage.take_up}, deps.store.recipe_versions()),
       board_(constants(config, deps.store), deps.store.latest()),
       hub_(deps.openers, deps.clock,
            [this](bool at_rest) {

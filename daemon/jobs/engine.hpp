@@ -11,10 +11,10 @@
 #include "daemon/jobs/job_queue.hpp"
 #include "daemon/jobs/job_runner.hpp"
 #include "daemon/jobs/machine_board.hpp"
-#include "daemon/jobs/recipe_folder.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/task_runner.hpp"
 #include "daemon/jobs/work_queue.hpp"
+#include "daemon/recipes/recipe_book.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/store/stage_history.hpp"
 
@@ -47,7 +47,7 @@ class Engine {
  private:
   WorkerPool pool_;
   StageHistory history_;
-  RecipeFolder recipes_;
+  RecipeBook recipes_;
   PreviewHub preview_;
   MachineBoard board_;
   DeviceHub hub_;

@@ -73,7 +73,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
   AtomicDirectory directory(deps_.config.paths.state_dir / "results" / job.status.job_id);
   MeasurementObserver observer = this->observer();
   std::optional<SliceRecorder> recorder;
-  if (job.recipe.record_slices) recorder.emplace(directory);
+  if (job.recipe.keep_slices) recorder.emplace(directory);
   observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
     if (recorder) recorder->add(pixels, z_um);
     deps_.preview.offer(pixels, z_um);

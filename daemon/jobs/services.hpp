@@ -15,6 +15,7 @@
 #include "core/stage/step_history.hpp"
 #include "daemon/jobs/device_task.hpp"
 #include "daemon/jobs/machine_state.hpp"
+#include "daemon/recipes/recipe_service.hpp"
 #include "daemon/store/job_status.hpp"
 
 namespace fvd {
@@ -104,16 +105,6 @@ class TaskService {
 
   /// What all scans so far say of the stage; nothing before the first.
   [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
-};
-
-/// The recipes at hand.
-/// context: every function thread-safe; reads files, so never called on the network thread.
-class RecipeService {
- public:
-  virtual ~RecipeService() = default;
-  [[nodiscard]] virtual std::vector<std::string> recipe_ids() const = 0;
-  /// The recipe file's JSON text. Throws Error kUnknownRecipe.
-  [[nodiscard]] virtual std::string recipe_json(const std::string& recipe_id) const = 0;
 };
 
 /// All that the API is built on; each may be another object.

@@ -12,6 +12,7 @@ void note_recipe(const Recipe& recipe, ResultData& data) {
   data.pixel_pitch_x_um = recipe.pixel_pitch_x_um;
   data.pixel_pitch_y_um = recipe.pixel_pitch_y_um;
   data.min_valid_fraction = recipe.min_valid_fraction;
+  data.exports = recipe.exports;
 }
 
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {

@@ -2,6 +2,7 @@
 
 /// A recipe: how one kind of part is measured.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace fvd {
 struct Recipe {
   std::string id;  ///< file name without .json: [A-Za-z0-9_-]{1,32}
   std::string description;
-  std::string sha256;  ///< hex digest of the recipe's canonical JSON; stamped into results
+  std::string sha256;              ///< of the document's bytes, in hex, as sha256sum tells it; stamped into results
+  std::vector<std::string> notes;  ///< what the author should know of an accepted document; not of the recipe itself
 
   double start_um = 0.0;  ///< z of the first slice
   double step_um = 10.0;  ///< > 0, distance of slices
@@ -37,7 +39,9 @@ struct Recipe {
   double pixel_pitch_x_um = 1.0;  ///< > 0, on the object
   double pixel_pitch_y_um = 1.0;
   double min_valid_fraction = 0.0;  ///< 0..1; fewer valid points fail the job
-  bool record_slices = false;       ///< also keep the slices (PGM) and their z in the result's folder slices/
+  /// Names of exporters whose files a result has beside result.json; nothing = all there are.
+  std::optional<std::vector<std::string>> exports;
+  bool keep_slices = false;  ///< also keep the slices (PGM) and their z in the result's folder slices/
 };
 
 /// The focus settings of a scan: recipe.focus with its bins chosen, and no window for the intensity.

@@ -1,138 +1,180 @@
 #include "daemon/recipes/recipe_book.hpp"
 
 #include <algorithm>
-#include <memory>
-#include <sstream>
+#include <system_error>
 
-#include <glib.h>
-#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
-#include "config/field_reader.hpp"
-#include "config/field_writer.hpp"
-#include "config/strict_json.hpp"
 #include "core/base/error.hpp"
+#include "daemon/recipes/recipe_document.hpp"
+#include "daemon/recipes/recipe_folder.hpp"
 
 namespace fvd {
 
 namespace {
 
-namespace fs = std::filesystem;
+constexpr std::size_t kMaxAuthorLength = 64;
+constexpr std::size_t kMaxCommentLength = 200;
+constexpr const char* kChangedByHand = "the file was changed by hand";
 
-constexpr std::size_t kMaxIdLength = 32;
-constexpr int kContinuousPoolFrames = 24;
-
-std::string sha256(const std::string& bytes) {
-  const std::unique_ptr<char, decltype(&g_free)> digest(
-      g_compute_checksum_for_data(G_CHECKSUM_SHA256, reinterpret_cast<const guchar*>(bytes.data()), bytes.size()),
-      &g_free);
-  return digest.get();
+bool is_author(const std::string& author) {
+  return !author.empty() && author.size() <= kMaxAuthorLength &&
+         std::all_of(author.begin(), author.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-/// Every value in force with sorted keys: comments, layout and spelled-out defaults do not change the digest.
-std::string canonical_text(Recipe recipe) {
-  const nlohmann::json sorted = fields_to_json([&](Fields& fields) { describe(recipe, fields); });
-  return sorted.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-void check_together(const Recipe& recipe, Problems& problems) {
-  const auto refuse = [&](const char* pointer, auto value, const std::string& why) {
-    std::ostringstream text;
-    text << value << " " << why;
-    problems.push_back({pointer, text.str()});
-  };
-  if (recipe.focus.window_px % 2 == 0) {
-    refuse("/focus/window_px", recipe.focus.window_px, "is even; expected an odd number so that a pixel is its centre");
+void require_plausible(const RecipeSave& request) {
+  if (!is_recipe_id(request.id)) {
+    throw Error(ErrorCode::kBadInput, "a recipe id has 1 to 32 of the characters A-Z a-z 0-9 _ -");
   }
-  if (recipe.allowed_lost_slices > recipe.slices - 3) {
-    refuse("/scan/allowed_lost_slices", recipe.allowed_lost_slices,
-           "leaves fewer than 3 slices; expected at most " + std::to_string(recipe.slices - 3));
+  if (!is_author(request.author)) {
+    throw Error(ErrorCode::kBadInput, "an author has 1 to 64 printable ASCII characters");
   }
-  if (recipe.mode == ScanMode::kContinuous && recipe.camera.trigger == TriggerMode::kLine) {
-    refuse("/scan/trigger", "line", "is for scan.mode step; in a continuous scan the camera runs free");
-  }
-  if (std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
-    refuse("/focus/extra_peaks", peak_method_name(recipe.peak), "is the peak already; expected others only");
+  if (request.comment.size() > kMaxCommentLength) {
+    throw Error(ErrorCode::kBadInput, "a comment of " + std::to_string(request.comment.size()) +
+                                          " bytes is too long; expected at most " + std::to_string(kMaxCommentLength));
   }
 }
 
-std::string known_recipes(const fs::path& folder) {
-  std::string text;
-  for (const std::string& id : list_recipes(folder)) text += (text.empty() ? "" : ", ") + id;
-  return text.empty() ? "there are none" : "known are " + text;
+std::vector<std::string> edited_ids(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder, error)) return {};
+  return list_recipes(folder);
 }
 
 }  // namespace
 
-bool is_recipe_id(std::string_view id) noexcept {
-  const auto allowed = [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  return !id.empty() && id.size() <= kMaxIdLength && std::all_of(id.begin(), id.end(), allowed);
+RecipeBook::RecipeBook(RecipeFolders folders, StageLimits limits, RecipeVersions& versions)
+    : folders_(std::move(folders)), limits_(limits), versions_(versions) {}
+
+std::map<std::string, bool> RecipeBook::ids() const {
+  std::map<std::string, bool> edited_by_id;
+  for (const std::string& id : list_recipes(folders_.shipped)) edited_by_id[id] = false;
+  for (const std::string& id : edited_ids(folders_.edited)) edited_by_id[id] = true;
+  return edited_by_id;
 }
 
-std::vector<std::string> list_recipes(const fs::path& folder) {
-  std::vector<std::string> ids;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    std::error_code ignored;
-    const std::string id = entry->path().stem().string();
-    if (entry->path().extension() == ".json" && is_recipe_id(id) && entry->is_regular_file(ignored)) ids.push_back(id);
-  }
-  if (error) throw Error(ErrorCode::kBadInput, "cannot list recipes in " + folder.string() + ": " + error.message());
-  std::sort(ids.begin(), ids.end());
-  return ids;
+std::vector<RecipeEntry> RecipeBook::list() const {
+  std::vector<RecipeEntry> entries;
+  for (const auto& [id, edited] : ids()) entries.push_back({id, edited, edited ? get(id).version : 0});
+  return entries;
 }
 
-std::string recipe_text(const fs::path& folder, const std::string& id) {
-  if (!is_recipe_id(id)) {
-    throw Error(ErrorCode::kUnknownRecipe, "a recipe id has 1 to 32 of the characters A-Z a-z 0-9 _ -");
-  }
-  const fs::path file = folder / (id + ".json");
-  std::error_code error;
-  if (!fs::exists(file, error)) {
-    throw Error(ErrorCode::kUnknownRecipe, "there is no recipe '" + id + "'; " + known_recipes(folder));
-  }
-  return read_text_file(file);
+std::string RecipeBook::text_of(const std::string& id, bool& edited) const {
+  auto found = find_recipe_text(folders_.edited, id);
+  edited = found.has_value();
+  if (!found) found = find_recipe_text(folders_.shipped, id);
+  if (found) return *std::move(found);
+  std::string known;
+  for (const auto& [other, ignored] : ids()) known += (known.empty() ? "known are " : ", ") + other;
+  throw Error(ErrorCode::kUnknownRecipe,
+              "there is no recipe '" + id + "'; " + (known.empty() ? "there are none" : known));
 }
 
-Recipe load_recipe(const fs::path& folder, const std::string& id) { return parse_recipe(recipe_text(folder, id), id); }
+RecipeVersion RecipeBook::get(const std::string& id) const {
+  const MutexLock lock(mutex_);
+  return current_locked(id);
+}
 
-Recipe parse_recipe(std::string_view json_text, const std::string& id) {
-  Recipe recipe;
-  Problems problems;
-  read_document(
-      json_text, [&](Fields& fields) { describe(recipe, fields); }, problems);
-  if (problems.empty()) check_together(recipe, problems);
-  throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
-  // Frames wait for their position, and for those before them to be complete, while the camera goes on.
-  if (recipe.mode == ScanMode::kContinuous) recipe.camera.pool_frames = kContinuousPoolFrames;
-  recipe.id = id;
-  recipe.sha256 = sha256(canonical_text(recipe));
+Recipe RecipeBook::load(const std::string& id) const {
+  bool edited = false;
+  Recipe recipe = parse_recipe(text_of(id, edited), id);
+  for (const std::string& note : recipe.notes) spdlog::warn("recipe {} {}", id, note);
   return recipe;
 }
 
-Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up) {
-  Problems problems;
-  const double first = recipe.start_um - take_up.value;
-  const double last = recipe.start_um + recipe.step_um * (recipe.slices - 1);
-  if (first < min.value) {
-    std::ostringstream text;
-    text << recipe.start_um << " with " << take_up.value << " um of take-up reaches " << first
-         << " um; expected a start of at least " << min.value + take_up.value << " um";
-    problems.push_back({"/scan/start_um", text.str()});
+RecipeCheck RecipeBook::check(const std::string& text, const std::string& id) const {
+  RecipeCheck check;
+  try {
+    const Recipe recipe = parse_recipe(text, id);
+    const Problems problems = check_stage_limits(recipe, limits_.min, limits_.max, limits_.take_up);
+    throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
+    check.notes = recipe.notes;
+    check.sha256 = recipe.sha256;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadRecipe) throw;
+    check.refusal = error.what();
   }
-  if (last > max.value) {
-    std::ostringstream text;
-    text << recipe.slices << " slices reach " << last << " um; expected at most " << max.value
-         << " um: fewer slices, a smaller step_um or a lower start_um";
-    problems.push_back({"/scan/slices", text.str()});
-  }
-  return problems;
+  return check;
 }
 
-std::string recipe_schema_text() {
-  Recipe defaults;
-  return fields_to_schema([&](Fields& fields) { describe(defaults, fields); }, "fvd recipe").dump(2) + "\n";
+RecipeVersion RecipeBook::current_locked(const std::string& id) const {
+  bool edited = false;
+  const std::string text = text_of(id, edited);
+  if (!edited) return {.id = id, .sha256 = recipe_sha256(text), .text = text};
+  auto latest = versions_.latest(id);
+  if (latest && latest->text == text) return *latest;
+  const RecipeVersion found{
+      .id = id, .sha256 = recipe_sha256(text), .author = "unknown", .comment = kChangedByHand, .text = text};
+  const RecipeVersion added = versions_.add(found, kVersionsKept, [] {});
+  spdlog::warn("recipe {}: {}; it is version {} now", id, kChangedByHand, added.version);
+  return added;
+}
+
+std::int64_t RecipeBook::save(const RecipeSave& request) {
+  require_plausible(request);
+  const MutexLock lock(mutex_);
+  return save_locked(request);
+}
+
+std::int64_t RecipeBook::save_locked(const RecipeSave& request) {
+  const Recipe recipe = parse_recipe(request.text, request.id);
+  const std::vector<std::string> ids = edited_ids(folders_.edited);
+  const bool shadows = std::find(ids.begin(), ids.end(), request.id) != ids.end();
+  RecipeVersion current;
+  if (shadows) current = current_locked(request.id);
+  if (current.version != request.base_version) {
+    const std::string by = shadows ? ", saved by '" + current.author + "' at " + current.saved_utc : ", as shipped";
+    throw Error(ErrorCode::kBadInput, "recipe '" + request.id + "' is at version " + std::to_string(current.version) +
+                                          by + "; your text was made from version " +
+                                          std::to_string(request.base_version) +
+                                          ": get the recipe anew, put your changes into it, and save that");
+  }
+  if (shadows && current.text == request.text) return current.version;
+  if (!shadows && ids.size() >= static_cast<std::size_t>(kMaxEdited)) {
+    throw Error(ErrorCode::kBadInput, "there are " + std::to_string(ids.size()) +
+                                          " edited recipes, the most there may be; "
+                                          "remove files that nobody needs from " +
+                                          folders_.edited.string());
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folders_.edited, error);
+  if (error) {
+    throw Error(ErrorCode::kStorageWrite, "cannot make " + folders_.edited.string() + ": " + error.message());
+  }
+  const RecipeVersion wanted{.id = request.id,
+                             .sha256 = recipe.sha256,
+                             .author = request.author,
+                             .comment = request.comment,
+                             .text = request.text};
+  const RecipeVersion kept =
+      versions_.add(wanted, kVersionsKept, [&] { replace_recipe_text(folders_.edited, request.id, request.text); });
+  spdlog::info("recipe {}: version {} saved by '{}'", request.id, kept.version, request.author);
+  return kept.version;
+}
+
+std::vector<RecipeVersion> RecipeBook::versions(const std::string& id) const {
+  const MutexLock lock(mutex_);
+  static_cast<void>(current_locked(id));
+  return versions_.list(id);
+}
+
+std::int64_t RecipeBook::restore(const std::string& id, std::int64_t version, std::int64_t base_version,
+                                 const std::string& author) {
+  std::string text;
+  if (version == 0) {
+    const auto shipped = find_recipe_text(folders_.shipped, id);
+    if (!shipped)
+      throw Error(ErrorCode::kUnknownRecipe, "no recipe '" + id + "' was shipped; expected a version from 1");
+    text = *shipped;
+  } else {
+    const auto found = versions_.find(id, version);
+    if (!found) {
+      throw Error(ErrorCode::kUnknownRecipe, "recipe '" + id + "' has no version " + std::to_string(version) +
+                                                 "; recipe.versions tells those that are kept");
+    }
+    text = found->text;
+  }
+  return save({id, text, base_version, author, "version " + std::to_string(version) + " restored"});
 }
 
 }  // namespace fvd

@@ -1,42 +1,63 @@
 #pragma once
 
-/// Recipes: a folder of JSON files, <id>.json, read anew whenever one is asked for.
+/// The recipes of a station: those that were shipped, which nothing here writes, and edited ones that shadow them.
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "config/fields.hpp"
-#include "config/problem.hpp"
+#include "core/base/mutex.hpp"
 #include "core/base/units.hpp"
-#include "daemon/recipes/recipe.hpp"
+#include "daemon/recipes/recipe_service.hpp"
 
 namespace fvd {
 
-/// Every key with its range and meaning: the one place that defines them.
-void describe(Recipe& recipe, Fields& fields);
+struct RecipeFolders {
+  std::filesystem::path shipped;
+  std::filesystem::path edited;  ///< made when the first recipe is saved
+};
 
-/// True for 1..32 characters out of A-Z a-z 0-9 _ -, which no path can be made of.
-[[nodiscard]] bool is_recipe_id(std::string_view id) noexcept;
+struct StageLimits {
+  Micrometers min;
+  Micrometers max;
+  Micrometers take_up;
+};
 
-/// Ids of the recipes in the folder, sorted; files of other names are no recipes. Throws Error kBadInput if the folder
-/// cannot be read.
-[[nodiscard]] std::vector<std::string> list_recipes(const std::filesystem::path& folder);
+/// A file that was changed by hand becomes a version of its own as soon as the book looks at its versions. A file that
+/// was removed by hand uncovers the shipped recipe; its versions stay.
+/// context: every function thread-safe; blocks for files and the database.
+class RecipeBook final : public RecipeService {
+ public:
+  static constexpr int kVersionsKept = 100;  ///< per recipe
+  static constexpr int kMaxEdited = 500;     ///< recipes
 
-/// The file's text as it stands. Throws Error kUnknownRecipe, also for what is no id; kBadInput if it cannot be read.
-[[nodiscard]] std::string recipe_text(const std::filesystem::path& folder, const std::string& id);
+  /// versions outlives the book.
+  RecipeBook(RecipeFolders folders, StageLimits limits, RecipeVersions& versions);
 
-/// Throws Error kUnknownRecipe, kBadInput, or kBadRecipe with every problem and its JSON pointer.
-[[nodiscard]] Recipe load_recipe(const std::filesystem::path& folder, const std::string& id);
+  [[nodiscard]] std::vector<RecipeEntry> list() const override;
+  [[nodiscard]] RecipeVersion get(const std::string& id) const override;
+  [[nodiscard]] Recipe load(const std::string& id) const override;
+  [[nodiscard]] RecipeCheck check(const std::string& text, const std::string& id) const override;
+  std::int64_t save(const RecipeSave& request) override;
+  [[nodiscard]] std::vector<RecipeVersion> versions(const std::string& id) const override;
+  std::int64_t restore(const std::string& id, std::int64_t version, std::int64_t base_version,
+                       const std::string& author) override;
 
-/// Throws Error kBadRecipe likewise.
-[[nodiscard]] Recipe parse_recipe(std::string_view json_text, const std::string& id);
+ private:
+  /// Of all recipes: whether it is an edited one, by id.
+  [[nodiscard]] std::map<std::string, bool> ids() const;
+  [[nodiscard]] std::string text_of(const std::string& id, bool& edited) const;
+  /// The version in force; 0 where the shipped one is. A file changed by hand is added.
+  [[nodiscard]] RecipeVersion current_locked(const std::string& id) const FVD_REQUIRES(mutex_);
+  std::int64_t save_locked(const RecipeSave& request) FVD_REQUIRES(mutex_);
 
-/// What of the recipe would leave the stage's limits: the take-up below the first slice, and the last slice.
-[[nodiscard]] Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up);
-
-/// JSON Schema of a recipe; config/recipe.schema.json is this text.
-[[nodiscard]] std::string recipe_schema_text();
+  const RecipeFolders folders_;
+  const StageLimits limits_;
+  RecipeVersions& versions_;
+  mutable Mutex mutex_;  // held from reading the version in force until the next one is kept
+};
 
 }  // namespace fvd

@@ -2,7 +2,9 @@
 
 #include <chrono>
 
-#include "daemon/recipes/recipe_book.hpp"
+#include "config/field_writer.hpp"
+#include "daemon/export/exporter_table.hpp"
+#include "daemon/recipes/recipe_document.hpp"
 
 namespace fvd {
 
@@ -62,7 +64,8 @@ void describe_scan(Recipe& recipe, Fields& fields) {
   recipe.camera.trigger = trigger == "line" ? TriggerMode::kLine : TriggerMode::kSoftware;
   fields.text("trigger_line", recipe.camera.trigger_line, 64, "TriggerSource of that line");
   fields.integer("frame_retries", recipe.frame_retries, {0, 100}, "further triggers for a slice whose frame was lost");
-  fields.integer("allowed_lost_slices", recipe.allowed_lost_slices, {0, 65532}, "up to slices - 3; more fail the job");
+  fields.integer("allowed_lost_slices", recipe.allowed_lost_slices, {0, 65532}, "more fail the job");
+  fields.relate("allowed_lost_slices", recipe.allowed_lost_slices, Relation::kAtMost, "slices", recipe.slices, -3);
   fields.group("settle", "when the stage counts as arrived", [&](Fields& in) { describe_settle(recipe.settle, in); });
 }
 
@@ -106,22 +109,72 @@ void describe_focus(Recipe& recipe, Fields& fields) {
                  "seek the stage's errors in the focus curves and correct heights by them where the surface lets it");
 }
 
-}  // namespace
+void describe_lateral(Recipe& recipe, Fields& fields) {
+  fields.number("pixel_pitch_x_um", recipe.pixel_pitch_x_um, positive(1e5), "distance of columns on the object");
+  fields.number("pixel_pitch_y_um", recipe.pixel_pitch_y_um, positive(1e5), "distance of rows on the object");
+}
 
-void describe(Recipe& recipe, Fields& fields) {
+void describe_description(Recipe& recipe, Fields& fields) {
   fields.text("description", recipe.description, 1000, "for people");
+}
+
+void describe_acquisition(Recipe& recipe, Fields& fields) {
   fields.group("scan", "where the slices lie", [&](Fields& in) { describe_scan(recipe, in); });
   fields.require("scan");
   fields.group("camera", "settings of the camera", [&](Fields& in) { describe_camera(recipe.camera, in); });
+}
+
+void describe_heights(Recipe& recipe, Fields& fields) {
   fields.group("focus", "from slices to heights", [&](Fields& in) { describe_focus(recipe, in); });
-  fields.group("lateral", "scale on the object", [&](Fields& in) {
-    in.number("pixel_pitch_x_um", recipe.pixel_pitch_x_um, positive(1e5), "distance of columns on the object");
-    in.number("pixel_pitch_y_um", recipe.pixel_pitch_y_um, positive(1e5), "distance of rows on the object");
+  fields.group("lateral", "scale on the object", [&](Fields& in) { describe_lateral(recipe, in); });
+}
+
+void describe_min_valid_fraction(Recipe& recipe, Fields& fields) {
+  fields.number("min_valid_fraction", recipe.min_valid_fraction, {0.0, 1.0}, "fewer valid points fail the job");
+}
+
+void describe_slices_kept(std::string_view key, Recipe& recipe, Fields& fields) {
+  fields.boolean(key, recipe.keep_slices, "also keep the slices, in the result's folder slices/");
+}
+
+std::vector<std::string> exporter_names() {
+  std::vector<std::string> names;
+  for (const Exporter& exporter : exporter_table()) names.emplace_back(exporter.name);
+  return names;
+}
+
+}  // namespace
+
+void describe(Recipe& recipe, Fields& fields) {
+  std::int64_t format = kRecipeFormat;
+  fields.integer64("format", format, {kRecipeFormat, kRecipeFormat}, "of this document");
+  fields.require("format");
+  describe_description(recipe, fields);
+  fields.group("acquire", "how the slices are taken", [&](Fields& in) { describe_acquisition(recipe, in); });
+  fields.require("acquire");
+  fields.group("reconstruct", "how heights are made of them", [&](Fields& in) {
+    describe_heights(recipe, in);
+    describe_min_valid_fraction(recipe, in);
   });
+  fields.optional("export", recipe.exports, [](Fields& in, std::vector<std::string>& names) {
+    in.choices("export", names, exporter_names(), "files of a result beside result.json; absent = all");
+  });
+  fields.group("keep", "what else is kept", [&](Fields& in) { describe_slices_kept("slices", recipe, in); });
+}
+
+void describe_format_1(Recipe& recipe, Fields& fields) {
+  describe_description(recipe, fields);
+  describe_acquisition(recipe, fields);
+  describe_heights(recipe, fields);
   fields.group("result", "what is kept and what is good enough", [&](Fields& in) {
-    in.number("min_valid_fraction", recipe.min_valid_fraction, {0.0, 1.0}, "fewer valid points fail the job");
-    in.boolean("record_slices", recipe.record_slices, "also keep the slices, in the result's folder slices/");
+    describe_min_valid_fraction(recipe, in);
+    describe_slices_kept("record_slices", recipe, in);
   });
+}
+
+std::string recipe_schema_text() {
+  Recipe defaults;
+  return fields_to_schema([&](Fields& fields) { describe(defaults, fields); }, "fvd recipe").dump(2) + "\n";
 }
 
 }  // namespace fvd

@@ -9,6 +9,7 @@
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_id.hpp"
 #include "daemon/store/migrations.hpp"
+#include "daemon/store/recipe_table.hpp"
 
 namespace fvd {
 
@@ -154,6 +155,7 @@ struct JobStore::Impl {
 
   mutable Mutex mutex;
   Database database FVD_GUARDED_BY(mutex);
+  RecipeTable recipes{database, mutex};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
@@ -263,6 +265,8 @@ int JobStore::acknowledge(const JobKey& key) {
   }
   return impl_->waiting;
 }
+
+RecipeVersions& JobStore::recipe_versions() noexcept { return impl_->recipes; }
 
 std::int64_t JobStore::epoch() const noexcept { return impl_->epoch; }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/recipes/recipe_versions.hpp"
 #include "daemon/store/job_status.hpp"
 
 namespace fvd {
@@ -60,6 +61,9 @@ class JobStore {
   [[nodiscard]] int unacknowledged_count() const noexcept;
   /// Returns how many remain; repeating it changes nothing. Throws Error kUnknownJob, kBusy if the job has not ended.
   int acknowledge(const JobKey& key);
+
+  /// In the same file; as long as the store. context: thread-safe.
+  [[nodiscard]] RecipeVersions& recipe_versions() noexcept;
 
   /// Counts the times this database was opened, from 1.
   [[nodiscard]] std::int64_t epoch() const noexcept;

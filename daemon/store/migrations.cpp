@@ -93,9 +93,26 @@ CREATE INDEX jobs_waiting ON jobs (number) WHERE acknowledged = 0;
 )");
 }
 
+/// Version 3: what was saved of a recipe stays, beside the file in force.
+void keep_recipe_versions(Database& database) {
+  database.execute(R"(
+CREATE TABLE recipe_versions (
+  recipe    TEXT    NOT NULL,
+  version   INTEGER NOT NULL,
+  sha256    TEXT    NOT NULL,
+  author    TEXT    NOT NULL,
+  comment   TEXT    NOT NULL,
+  document  TEXT    NOT NULL,
+  saved_utc TEXT    NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+  PRIMARY KEY (recipe, version)
+) STRICT;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
+    MigrationStep{"versions of recipes", keep_recipe_versions},
 };
 
 void require_own_file(const Database& database, int version) {

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/strict_json.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/continuous_scan.hpp"
 #include "core/scan/focus_worker.hpp"
@@ -17,7 +18,7 @@
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/pipeline/measurement.hpp"
-#include "daemon/recipes/recipe_book.hpp"
+#include "daemon/recipes/recipe_document.hpp"
 #include "drivers/registry/driver_table.hpp"
 #include "sim/evaluate/evaluate.hpp"
 #include "sim/plant/plant.hpp"
@@ -153,7 +154,8 @@ double slices_per_s() {
 
 Motion run_motion() {
   Bench bench;
-  Recipe moving = load_recipe(FVD_SOURCE_DIR "/config/recipes", "chapter_continuous");
+  Recipe moving =
+      parse_recipe(read_text_file(FVD_SOURCE_DIR "/config/recipes/chapter_continuous.json"), "chapter_continuous");
   Recipe stopping = moving;
   stopping.mode = ScanMode::kStep;
   double moving_s = 0.0;

@@ -30,8 +30,8 @@ class AContinuousScan : public AMicroscope {
   /// The shipped scan in one motion, slow enough for a busy machine to render its frames.
   static json slow_motion() {
     json recipe = shipped("chapter_continuous");
-    recipe["scan"]["speed_um_per_s"] = 60;
-    recipe["scan"]["allowed_lost_slices"] = 30;
+    recipe["acquire"]["scan"]["speed_um_per_s"] = 60;
+    recipe["acquire"]["scan"]["allowed_lost_slices"] = 30;
     return recipe;
   }
 
@@ -52,7 +52,7 @@ class AContinuousScan : public AMicroscope {
 
 TEST_F(AContinuousScan, MeasuresAsWellAsSteps) {
   json steps = shipped("chapter_continuous");
-  steps["scan"] = {{"start_um", -20}, {"step_um", 2}, {"slices", 101}};
+  steps["acquire"]["scan"] = {{"start_um", -20}, {"step_um", 2}, {"slices", 101}};
   start_with("chapter_fine", steps);
   json moves = slow_motion();
   moves.erase("$schema");
@@ -105,7 +105,7 @@ TEST_F(AContinuousScan, EndsWhenItsCameraIsLostAndTheNextWorks) {
 
 TEST_F(AContinuousScan, StepsWithTheDriveTriggeringTheCamera) {
   json by_line = shipped("chapter");
-  by_line["scan"]["trigger"] = "line";
+  by_line["acquire"]["scan"]["trigger"] = "line";
   start_with("by_line", by_line);
   begin(1, "by_line");
   const json ended = await_end(1);

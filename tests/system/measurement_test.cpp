@@ -5,7 +5,7 @@
 
 #include "core/focus/streaming_focus_stack.hpp"
 #include "daemon/ctl/process_stack.hpp"
-#include "daemon/recipes/recipe_book.hpp"
+#include "daemon/recipes/recipe_document.hpp"
 #include "sim/evaluate/evaluate.hpp"
 #include "tests/system/system_fixture.hpp"
 
@@ -108,7 +108,9 @@ TEST_F(AMicroscope, GivesBitForBitTheMapThatOfflineProcessingGives) {
   offline.source = live / "slices";
   offline.out = folder_.path() / "offline";
   offline.z = ZFile{live / "slices" / "z.txt", LengthUnit::kMicrometre};
-  offline.recipe = load_recipe(std::filesystem::path(FVD_SOURCE_DIR) / "config/recipes", "chapter-recorded");
+  offline.recipe =
+      parse_recipe(test::read_text(std::filesystem::path(FVD_SOURCE_DIR) / "config/recipes/chapter-recorded.json"),
+                   "chapter-recorded");
   (void)ctl::process_stack(offline, {});
   for (const char* file : {"mask.png", "texture.png"}) {
     EXPECT_EQ(test::read_text(live / file), test::read_text(offline.out / file)) << file;

@@ -2,7 +2,6 @@
 
 #include "daemon/api/replies.hpp"
 #include "daemon/api/rpc_errors.hpp"
-#include "daemon/recipes/recipe_book.hpp"
 
 namespace fvd {
 
@@ -27,7 +26,7 @@ void ImageParams::describe(Fields& fields) {
 
 CameraSettings ImageParams::settings(const RecipeService& recipes) const {
   CameraSettings camera;
-  if (recipe) camera = parse_recipe(recipes.recipe_json(*recipe), *recipe).camera;
+  if (recipe) camera = recipes.load(*recipe).camera;
   camera.trigger = TriggerMode::kSoftware;
   if (exposure_us) camera.exposure_us = *exposure_us;
   if (gain_db) camera.gain_db = *gain_db;

@@ -12,13 +12,38 @@
 
 namespace fvd {
 
-class FakeJobService final : public MachineView,
-                             public JobService,
-                             public ResultService,
-                             public TaskService,
-                             public RecipeService {
+/// One recipe, chapter, and what was asked of it.
+class FakeRecipes final : public RecipeService {
  public:
-  [[nodiscard]] Services services() { return {*this, *this, *this, *this, *this}; }
+  [[nodiscard]] std::vector<RecipeEntry> list() const override { return {{"chapter", true, 3}}; }
+  [[nodiscard]] RecipeVersion get(const std::string& id) const override {
+    return {.id = id, .version = 3, .text = R"({"scan": {"slices": 21}})"};
+  }
+  [[nodiscard]] Recipe load(const std::string&) const override { return {}; }
+  [[nodiscard]] RecipeCheck check(const std::string& text, const std::string&) const override {
+    if (text == "{}") return {"recipe x: /format: is missing", {}, ""};
+    return {"", {"has format 1"}, "abc"};
+  }
+  std::int64_t save(const RecipeSave& request) override {
+    if (request.base_version != 3) throw Error(ErrorCode::kBadInput, "saved by 'anna'");
+    saved = request;
+    return 4;
+  }
+  [[nodiscard]] std::vector<RecipeVersion> versions(const std::string& id) const override {
+    return {{.id = id, .version = 3, .sha256 = "abc", .author = "anna", .saved_utc = "2026-11-28T10:00:00.000Z"}};
+  }
+  std::int64_t restore(const std::string&, std::int64_t version, std::int64_t base, const std::string&) override {
+    restored = version;
+    return base + 1;
+  }
+  RecipeSave saved;
+  std::int64_t restored = -1;
+};
+
+class FakeJobService final : public MachineView, public JobService, public ResultService, public TaskService {
+ public:
+  FakeRecipes recipes;
+  [[nodiscard]] Services services() { return {*this, *this, *this, *this, recipes}; }
 
   Started start(const JobRequest& request) override {
     if (before_start) before_start();
@@ -73,8 +98,6 @@ class FakeJobService final : public MachineView,
   void prepare(const std::string& recipe_id) override {
     if (recipe_id != "chapter") throw Error(ErrorCode::kUnknownRecipe, "no recipe '" + recipe_id + "'");
   }
-  [[nodiscard]] std::vector<std::string> recipe_ids() const override { return {"chapter"}; }
-  [[nodiscard]] std::string recipe_json(const std::string&) const override { return R"({"scan": {"slices": 21}})"; }
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
     MachineStatus status;
     status.state = ScanState::kReady;

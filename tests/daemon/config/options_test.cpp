@@ -46,7 +46,7 @@ TEST_F(Fvd, TellsItsVersion) {
 
 TEST_F(Fvd, HelpNamesEveryOption) {
   EXPECT_EQ(parse({"--help"}).exit, exit_code::kOk);
-  for (const char* option : {"--config", "--set", "--check-config", "--dump-config", "--version"}) {
+  for (const char* option : {"--config", "--set", "--check-config", "--check-recipe", "--dump-config", "--version"}) {
     EXPECT_THAT(out_.str(), HasSubstr(option));
   }
 }
@@ -104,6 +104,28 @@ TEST_F(FvdWithAFile, SaysEveryProblemAndExitsWith78) {
       AllOf(HasSubstr("fvd.json: /rpc/port: -1 is not accepted; expected an integer within 0..65535"),
             HasSubstr("fvd.json: /camera/adress: unknown key; did you mean 'address'?"), HasSubstr("/stage/profile")));
   EXPECT_EQ(start(bad, {}).exit, 78) << "it does not run either";
+}
+
+TEST_F(FvdWithAFile, ChecksARecipeWithoutAConfiguration) {
+  const auto check = [this](const std::string& text) {
+    Options options;
+    options.config_file = folder_.path() / "absent.json";
+    options.check_recipe = folder_.path() / "part.json";
+    std::ofstream(options.check_recipe) << text;
+    return start_up(options, out_, err_).exit;
+  };
+  const std::string scan = R"("scan": {"start_um": 0, "step_um": 1, "slices": 3})";
+  EXPECT_EQ(check(R"({"format": 2, "acquire": {)" + scan + "}}"), exit_code::kOk);
+  EXPECT_EQ(err_.str(), "");
+  EXPECT_EQ(check("{" + scan + "}"), exit_code::kOk);
+  EXPECT_THAT(err_.str(), HasSubstr("part.json: note: has format 1"));
+  EXPECT_EQ(check(R"({"format": 2, "aquire": {}})"), 78);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("recipe part: /acquire: is missing"),
+                                HasSubstr("recipe part: /aquire: unknown key; did you mean 'acquire'?")));
+  Options absent;
+  absent.check_recipe = folder_.path() / "no-such.json";
+  EXPECT_EQ(start_up(absent, out_, err_).exit, 78);
+  EXPECT_THAT(err_.str(), HasSubstr("no-such.json"));
 }
 
 TEST_F(FvdWithAFile, DumpsTheConfigurationInForce) {

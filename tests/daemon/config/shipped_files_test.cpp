@@ -15,7 +15,8 @@
 
 #include "config/field_writer.hpp"
 #include "daemon/config/config_file.hpp"
-#include "daemon/recipes/recipe_book.hpp"
+#include "daemon/recipes/recipe_document.hpp"
+#include "daemon/recipes/recipe_folder.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -75,7 +76,8 @@ TEST(ShippedFiles, HaveRecipesThatPassReaderSchemaAndTheSimulatedStage) {
   const auto ids = list_recipes(folder);
   EXPECT_THAT(ids, ::testing::Contains("chapter"));
   for (const std::string& id : ids) {
-    const Recipe recipe = load_recipe(folder, id);
+    const Recipe recipe = parse_recipe(find_recipe_text(folder, id).value(), id);
+    EXPECT_THAT(recipe.notes, ::testing::IsEmpty()) << id;
     EXPECT_TRUE(schema.accepts(parse(text_of(folder / (id + ".json"))))) << id;
     EXPECT_EQ(to_text(check_stage_limits(recipe, sim.stage.min, sim.stage.max, sim.stage.take_up), id), "");
   }
@@ -120,7 +122,7 @@ TEST(ShippedFiles, HaveDriveProfilesThatPassReaderAndSchema) {
 }
 
 TEST(ShippedFiles, HaveTheReferenceRecipe) {
-  const Recipe chapter = load_recipe(kConfigFolder / "recipes", "chapter");
+  const Recipe chapter = parse_recipe(text_of(kConfigFolder / "recipes/chapter.json"), "chapter");
   EXPECT_EQ(chapter.start_um, -7);
   EXPECT_EQ(chapter.step_um, 10);
   EXPECT_EQ(chapter.slices, 21);
@@ -227,11 +229,12 @@ TEST(RecipeSchema, AcceptsExactlyWhatTheReaderAccepts) {
     const auto error = test::error_of([&] { (void)parse_recipe(text, "r"); });
     return !error || std::string(error->what()).find(" is even;") != std::string::npos ||
            std::string(error->what()).find("is the peak already") != std::string::npos ||
-           std::string(error->what()).find("leaves fewer than 3") != std::string::npos;
+           std::string(error->what()).find("expected at most slices - 3") != std::string::npos;
   };
-  expect_same_verdicts(recipe_schema_text(),
-                       json::parse(R"({"scan": {"start_um": 0, "step_um": 1, "slices": 5, "settle": {}},
-                                       "camera": {}, "focus": {}, "lateral": {}, "result": {}})"),
+  expect_same_verdicts(recipe_schema_text(), json::parse(R"({"format": 2,
+                                       "acquire": {"scan": {"start_um": 0, "step_um": 1, "slices": 5, "settle": {}},
+                                                   "camera": {}},
+                                       "reconstruct": {"focus": {}, "lateral": {}}, "keep": {}})"),
                        reader_accepts);
 }
 

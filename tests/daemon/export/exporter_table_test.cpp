@@ -52,6 +52,24 @@ TEST(ExporterTable, HasOneNameARow) {
   }
 }
 
+TEST(ExporterTable, GivesTheRowsThatARecipeNames) {
+  const auto names_of = [](const std::vector<Exporter>& exporters) {
+    std::vector<std::string> names;
+    for (const Exporter& exporter : exporters) names.emplace_back(exporter.name);
+    return names;
+  };
+  EXPECT_EQ(chosen_exporters(std::nullopt).size(), exporter_table().size());
+  EXPECT_EQ(names_of(chosen_exporters({{"mask.png", "height.tiff", "none.txt"}})),
+            (std::vector<std::string>{"height.tiff", "mask.png"}));
+  EXPECT_TRUE(chosen_exporters(std::vector<std::string>{}).empty());
+
+  const ScratchDir scratch;
+  write_with(scratch / "few", chosen_exporters({{"mask.png"}}));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "few" / "mask.png"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "few" / "result.json"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "few" / "height.tiff"));
+}
+
 TEST(ExporterTable, GivesTheBytesThatTheDirectoryHolds) {
   const ScratchDir scratch;
   const ResultData data = result_with_extra_map();

@@ -1,14 +1,15 @@
 #include "daemon/recipes/recipe_book.hpp"
 
 #include <fstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "config/field_writer.hpp"
+#include "daemon/recipes/recipe_document.hpp"
+#include "daemon/recipes/recipe_folder.hpp"
+#include "daemon/store/job_store.hpp"
 #include "tests/support/expect_error.hpp"
-#include "tests/support/readable_name.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -22,197 +23,265 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr const char* kSmallest = R"({"scan": {"start_um": -7, "step_um": 10, "slices": 21}})";
-
-std::string with_scan(const std::string& more) {
-  return R"({"scan": {"start_um": -7, "step_um": 10, "slices": 21}, )" + more + "}";
+std::string recipe_of(int slices) {
+  return R"({"format": 2, "acquire": {"scan": {"start_um": 0, "step_um": 1, "slices": )" + std::to_string(slices) +
+         "}}}";
 }
 
-TEST(Recipe, TakesDefaultsBeyondTheScan) {
-  const Recipe recipe = parse_recipe(kSmallest, "r");
-
-  EXPECT_EQ(recipe.id, "r");
-  EXPECT_EQ(recipe.start_um, -7);
-  EXPECT_EQ(recipe.slices, 21);
-  EXPECT_EQ(recipe.peak, PeakMethod::kFiveSample);
-  EXPECT_THAT(recipe.extra_peaks, IsEmpty());
-  EXPECT_EQ(recipe.camera, CameraSettings{});
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(Recipe, ReadsEveryKey) {
-  const Recipe recipe = parse_recipe(R"({
-    "description": "d",
-    "scan": {"start_um": 1.5, "step_um": 2.5, "slices": 9, "frame_retries": 1, "allowed_lost_slices": 2,
-             "settle": {"window_um": 0.1, "samples": 5, "dwell_ms": 20, "timeout_ms": 1000}},
-    "camera": {"pixel_format": "Mono12", "width_px": 640, "height_px": 480, "offset_x_px": 8, "offset_y_px": 4,
-               "exposure_us": 100.5, "gain_db": 3},
-    "focus": {"window_px": 5, "peak": "nearest", "extra_peaks": ["parabola", "log_parabola"], "min_prominence": 0.25},
-    "lateral": {"pixel_pitch_x_um": 0.5, "pixel_pitch_y_um": 0.6},
-    "result": {"min_valid_fraction": 0.75, "record_slices": true}})",
-                                     "r");
-
-  EXPECT_EQ(recipe.description, "d");
-  EXPECT_EQ(recipe.start_um, 1.5);
-  EXPECT_EQ(recipe.step_um, 2.5);
-  EXPECT_EQ(recipe.slices, 9);
-  EXPECT_EQ(recipe.frame_retries, 1);
-  EXPECT_EQ(recipe.allowed_lost_slices, 2);
-  EXPECT_EQ(recipe.settle.window, Micrometers{0.1});
-  EXPECT_EQ(recipe.settle.samples, 5);
-  EXPECT_EQ(recipe.settle.dwell.count(), 20);
-  EXPECT_EQ(recipe.settle.timeout.count(), 1000);
-  EXPECT_EQ(recipe.camera.pixel_format, SensorFormat::kMono12);
-  EXPECT_EQ(recipe.camera.width, 640);
-  EXPECT_EQ(recipe.camera.height, 480);
-  EXPECT_EQ(recipe.camera.offset_x, 8);
-  EXPECT_EQ(recipe.camera.offset_y, 4);
-  EXPECT_EQ(recipe.camera.exposure_us, 100.5);
-  EXPECT_EQ(recipe.camera.gain_db, 3);
-  EXPECT_EQ(recipe.focus.window_px, 5);
-  EXPECT_EQ(recipe.peak, PeakMethod::kNearest);
-  EXPECT_THAT(recipe.extra_peaks, ElementsAre(PeakMethod::kParabola, PeakMethod::kLogParabola));
-  EXPECT_EQ(recipe.focus.min_prominence, 0.25);
-  EXPECT_EQ(recipe.pixel_pitch_x_um, 0.5);
-  EXPECT_EQ(recipe.pixel_pitch_y_um, 0.6);
-  EXPECT_EQ(recipe.min_valid_fraction, 0.75);
-  EXPECT_TRUE(recipe.record_slices);
-}
-
-TEST(Recipe, WritesBackWhatItRead) {
-  Recipe recipe = parse_recipe(with_scan(R"("focus": {"extra_peaks": ["nearest"]}, "camera": {"gain_db": 1.5})"), "r");
-  const auto text = fields_to_json([&](Fields& fields) { describe(recipe, fields); }).dump();
-  EXPECT_EQ(parse_recipe(text, "r").sha256, recipe.sha256);
-}
-
-TEST(Recipe, HasADigestOfItsValuesNotOfItsLayout) {
-  const std::string digest = parse_recipe(kSmallest, "a").sha256;
-
-  EXPECT_THAT(digest, ::testing::MatchesRegex("[0-9a-f]+"));
-  EXPECT_THAT(digest, SizeIs(64));
-  EXPECT_EQ(parse_recipe(with_scan(R"("focus": {"window_px": 9})"), "b").sha256, digest) << "a default spelled out";
-  EXPECT_EQ(parse_recipe(std::string("// why\n") + kSmallest, "c").sha256, digest);
-  EXPECT_NE(parse_recipe(with_scan(R"("focus": {"window_px": 11})"), "a").sha256, digest);
-}
-
-struct BadRecipe {
-  std::string text;
-  std::string pointer;
-  std::string says;
-};
-
-/// For the names of the tests.
-void PrintTo(const BadRecipe& of, std::ostream* out) { *out << of.pointer << ": " << of.says; }
-
-class ABadRecipe : public ::testing::TestWithParam<BadRecipe> {};
-
-TEST_P(ABadRecipe, IsRefusedWithPointerAndReason) {
-  FVD_EXPECT_ERROR_SAYING(kBadRecipe, (void)parse_recipe(GetParam().text, "r"),
-                          AllOf(HasSubstr("recipe r: " + GetParam().pointer), HasSubstr(GetParam().says)));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, ABadRecipe,
-    ::testing::Values(
-        BadRecipe{"", "", "line 1"}, BadRecipe{"{}", "/scan", "is missing"},
-        BadRecipe{R"({"scan": {"start_um": 0, "step_um": 1}})", "/scan/slices", "is missing"},
-        BadRecipe{R"({"scan": {"start_um": 0, "step_um": 0, "slices": 3}})", "/scan/step_um", "above 0"},
-        BadRecipe{R"({"scan": {"start_um": 0, "step_um": 1, "slices": 2}})", "/scan/slices", "3..65535"},
-        BadRecipe{R"({"scan": {"start_um": 0, "step_um": 1, "slices": 5, "allowed_lost_slices": 3}})",
-                  "/scan/allowed_lost_slices", "at most 2"},
-        BadRecipe{with_scan(R"("focus": {"window_px": 10})"), "/focus/window_px", "odd"},
-        BadRecipe{with_scan(R"("focus": {"window_px": 65})"), "/focus/window_px", "3..63"},
-        BadRecipe{with_scan(R"("focus": {"distance_px": 8})"), "/focus/distance_px", "1..7"},
-        BadRecipe{with_scan(R"("focus": {"peak": "gauss"})"), "/focus/peak", "\"parabola\""},
-        BadRecipe{with_scan(R"("focus": {"extra_peaks": ["nearest", "nearest"]})"), "/focus/extra_peaks",
-                  "repetitions"},
-        BadRecipe{with_scan(R"("focus": {"extra_peaks": ["five_sample"]})"), "/focus/extra_peaks", "already"},
-        BadRecipe{with_scan(R"("focus": {"min_prominence": 1.5})"), "/focus/min_prominence", "0..1"},
-        BadRecipe{with_scan(R"("camera": {"pixel_format": "RGB8"})"), "/camera/pixel_format", "Mono8"},
-        BadRecipe{with_scan(R"("camera": {"exposure_us": 0})"), "/camera/exposure_us", "above 0"},
-        BadRecipe{with_scan(R"("camera": {"exposure": 1})"), "/camera/exposure", "did you mean 'exposure_us'?"},
-        BadRecipe{with_scan(R"("lateral": {"pixel_pitch_x_um": -1})"), "/lateral/pixel_pitch_x_um", "above 0"},
-        BadRecipe{with_scan(R"("result": {"record_slices": "yes"})"), "/result/record_slices", "true or false"},
-        BadRecipe{with_scan(R"("speed": 1)"), "/speed", "unknown key"}),
-    [](const auto& of) { return test::readable_name(of.index, of.param.pointer + " " + of.param.says); });
-
-TEST(Recipe, ReportsAllProblemsAtOnce) {
-  FVD_EXPECT_ERROR_SAYING(
-      kBadRecipe, (void)parse_recipe(R"({"scan": {"step_um": -1, "slices": 2}, "x": 1})", "r"),
-      AllOf(HasSubstr("/scan/start_um"), HasSubstr("/scan/step_um"), HasSubstr("/scan/slices"), HasSubstr("/x")));
-}
-
-TEST(Recipe, IsCheckedAgainstTheStageLimits) {
-  const Recipe recipe = parse_recipe(kSmallest, "r");  // -7 to 193, with 20 of take-up from -27
-
-  EXPECT_THAT(check_stage_limits(recipe, -27_um, 193_um, 20_um), IsEmpty());
-  const Problems low = check_stage_limits(recipe, -26_um, 193_um, 20_um);
-  ASSERT_THAT(low, SizeIs(1));
-  EXPECT_EQ(low[0].pointer, "/scan/start_um");
-  EXPECT_THAT(low[0].message, AllOf(HasSubstr("-27"), HasSubstr("at least -6 um")));
-  const Problems high = check_stage_limits(recipe, -27_um, 192_um, 20_um);
-  ASSERT_THAT(high, SizeIs(1));
-  EXPECT_EQ(high[0].pointer, "/scan/slices");
-  EXPECT_THAT(high[0].message, AllOf(HasSubstr("193"), HasSubstr("at most 192")));
-  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um), SizeIs(2));
-}
-
-TEST(RecipeId, IsAPlainName) {
-  EXPECT_TRUE(is_recipe_id("chapter"));
-  EXPECT_TRUE(is_recipe_id("A-b_9"));
-  EXPECT_TRUE(is_recipe_id(std::string(32, 'x')));
-  EXPECT_FALSE(is_recipe_id(std::string(33, 'x')));
-  for (const std::string id : {"", ".", "..", "a/b", "../a", "/etc/passwd", "a.json", "a b", "a\n", "\xc3\xa9"}) {
-    EXPECT_FALSE(is_recipe_id(id)) << id;
-  }
-  EXPECT_FALSE(is_recipe_id(std::string("a\0b", 3)));
-}
-
-class ARecipeFolder : public ::testing::Test {
+class ARecipeBook : public ::testing::Test {
  protected:
-  void put(const std::string& name, const std::string& text = kSmallest) {
-    std::ofstream(folder_.path() / name) << text;
+  ARecipeBook() {
+    std::filesystem::create_directory(shipped_);
+    put(shipped_ / "a.json", recipe_of(11));
+    put(shipped_ / "b.json", recipe_of(12));
   }
+  static void put(const std::filesystem::path& file, const std::string& text) { std::ofstream(file) << text; }
+  [[nodiscard]] RecipeSave change(int slices, std::int64_t base, const std::string& author = "anna") const {
+    return {"a", recipe_of(slices), base, author, "slices " + std::to_string(slices)};
+  }
+  [[nodiscard]] std::vector<std::string> edited_files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(edited_)) names.push_back(entry.path().filename());
+    return names;
+  }
+
   test::ScratchDir folder_;
+  const std::filesystem::path shipped_ = folder_.path() / "shipped";
+  const std::filesystem::path edited_ = folder_.path() / "edited";
+  JobStore store_{folder_.path() / "fvd.sqlite"};
+  RecipeBook book_{{shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions()};
 };
 
-TEST_F(ARecipeFolder, ListsItsRecipesSorted) {
-  put("b.json");
-  put("a.json");
-  put("notes.txt");
-  put("not an id.json");
-  put(".json");
-  std::filesystem::create_directory(folder_.path() / "folder.json");
-  EXPECT_THAT(list_recipes(folder_.path()), ElementsAre("a", "b"));
+TEST_F(ARecipeBook, ShowsShippedRecipesFirst) {
+  const auto entries = book_.list();
+  ASSERT_THAT(entries, SizeIs(2));
+  EXPECT_EQ(entries[0].id, "a");
+  EXPECT_FALSE(entries[0].edited);
+  EXPECT_EQ(entries[0].version, 0);
+  EXPECT_EQ(book_.load("a").slices, 11);
+  EXPECT_THAT(book_.versions("a"), IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(edited_)) << "nothing was saved";
 }
 
-TEST_F(ARecipeFolder, MustExistToBeListed) {
-  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)list_recipes(folder_.path() / "absent"), HasSubstr("absent"));
+TEST_F(ARecipeBook, ShadowsAShippedRecipeAndLeavesItAlone) {
+  EXPECT_EQ(book_.save(change(21, 0)), 1);
+
+  EXPECT_EQ(book_.load("a").slices, 21);
+  EXPECT_EQ(book_.load("b").slices, 12);
+  EXPECT_EQ(text_of(shipped_ / "a.json"), recipe_of(11));
+  EXPECT_THAT(edited_files(), ElementsAre("a.json")) << "no temporary file is left";
+  EXPECT_TRUE(book_.list()[0].edited);
+  EXPECT_EQ(book_.list()[0].version, 1);
 }
 
-TEST_F(ARecipeFolder, LoadsARecipe) {
-  put("a.json");
-  EXPECT_EQ(load_recipe(folder_.path(), "a").slices, 21);
-  EXPECT_EQ(recipe_text(folder_.path(), "a"), kSmallest);
+TEST_F(ARecipeBook, KeepsANewRecipe) {
+  EXPECT_EQ(book_.save({"new", recipe_of(5), 0, "anna", ""}), 1);
+  EXPECT_EQ(book_.load("new").slices, 5);
+  EXPECT_THAT(book_.list(), SizeIs(3));
 }
 
-TEST_F(ARecipeFolder, NamesTheKnownRecipesWhenOneIsUnknown) {
-  put("a.json");
-  put("b.json");
-  FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)load_recipe(folder_.path(), "c"), HasSubstr("a, b"));
+TEST_F(ARecipeBook, TellsItsVersionsNewestFirst) {
+  (void)book_.save(change(21, 0));
+  (void)book_.save(change(22, 1, "bert"));
+
+  const auto versions = book_.versions("a");
+  ASSERT_THAT(versions, SizeIs(2));
+  EXPECT_EQ(versions[0].version, 2);
+  EXPECT_EQ(versions[0].author, "bert");
+  EXPECT_EQ(versions[0].comment, "slices 22");
+  EXPECT_EQ(versions[0].sha256, recipe_sha256(recipe_of(22)));
+  EXPECT_THAT(versions[0].saved_utc, ::testing::MatchesRegex("20..-..-..T..:..:......Z"));
+  EXPECT_EQ(versions[1].author, "anna");
 }
 
-TEST_F(ARecipeFolder, DoesNotLeaveItself) {
-  put("a.json");
-  std::filesystem::create_directory(folder_.path() / "inner");
-  put("inner/a.json");  // what "a\0" would open
-  for (const std::string& id : {"../a"s, "inner/../a"s, ""s, "."s, ".."s, "a.json"s, "a\0"s}) {
-    FVD_EXPECT_ERROR(kUnknownRecipe, (void)load_recipe(folder_.path() / "inner", id));
+TEST_F(ARecipeBook, RefusesAChangeOfAnOldVersionAndSaysWhoWasFirst) {
+  (void)book_.save(change(21, 0, "anna"));
+
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)book_.save(change(22, 0, "bert")),
+                          AllOf(HasSubstr("version 1"), HasSubstr("'anna'"), HasSubstr("get the recipe anew")));
+  FVD_EXPECT_ERROR(kBadInput, (void)book_.save(change(22, 2, "bert")));
+  EXPECT_EQ(book_.load("a").slices, 21);
+  EXPECT_EQ(book_.save(change(22, 1, "bert")), 2);
+}
+
+TEST_F(ARecipeBook, LetsOneOfManyConcurrentChangesThrough) {
+  std::atomic<int> saved = 0;
+  std::atomic<int> refused = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&, i] {
+      try {
+        (void)book_.save(change(30 + i, 0, "author " + std::to_string(i)));
+        ++saved;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kBadInput) << error.what();
+        ++refused;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(saved, 1);
+  EXPECT_EQ(refused, 7);
+  EXPECT_THAT(book_.versions("a"), SizeIs(1));
+}
+
+TEST_F(ARecipeBook, MakesNoVersionOfTheTextInForce) {
+  (void)book_.save(change(21, 0));
+  EXPECT_EQ(book_.save(change(21, 1, "bert")), 1);
+  EXPECT_THAT(book_.versions("a"), SizeIs(1));
+}
+
+TEST_F(ARecipeBook, RestoresAsANewVersion) {
+  (void)book_.save(change(21, 0));
+  (void)book_.save(change(22, 1));
+
+  EXPECT_EQ(book_.restore("a", 1, 2, "bert"), 3);
+  EXPECT_EQ(book_.load("a").slices, 21);
+  EXPECT_EQ(book_.versions("a")[0].comment, "version 1 restored");
+  EXPECT_EQ(book_.restore("a", 0, 3, "bert"), 4);
+  EXPECT_EQ(book_.load("a").slices, 11) << "as shipped";
+}
+
+TEST_F(ARecipeBook, RestoresOnlyWhatItHas) {
+  (void)book_.save({"new", recipe_of(5), 0, "anna", ""});
+  FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.restore("new", 2, 1, "anna"), HasSubstr("has no version 2"));
+  FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.restore("new", 0, 1, "anna"), HasSubstr("was shipped"));
+  FVD_EXPECT_ERROR(kBadInput, (void)book_.restore("new", 1, 0, "anna"));
+  FVD_EXPECT_ERROR(kUnknownRecipe, (void)book_.restore("../a", 0, 0, "anna"));
+}
+
+TEST_F(ARecipeBook, KeepsTheNewestVersionsOnly) {
+  for (int i = 0; i <= RecipeBook::kVersionsKept; ++i) ASSERT_EQ(book_.save(change(10 + i, i)), i + 1);
+
+  const auto versions = book_.versions("a");
+  EXPECT_THAT(versions, SizeIs(RecipeBook::kVersionsKept));
+  EXPECT_EQ(versions.back().version, 2);
+  FVD_EXPECT_ERROR(kUnknownRecipe, (void)book_.restore("a", 1, RecipeBook::kVersionsKept + 1, "anna"));
+}
+
+TEST_F(ARecipeBook, RefusesWhatItCannotKeepAndChangesNothing) {
+  const auto with = [this](auto change_it) {
+    RecipeSave request = change(21, 0);
+    change_it(request);
+    return request;
+  };
+  for (const std::string& id : {"../a"s, ""s, "."s, "a/b"s, "a\0"s, std::string(33, 'x'), "a.json"s}) {
+    FVD_EXPECT_ERROR(kBadInput, (void)book_.save(with([&](RecipeSave& r) { r.id = id; })));
+  }
+  for (const std::string& author : {""s, std::string(65, 'x'), "a\nb"s, "a\0b"s, "\xc3\xa9"s}) {
+    FVD_EXPECT_ERROR(kBadInput, (void)book_.save(with([&](RecipeSave& r) { r.author = author; })));
+  }
+  FVD_EXPECT_ERROR(kBadInput, (void)book_.save(with([](RecipeSave& r) { r.comment = std::string(201, 'x'); })));
+  FVD_EXPECT_ERROR(kBadRecipe, (void)book_.save(with([](RecipeSave& r) { r.text = "{"; })));
+  FVD_EXPECT_ERROR(kBadRecipe, (void)book_.save(with([](RecipeSave& r) { r.text.append(kMaxRecipeBytes, ' '); })));
+  EXPECT_FALSE(std::filesystem::exists(edited_));
+  EXPECT_THAT(book_.versions("a"), IsEmpty());
+}
+
+TEST_F(ARecipeBook, KeepsNoVersionWhoseFileCouldNotBeWritten) {
+  (void)book_.save(change(21, 0));
+  std::filesystem::create_directories(edited_ / "a.json.new" / "in the way");
+
+  FVD_EXPECT_ERROR(kStorageWrite, (void)book_.save(change(22, 1)));
+  EXPECT_EQ(book_.load("a").slices, 21);
+  EXPECT_THAT(book_.versions("a"), SizeIs(1));
+  EXPECT_EQ(book_.get("a").version, 1);
+}
+
+TEST_F(ARecipeBook, WritesOverWhatADeadProcessLeft) {
+  std::filesystem::create_directory(edited_);
+  put(edited_ / "a.json.new", "half a rec");
+  EXPECT_EQ(book_.save(change(21, 0)), 1);
+  EXPECT_THAT(edited_files(), ElementsAre("a.json"));
+}
+
+TEST_F(ARecipeBook, MakesAVersionOfAFileThatWasChangedByHand) {
+  (void)book_.save(change(21, 0));
+  put(edited_ / "a.json", recipe_of(33));
+
+  EXPECT_EQ(book_.load("a").slices, 33);
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)book_.save(change(22, 1)), HasSubstr("version 2"));
+  const auto versions = book_.versions("a");
+  ASSERT_THAT(versions, SizeIs(2)) << "it is found once";
+  EXPECT_THAT(versions[0].comment, HasSubstr("by hand"));
+  EXPECT_EQ(book_.save(change(22, 2)), 3);
+}
+
+TEST_F(ARecipeBook, ShowsTheShippedRecipeAgainWhenTheEditedFileIsGone) {
+  (void)book_.save(change(21, 0));
+  std::filesystem::remove(edited_ / "a.json");
+
+  EXPECT_EQ(book_.load("a").slices, 11);
+  EXPECT_EQ(book_.get("a").version, 0);
+  EXPECT_THAT(book_.versions("a"), SizeIs(1)) << "what was saved is not lost";
+  EXPECT_EQ(book_.save(change(22, 0)), 2);
+}
+
+TEST_F(ARecipeBook, ChecksWithoutKeepingAnything) {
+  const RecipeCheck good = book_.check(recipe_of(21), "a");
+  EXPECT_EQ(good.refusal, "");
+  EXPECT_EQ(good.sha256, recipe_sha256(recipe_of(21)));
+  EXPECT_THAT(book_.check(R"({"scan": {"start_um": 0, "step_um": 1, "slices": 3}})", "a").notes,
+              ElementsAre(HasSubstr("format 1")));
+  EXPECT_THAT(book_.check(recipe_of(2), "a").refusal, HasSubstr("recipe a: /acquire/scan/slices: 2 is not accepted"));
+  EXPECT_THAT(book_.check(recipe_of(200), "a").refusal, HasSubstr("expected at most 100")) << "the stage ends there";
+  EXPECT_EQ(book_.check(recipe_of(200), "a").sha256, "");
+  EXPECT_FALSE(std::filesystem::exists(edited_));
+}
+
+TEST_F(ARecipeBook, NamesTheKnownRecipesWhenOneIsUnknown) {
+  (void)book_.save({"new", recipe_of(5), 0, "anna", ""});
+  FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.load("c"), HasSubstr("a, b, new"));
+  FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.versions("c"), HasSubstr("a, b, new"));
+}
+
+TEST_F(ARecipeBook, DoesNotLeaveItsFolders) {
+  put(folder_.path() / "outside.json", recipe_of(3));
+  put(shipped_ / "a", recipe_of(3));  // what "a\0.json" would open if the NUL ended the name
+  ASSERT_EQ("a\0"s.size(), 2U) << "a NUL is part of the name";
+  for (const std::string& id : {"../outside"s, "./a"s, ""s, "."s, ".."s, "a.json"s, "a\0"s, "a\0b"s}) {
+    FVD_EXPECT_ERROR(kUnknownRecipe, (void)book_.load(id));
+    FVD_EXPECT_ERROR(kUnknownRecipe, (void)book_.get(id));
+    FVD_EXPECT_ERROR(kUnknownRecipe, (void)book_.versions(id));
   }
 }
 
-TEST_F(ARecipeFolder, NamesTheRecipeThatIsBad) {
-  put("bad.json", "{");
-  FVD_EXPECT_ERROR_SAYING(kBadRecipe, (void)load_recipe(folder_.path(), "bad"), HasSubstr("recipe bad"));
+TEST_F(ARecipeBook, NamesTheRecipeThatIsBad) {
+  put(shipped_ / "bad.json", "{");
+  FVD_EXPECT_ERROR_SAYING(kBadRecipe, (void)book_.load("bad"), HasSubstr("recipe bad"));
+  EXPECT_EQ(book_.get("bad").text, "{") << "it can be looked at and mended";
+}
+
+TEST(ARecipeFolder, ListsItsRecipesSorted) {
+  const test::ScratchDir folder;
+  for (const char* name : {"b.json", "a.json", "notes.txt", "not an id.json", ".json", "c.json.new"}) {
+    std::ofstream(folder.path() / name) << "{}";
+  }
+  std::filesystem::create_directory(folder.path() / "folder.json");
+  EXPECT_THAT(list_recipes(folder.path()), ElementsAre("a", "b"));
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)list_recipes(folder.path() / "absent"), HasSubstr("absent"));
+}
+
+TEST(ARecipeStore, KeepsVersionsOverARestart) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "fvd.sqlite";
+  {
+    JobStore store(file);
+    (void)store.recipe_versions().add({.id = "a", .author = "anna", .text = "one\0two"s}, 10, [] {});
+    EXPECT_THROW((void)store.recipe_versions().add({.id = "a", .author = "bert", .text = "x"}, 10,
+                                                   [] { throw Error(ErrorCode::kStorageFull, "full"); }),
+                 Error);
+  }
+  JobStore store(file);
+  EXPECT_THAT(store.recipe_versions().list("a"), SizeIs(1));
+  EXPECT_EQ(store.recipe_versions().latest("a").value().text, "one\0two"s);
+  EXPECT_FALSE(store.recipe_versions().find("a", 2).has_value());
+  EXPECT_EQ(store.recipe_versions().add({.id = "a", .author = "c", .text = "y"}, 10, [] {}).version, 2);
 }
 
 }  // namespace

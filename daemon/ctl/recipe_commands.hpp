@@ -1,0 +1,32 @@
+#pragma once
+
+/// The commands `fvdctl recipe ...`.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "daemon/ctl/fvdctl.hpp"
+#include "daemon/ctl/rpc_client.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace fvd::ctl {
+
+struct RecipeArguments {
+  std::string id;
+  std::string file;
+  std::string author;
+  std::string comment;
+  std::int64_t base_version = 0;  ///< of a change; 0 = the shipped recipe, or a new one
+  std::int64_t version = 0;       ///< that is restored
+};
+
+/// Adds `recipe` with its commands. connect: called by those that need the daemon. chosen: set to the command that the
+/// line names.
+void add_recipe_commands(CLI::App& app, RecipeArguments& arguments, const std::function<RpcClient()>& connect,
+                         const Terminal& terminal, std::function<int()>& chosen);
+
+}  // namespace fvd::ctl

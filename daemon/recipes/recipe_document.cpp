@@ -1,0 +1,135 @@
+#include "daemon/recipes/recipe_document.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <sstream>
+
+#include <glib.h>
+#include <nlohmann/json.hpp>
+
+#include "config/field_reader.hpp"
+#include "config/strict_json.hpp"
+#include "core/base/error.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr std::size_t kMaxIdLength = 32;
+constexpr int kContinuousPoolFrames = 24;
+
+/// A document without "format" that has a key which only format 1 has at its top.
+bool is_format_1(const nlohmann::json& document) {
+  if (!document.is_object() || document.contains("format")) return false;
+  const auto keys = {"scan", "camera", "focus", "lateral", "result"};
+  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return document.contains(key); });
+}
+
+/// Where the groups of a document stand.
+struct Places {
+  std::string scan;
+  std::string focus;
+};
+const Places kFormat1Places{"/scan", "/focus"};
+const Places kFormat2Places{"/acquire/scan", "/reconstruct/focus"};
+
+void check_together(const Recipe& recipe, const Places& places, Problems& problems) {
+  const auto refuse = [&](const std::string& pointer, auto value, const std::string& why) {
+    std::ostringstream text;
+    text << value << " " << why;
+    problems.push_back({pointer, text.str()});
+  };
+  if (recipe.focus.window_px % 2 == 0) {
+    refuse(places.focus + "/window_px", recipe.focus.window_px,
+           "is even; expected an odd number so that a pixel is its centre");
+  }
+  if (recipe.mode == ScanMode::kContinuous && recipe.camera.trigger == TriggerMode::kLine) {
+    refuse(places.scan + "/trigger", "line", "is for scan.mode step; in a continuous scan the camera runs free");
+  }
+  if (std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
+    refuse(places.focus + "/extra_peaks", peak_method_name(recipe.peak), "is the peak already; expected others only");
+  }
+}
+
+}  // namespace
+
+bool is_recipe_id(std::string_view id) noexcept {
+  const auto allowed = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !id.empty() && id.size() <= kMaxIdLength && std::all_of(id.begin(), id.end(), allowed);
+}
+
+std::string recipe_sha256(std::string_view bytes) {
+  const std::unique_ptr<char, decltype(&g_free)> digest(
+      g_compute_checksum_for_data(G_CHECKSUM_SHA256, reinterpret_cast<const guchar*>(bytes.data()), bytes.size()),
+      &g_free);
+  return digest.get();
+}
+
+Recipe parse_recipe(std::string_view json_text, const std::string& id) {
+  Recipe recipe;
+  Problems problems;
+  if (json_text.size() > kMaxRecipeBytes) {
+    problems.push_back({"", "has " + std::to_string(json_text.size()) + " bytes; expected at most " +
+                                std::to_string(kMaxRecipeBytes)});
+  } else if (const auto document = parse_strict_json(json_text, problems)) {
+    const bool format_1 = is_format_1(*document);
+    FieldReader reader(*document, problems);
+    format_1 ? describe_format_1(recipe, reader) : describe(recipe, reader);
+    reader.finish();
+    if (problems.empty()) check_together(recipe, format_1 ? kFormat1Places : kFormat2Places, problems);
+    if (format_1) recipe.notes.emplace_back("has format 1, read as format 2; 'fvdctl recipe convert FILE' writes that");
+  }
+  throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
+  // Frames wait for their position, and for those before them to be complete, while the camera goes on.
+  if (recipe.mode == ScanMode::kContinuous) recipe.camera.pool_frames = kContinuousPoolFrames;
+  recipe.id = id;
+  recipe.sha256 = recipe_sha256(json_text);
+  return recipe;
+}
+
+std::string convert_recipe(std::string_view json_text, const std::string& id) {
+  const Recipe recipe = parse_recipe(json_text, id);
+  if (recipe.notes.empty()) {
+    throw_if_any({{"/format", "is 2 already: there is nothing to convert"}}, ErrorCode::kBadRecipe, "recipe " + id);
+  }
+  using nlohmann::ordered_json;
+  const ordered_json old = ordered_json::parse(json_text, nullptr, true, true);
+  ordered_json made = ordered_json::object();
+  if (old.contains("$schema")) made["$schema"] = old["$schema"];
+  made["format"] = kRecipeFormat;
+  const auto move = [&](const char* from, const char* to) {
+    const ordered_json::json_pointer source(from);
+    if (old.contains(source)) made[ordered_json::json_pointer(to)] = old[source];
+  };
+  move("/description", "/description");
+  move("/scan", "/acquire/scan");
+  move("/camera", "/acquire/camera");
+  move("/focus", "/reconstruct/focus");
+  move("/lateral", "/reconstruct/lateral");
+  move("/result/min_valid_fraction", "/reconstruct/min_valid_fraction");
+  move("/result/record_slices", "/keep/slices");
+  return made.dump(2) + "\n";
+}
+
+Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up) {
+  Problems problems;
+  const double first = recipe.start_um - take_up.value;
+  const double last = recipe.start_um + recipe.step_um * (recipe.slices - 1);
+  if (first < min.value) {
+    std::ostringstream text;
+    text << recipe.start_um << " with " << take_up.value << " um of take-up reaches " << first
+         << " um; expected a start of at least " << min.value + take_up.value << " um";
+    problems.push_back({"/acquire/scan/start_um", text.str()});
+  }
+  if (last > max.value) {
+    std::ostringstream text;
+    text << recipe.slices << " slices reach " << last << " um; expected at most " << max.value
+         << " um: fewer slices, a smaller step_um or a lower start_um";
+    problems.push_back({"/acquire/scan/slices", text.str()});
+  }
+  return problems;
+}
+
+}  // namespace fvd

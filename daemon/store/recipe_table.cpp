@@ -1,0 +1,82 @@
+#include "daemon/store/recipe_table.hpp"
+
+namespace fvd {
+
+namespace {
+
+#define FVD_RECIPE_COLUMNS "recipe, version, sha256, author, comment, saved_utc"
+
+RecipeVersion read_row(const Statement& row) {
+  return {.id = row.text(0),
+          .version = row.integer(1),
+          .sha256 = row.text(2),
+          .author = row.text(3),
+          .comment = row.text(4),
+          .saved_utc = row.text(5)};
+}
+
+std::optional<RecipeVersion> first_row_with_text(Statement& rows) {
+  if (!rows.step()) return std::nullopt;
+  RecipeVersion version = read_row(rows);
+  version.text = rows.text(6);
+  return version;
+}
+
+}  // namespace
+
+std::vector<RecipeVersion> RecipeTable::list(const std::string& id) const {
+  const MutexLock lock(mutex_);
+  Statement rows(database_,
+                 "SELECT " FVD_RECIPE_COLUMNS " FROM recipe_versions WHERE recipe = ? ORDER BY version DESC");
+  rows.bind(id);
+  std::vector<RecipeVersion> versions;
+  while (rows.step()) versions.push_back(read_row(rows));
+  return versions;
+}
+
+std::optional<RecipeVersion> RecipeTable::find(const std::string& id, std::int64_t version) const {
+  const MutexLock lock(mutex_);
+  Statement rows(database_,
+                 "SELECT " FVD_RECIPE_COLUMNS ", document FROM recipe_versions WHERE recipe = ? AND version = ?");
+  rows.bind(id).bind(version);
+  return first_row_with_text(rows);
+}
+
+std::optional<RecipeVersion> RecipeTable::latest(const std::string& id) const {
+  const MutexLock lock(mutex_);
+  return latest_locked(id);
+}
+
+std::optional<RecipeVersion> RecipeTable::latest_locked(const std::string& id) const {
+  Statement rows(database_, "SELECT " FVD_RECIPE_COLUMNS
+                            ", document FROM recipe_versions WHERE recipe = ? ORDER BY version DESC LIMIT 1");
+  rows.bind(id);
+  return first_row_with_text(rows);
+}
+
+RecipeVersion RecipeTable::add(const RecipeVersion& version, int kept, const std::function<void()>& before_commit) {
+  const MutexLock lock(mutex_);
+  Transaction transaction(database_);
+  const auto newest = latest_locked(version.id);
+  const std::int64_t number = newest ? newest->version + 1 : 1;
+  Statement(database_,
+            "INSERT INTO recipe_versions (recipe, version, sha256, author, comment, document) "
+            "VALUES (?, ?, ?, ?, ?, ?)")
+      .bind(version.id)
+      .bind(number)
+      .bind(version.sha256)
+      .bind(version.author)
+      .bind(version.comment)
+      .bind(version.text)
+      .run();
+  Statement(database_, "DELETE FROM recipe_versions WHERE recipe = ? AND version <= ?")
+      .bind(version.id)
+      .bind(number - kept)
+      .run();
+  RecipeVersion added = latest_locked(version.id).value();
+  before_commit();
+  transaction.commit();
+  return added;
+}
+
+}  // namespace fvd
