@@ -129,6 +129,10 @@ Result write_result(AtomicDirectory& directory, const ResultData& data, std::spa
   return result;
 }
 
+Result write_result(AtomicDirectory& directory, const ResultData& data) {
+  return write_result(directory, data, chosen_exporters(data.exports));
+}
+
 Result write_result(const std::filesystem::path& final_dir, const ResultData& data) {
   AtomicDirectory directory(final_dir);
   Result result = write_result(directory, data);

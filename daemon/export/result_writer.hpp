@@ -16,8 +16,10 @@ namespace fvd {
 /// does not commit. Two exporters run at a time, encoding in memory (at most about 12 bytes per pixel). Returns the
 /// result that result.json tells. The first failure ends it: Error kStorageFull, kStorageWrite, kInternal, its message
 /// beginning with the name of the file.
-Result write_result(AtomicDirectory& directory, const ResultData& data,
-                    std::span<const Exporter> exporters = exporter_table());
+Result write_result(AtomicDirectory& directory, const ResultData& data, std::span<const Exporter> exporters);
+
+/// The same with the files that data.exports names.
+Result write_result(AtomicDirectory& directory, const ResultData& data);
 
 /// Makes final_dir with the result in it, durably: after the return a power cut does not harm it; after an exception
 /// nothing of it exists. Throws Error as above; kStorageWrite also if final_dir exists.

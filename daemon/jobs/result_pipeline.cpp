@@ -7,7 +7,7 @@
 namespace fvd {
 
 JobResult store_result(AtomicDirectory& directory, const ResultData& acquired) {
-  const Result written = write_result(directory, acquired, chosen_exporters(acquired.exports));
+  const Result written = write_result(directory, acquired);
   directory.commit();
   JobResult result;
   result.directory = directory.final_dir().string();

@@ -36,7 +36,7 @@ struct ResultData {
   std::optional<double> pixel_pitch_x_um;  ///< absent = unknown: files then carry pixels
   std::optional<double> pixel_pitch_y_um;
   double min_valid_fraction = 0.0;   ///< that the recipe asks for; 0 = it does not judge
-  std::vector<std::string> exports;  ///< names of the files that the recipe asks for; empty = all
+  std::optional<std::vector<std::string>> exports;  ///< files that the recipe asks for, by name; absent = all
   double state_bytes_per_pixel = 0.0;
 
   HeightMap map;
