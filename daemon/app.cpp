@@ -24,8 +24,10 @@ std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
 App::App(const Config& config)
     : config_(config),
       store_(prepared_state_dir(config_.paths) / "fvd.sqlite"),
-      engine_(config_, {store_, clock_, [this] { return open_camera(config_.camera); },
-                        [this] { return open_stage(config_.stage); }}),
+      engine_(config_, {store_,
+                        clock_,
+                        {.camera = [this] { return open_camera(config_.camera); },
+                         .axis = [this] { return open_stage(config_.stage); }}}),
       rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {}
 
 // The connections live until all that was accepted has ended.

@@ -48,13 +48,11 @@ ordered_json job_status_json(const JobStatus& job) {
 }
 
 ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) {
-  const bool executing = machine.state == ScanState::kExecuting;
-  const bool acquiring = executing && machine.job && !machine.job->acquired;
   return {{"state", scan_state_name(machine.state)},
-          {"ready", machine.state == ScanState::kReady || machine.state == ScanState::kInitialized},
-          {"busy", executing},
-          {"acquiring", acquiring},
-          {"part_release", machine.part_free && !acquiring},
+          {"ready", machine.signals.ready},
+          {"busy", machine.signals.busy},
+          {"acquiring", machine.signals.acquiring},
+          {"part_release", machine.signals.part_release},
           {"result_valid", machine.job && machine.job->state == JobState::kCompleted && !machine.job->acknowledged},
           {"results_waiting", machine.results_waiting},
           {"error_code", code_of(machine.error)},

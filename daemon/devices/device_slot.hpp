@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "core/base/clock.hpp"
 #include "core/base/error.hpp"
 #include "daemon/devices/reaper.hpp"
 
@@ -21,26 +20,37 @@ struct DeviceFailure {
   bool operator==(const DeviceFailure&) const = default;
 };
 
-/// Device has connected(); destroying it may block, so dead ones go to the reaper.
-/// context: the engine's thread.
-template <typename Device>
-class DeviceSlot {
+/// A slot of whatever kind of device.
+/// context: the device thread.
+class AnyDeviceSlot {
  public:
+  virtual ~AnyDeviceSlot() = default;
+  /// True when the device is open and connected; tries to open it if it is not. Never throws.
+  [[nodiscard]] virtual bool ensure() = 0;
+  /// Gives the device up; ensure() will open it anew.
+  virtual void drop() = 0;
+  [[nodiscard]] virtual bool connected() const = 0;
+  /// Why ensure() returned false; nothing after it returned true.
+  [[nodiscard]] virtual const std::optional<DeviceFailure>& failure() const = 0;
+  /// The code that stands for a device that was open and is gone.
+  [[nodiscard]] virtual ErrorCode lost() const = 0;
+};
+
+/// Device has connected(); destroying it may block, so a device that is given up goes to the reaper.
+template <typename Device>
+class DeviceSlot final : public AnyDeviceSlot {
+ public:
+  /// Returns an open device, or throws.
   using Opener = std::function<std::unique_ptr<Device>()>;
 
-  /// lost: the code that stands for a device that was open and is gone.
   DeviceSlot(Opener opener, ErrorCode lost, Reaper& reaper)
       : opener_(std::move(opener)), lost_(lost), reaper_(reaper) {}
-  ~DeviceSlot() { drop(); }
+  ~DeviceSlot() override { reaper_.bury(std::move(device_)); }
   DeviceSlot(const DeviceSlot&) = delete;
   DeviceSlot& operator=(const DeviceSlot&) = delete;
 
-  /// True when the device is open and connected; tries to open it if it is not. Never throws.
-  bool ensure() {
-    if (device_ && !device_->connected()) {
-      drop();
-      failure_ = DeviceFailure{lost_, "the connection was lost"};
-    }
+  bool ensure() override {
+    if (device_ && !device_->connected()) drop();
     if (device_) return true;
     try {
       device_ = opener_();
@@ -54,16 +64,15 @@ class DeviceSlot {
     }
     return false;
   }
-
-  /// Gives the device up; ensure() will open it anew.
-  void drop() { reaper_.bury(std::move(device_)); }
+  void drop() override { reaper_.bury(std::move(device_)); }
+  [[nodiscard]] bool connected() const override { return device_ && device_->connected(); }
+  [[nodiscard]] const std::optional<DeviceFailure>& failure() const override { return failure_; }
+  [[nodiscard]] ErrorCode lost() const override { return lost_; }
 
   /// The device; ensure() returned true before.
   [[nodiscard]] Device& get() const { return *device_; }
-  [[nodiscard]] bool connected() const { return device_ && device_->connected(); }
   /// How often a device was opened so far.
   [[nodiscard]] int openings() const { return openings_; }
-  [[nodiscard]] const std::optional<DeviceFailure>& failure() const { return failure_; }
 
  private:
   Opener opener_;

@@ -2,34 +2,36 @@
 
 #include <utility>
 
-#include <pthread.h>
+#include "core/runtime/guarded_thread.hpp"
 
 namespace fvd {
 
-Reaper::Reaper() : thread_([this](std::stop_token stop) { run(stop); }) {
-  pthread_setname_np(thread_.native_handle(), "fvd-reaper");
-}
+Reaper::Reaper() : thread_(start_thread("fvd-reaper", [this](std::stop_token stop) { run(stop); })) {}
 
 Reaper::~Reaper() = default;
 
 void Reaper::enqueue(std::shared_ptr<void> device) {
   {
-    const std::lock_guard lock(mutex_);
-    dead_.push_back(std::move(device));
+    const MutexLock lock(mutex_);
+    given_up_.push_back(std::move(device));
   }
   changed_.notify_one();
 }
 
 void Reaper::run(std::stop_token stop) {
-  std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, stop, [this] { return !dead_.empty(); });
-    if (dead_.empty()) return;  // stop requested and nothing left
-    auto device = std::move(dead_.front());
-    dead_.pop_front();
-    lock.unlock();
+    std::shared_ptr<void> device;
+    {
+      MutexLock lock(mutex_);
+      changed_.wait(lock, stop, [this] {
+        mutex_.assert_held();
+        return !given_up_.empty();
+      });
+      if (given_up_.empty()) return;  // stop was requested and nothing is left
+      device = std::move(given_up_.front());
+      given_up_.pop_front();
+    }
     device.reset();
-    lock.lock();
   }
 }
 

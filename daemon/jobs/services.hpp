@@ -1,6 +1,6 @@
 #pragma once
 
-/// What the API needs of the engine, a narrow interface for each concern; tests put fakes in their place.
+/// What the API needs, a narrow interface for each concern; tests put fakes in their place.
 
 #include <cstdint>
 #include <functional>
@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/scan/scan_state.hpp"
 #include "core/stage/step_history.hpp"
 #include "daemon/jobs/device_task.hpp"
+#include "daemon/jobs/machine_state.hpp"
 #include "daemon/store/job_status.hpp"
 
 namespace fvd {
@@ -23,9 +23,7 @@ struct MachineStatus {
   ScanState state = ScanState::kPreoperational;
   std::string recipe;            ///< prepared recipe, empty = none
   std::optional<JobStatus> job;  ///< the running or the latest job
-  /// The part may be taken: standstill was measured since the stage was opened, and neither a command nor the
-  /// acquisition of a job holds it.
-  bool part_free = false;
+  Signals signals;
   int results_waiting = 0;  ///< completed and not acknowledged
   bool simulated = false;
   std::int64_t epoch = 0;          ///< counts the daemon's starts
@@ -39,12 +37,13 @@ class MachineView {
   virtual ~MachineView() = default;
   /// No lock that is held across a database or file access; never null.
   [[nodiscard]] virtual std::shared_ptr<const MachineStatus> snapshot() const = 0;
-  /// Called after every change of a job or the machine, from the engine's threads; must return at once. Set before use.
+  /// Called after every change of a job or the machine, from any thread; must return at once. Set before use.
   virtual void on_change(std::function<void()> listener) = 0;
 };
 
 /// Accepts jobs and tells of them.
-/// context: every function thread-safe; blocks for a database commit, so never called on the network thread.
+/// context: every function thread-safe; blocks for files and a database commit, so never called on the network thread.
+/// Nobody else waits for that: no lock is held meanwhile.
 class JobService {
  public:
   virtual ~JobService() = default;
@@ -53,9 +52,10 @@ class JobService {
     JobStatus job;
     bool duplicate = false;
   };
-  /// Accepts a job and returns after its row is durable; the scan runs later on the engine's thread. A repeated request
-  /// returns the existing job. Throws Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kMemoryBudget,
-  /// kSeqConflict, kSeqStale, kStorageFull, kDatabase, kShuttingDown.
+  /// Accepts a job and returns after its row is durable; the scan runs later on the device thread. A repeated request
+  /// returns the existing job, also while the first is still being made durable: it waits for it then.
+  /// Throws Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kMemoryBudget, kSeqConflict,
+  /// kSeqStale, kStorageFull, kDatabase, kShuttingDown.
   virtual Started start(const JobRequest& request) = 0;
 
   /// Throws Error kUnknownJob.
@@ -93,7 +93,7 @@ class TaskService {
  public:
   virtual ~TaskService() = default;
 
-  /// Has the engine do something with the devices as soon as it can; a job that is started meanwhile ends it. Throws
+  /// Does something with the devices as soon as they are free; a job that is started meanwhile ends it. Throws
   /// Error kBusy while a job runs or another task waits, kNotReady without the devices, kShuttingDown.
   virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) = 0;
   /// As submit(preview_work(settings)); while a job runs, the newest of its slices instead, scaled down.

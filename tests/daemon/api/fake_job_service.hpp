@@ -68,6 +68,7 @@ class FakeJobService final : public MachineView,
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
     MachineStatus status;
     status.state = ScanState::kReady;
+    status.signals = {.ready = true, .part_release = true};
     status.epoch = 17;
     status.job = current;
     return std::make_shared<const MachineStatus>(status);

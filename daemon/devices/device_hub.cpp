@@ -1,0 +1,96 @@
+#include "daemon/devices/device_hub.hpp"
+
+#include <utility>
+
+#include "daemon/devices/standstill.hpp"
+
+namespace fvd {
+
+DeviceHub::DeviceHub(DeviceOpeners openers, Clock& clock, std::function<void(bool)> on_rest)
+    : clock_(clock),
+      on_rest_(std::move(on_rest)),
+      camera_(std::move(openers.camera), ErrorCode::kCameraDisconnected, reaper_),
+      axis_(std::move(openers.axis), ErrorCode::kStageDisconnected, reaper_) {
+  // The axis first: one that moves on from before is stopped before a camera is waited for.
+  rows_.push_back({.kind = "stage", .slot = axis_, .check = [this] { return check_axis(); }});
+  rows_.push_back({.kind = "camera", .slot = camera_, .renewed_after = ErrorCode::kCameraFramesLost});
+}
+
+std::optional<DeviceFailure> DeviceHub::open() {
+  if (!axis_.connected()) set_at_rest(false);
+  std::optional<DeviceFailure> failure;
+  for (const Row& row : rows_) {
+    if (!row.slot.ensure()) {
+      failure = row.slot.failure();
+    } else if (row.check) {
+      if (auto found = row.check()) failure = std::move(found);
+    }
+  }
+  return failure;
+}
+
+std::optional<DeviceFailure> DeviceHub::lost() {
+  if (!axis_.connected()) set_at_rest(false);
+  for (const Row& row : rows_) {
+    if (!row.slot.connected()) {
+      return DeviceFailure{row.slot.lost(), std::string("the connection to the ") + row.kind + " was lost"};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<DeviceFailure> DeviceHub::after_failure(ErrorCode code, const std::string& message) {
+  if (code == axis_.lost()) axis_.drop();  // whatever it says of itself: nothing more is asked of it
+  std::optional<DeviceFailure> failure = lost();
+  if (axis_.connected()) {
+    if (auto moving = measure_standstill()) failure = std::move(moving);
+  }
+  for (const Row& row : rows_) {
+    if (row.slot.lost() == code) {
+      row.slot.drop();
+      failure = DeviceFailure{code, message};
+    } else if (row.renewed_after == code) {
+      row.slot.drop();
+    }
+  }
+  return failure;
+}
+
+void DeviceHub::drop_all() {
+  for (const Row& row : rows_) row.slot.drop();
+}
+
+DeviceFacts DeviceHub::facts() const {
+  const CameraInfo camera = camera_.get().info();
+  DeviceFacts facts{axis_.get().info(), camera.sensor_width, camera.sensor_height, camera.simulated};
+  facts.simulated = facts.simulated || facts.stage.simulated;
+  return facts;
+}
+
+std::optional<DeviceFailure> DeviceHub::check_axis() {
+  if (std::exchange(checked_opening_, axis_.openings()) == axis_.openings() && at_rest_) return std::nullopt;
+  return measure_standstill();
+}
+
+std::optional<DeviceFailure> DeviceHub::measure_standstill() {
+  try {
+    const bool rests = bring_to_rest(axis_.get(), clock_, [this] { set_at_rest(false); });
+    set_at_rest(rests);
+    if (rests) return std::nullopt;
+    return DeviceFailure{ErrorCode::kNotReady,
+                         "the stage was found moving and is being stopped; wait until it rests"};
+  } catch (const Error& error) {
+    set_at_rest(false);
+    if (error.code() == axis_.lost()) axis_.drop();
+    return DeviceFailure{error.code(), error.what()};
+  } catch (const std::exception& error) {
+    set_at_rest(false);
+    return DeviceFailure{ErrorCode::kInternal, error.what()};
+  }
+}
+
+void DeviceHub::set_at_rest(bool at_rest) {
+  if (std::exchange(at_rest_, at_rest) != at_rest) on_rest_(at_rest);
+}
+
+}  // namespace fvd

@@ -1,0 +1,87 @@
+#pragma once
+
+/// The daemon's devices: opened, watched, given up when they are lost, opened anew. A kind of device is one slot, one
+/// opener and one row of the hub's table.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/clock.hpp"
+#include "core/hw/axis.hpp"
+#include "core/hw/camera.hpp"
+#include "daemon/devices/device_slot.hpp"
+#include "daemon/devices/reaper.hpp"
+
+namespace fvd {
+
+struct DeviceOpeners {
+  DeviceSlot<Camera>::Opener camera;
+  DeviceSlot<Axis>::Opener axis;
+};
+
+/// What is known of the open devices without asking them.
+struct DeviceFacts {
+  StageInfo stage;
+  int sensor_width = 0;  ///< pixels
+  int sensor_height = 0;
+  bool simulated = false;
+};
+
+/// context: one thread, the device thread.
+class DeviceHub {
+ public:
+  /// on_rest: told whenever at_rest() changes, on the device thread.
+  DeviceHub(DeviceOpeners openers, Clock& clock, std::function<void(bool at_rest)> on_rest);
+  DeviceHub(const DeviceHub&) = delete;
+  DeviceHub& operator=(const DeviceHub&) = delete;
+
+  /// Opens every device that is missing, each once, and stops an axis that moves after it was opened. Why the devices
+  /// cannot be used; nothing if they can. Never throws.
+  [[nodiscard]] std::optional<DeviceFailure> open();
+
+  /// The first device whose connection was lost since it was opened.
+  [[nodiscard]] std::optional<DeviceFailure> lost();
+
+  /// After a job or a command that ended by an error: gives up the device that the error says is lost or needs to be
+  /// opened anew, and measures the axis' standstill. Opens nothing: the end is told first, open() comes later. Why the
+  /// devices cannot be used; nothing if they can.
+  [[nodiscard]] std::optional<DeviceFailure> after_failure(ErrorCode code, const std::string& message);
+
+  /// Gives all devices up.
+  void drop_all();
+
+  /// open() returned nothing before.
+  [[nodiscard]] Camera& camera() const { return camera_.get(); }
+  [[nodiscard]] Axis& axis() const { return axis_.get(); }
+  [[nodiscard]] DeviceFacts facts() const;
+  /// How often devices were opened so far.
+  [[nodiscard]] int openings() const { return camera_.openings() + axis_.openings(); }
+
+  /// The axis' standstill was measured since it was opened, and no motion was seen since.
+  [[nodiscard]] bool at_rest() const { return at_rest_; }
+
+ private:
+  struct Row {
+    const char* kind;  ///< as messages name it
+    AnyDeviceSlot& slot;
+    std::optional<ErrorCode> renewed_after = std::nullopt;        ///< an error that only a new opening mends
+    std::function<std::optional<DeviceFailure>()> check = nullptr;  ///< what must be so of an open device
+  };
+
+  [[nodiscard]] std::optional<DeviceFailure> check_axis();
+  [[nodiscard]] std::optional<DeviceFailure> measure_standstill();
+  void set_at_rest(bool at_rest);
+
+  Clock& clock_;
+  std::function<void(bool)> on_rest_;
+  bool at_rest_ = false;
+  int checked_opening_ = 0;  ///< of the axis, whose standstill was asked for
+  Reaper reaper_;
+  DeviceSlot<Camera> camera_;
+  DeviceSlot<Axis> axis_;
+  std::vector<Row> rows_;  ///< in the order of opening
+};
+
+}  // namespace fvd

@@ -1,0 +1,60 @@
+#include "daemon/jobs/device_thread.hpp"
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
+
+namespace fvd {
+
+namespace {
+
+/// How often an idle thread looks after its devices, and how often when one is missing.
+constexpr std::chrono::milliseconds kDeviceCheckPeriod{500};
+constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
+
+}  // namespace
+
+DeviceThread::DeviceThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work)
+    : hub_(hub),
+      board_(board),
+      work_(work),
+      thread_(start_thread("fvd-devices", [this](std::stop_token stop) { run(stop); })) {}
+
+DeviceThread::~DeviceThread() { finish(); }
+
+void DeviceThread::request_stop() { thread_.request_stop(); }
+
+void DeviceThread::finish() {
+  request_stop();
+  if (thread_.joinable()) thread_.join();
+  work_.close();
+}
+
+void DeviceThread::run(std::stop_token stop) {
+  while (!stop.stop_requested()) {
+    const bool complete = look_after_devices();
+    if (const auto work = work_.take(stop, complete ? kDeviceCheckPeriod : kDeviceRetryPeriod)) work->run();
+  }
+  hub_.drop_all();
+}
+
+bool DeviceThread::look_after_devices() {
+  const std::optional<DeviceFailure> failure = hub_.open();
+  const MachineRecord known = board_.read();
+  if (failure && failure != known.failure) spdlog::warn("{}: {}", error_name(failure->code), failure->message);
+  const DevicesState now = failure ? DevicesState::kDown : DevicesState::kUp;
+  const bool reopened = std::exchange(known_openings_, hub_.openings()) != hub_.openings();
+  if (known.failure == failure && known.state.devices == now && !reopened) return !failure;
+  board_.update([&](MachineRecord& machine) {
+    machine.set_devices(failure);
+    machine.devices = failure ? std::nullopt : std::optional(hub_.facts());
+  });
+  return !failure;
+}
+
+}  // namespace fvd

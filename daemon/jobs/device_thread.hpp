@@ -1,0 +1,41 @@
+#pragma once
+
+/// The one thread that touches the devices: does the work that was posted, and looks after the devices in between.
+
+#include <stop_token>
+#include <thread>
+
+#include "daemon/devices/device_hub.hpp"
+#include "daemon/jobs/machine_board.hpp"
+#include "daemon/jobs/work_queue.hpp"
+
+namespace fvd {
+
+class DeviceThread {
+ public:
+  /// Starts at once; opens the devices first.
+  DeviceThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work);
+  /// finish().
+  ~DeviceThread();
+  DeviceThread(const DeviceThread&) = delete;
+  DeviceThread& operator=(const DeviceThread&) = delete;
+
+  /// Asks the thread to end after the work that runs. context: any thread.
+  void request_stop();
+  /// Waits until the thread has ended and given the devices up, and refuses the work that still waits. context: one
+  /// thread.
+  void finish();
+
+ private:
+  void run(std::stop_token stop);
+  /// False if a device is missing.
+  bool look_after_devices();
+
+  DeviceHub& hub_;
+  MachineBoard& board_;
+  WorkQueue& work_;
+  int known_openings_ = 0;  // of the devices that the board knows
+  std::jthread thread_;  // last: ends before anything it uses
+};
+
+}  // namespace fvd

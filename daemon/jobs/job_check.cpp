@@ -1,0 +1,20 @@
+#include "daemon/jobs/job_check.hpp"
+
+#include "core/base/error.hpp"
+#include "core/scan/continuous_scan.hpp"
+#include "daemon/pipeline/job_memory.hpp"
+#include "daemon/pipeline/measurement.hpp"
+
+namespace fvd {
+
+void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& devices, const ComputeLimits& limits) {
+  if (!devices) throw Error(ErrorCode::kNotReady, "a device is being opened anew; try again when the machine is ready");
+  const ScanPlan plan = scan_plan(recipe);
+  if (recipe.mode == ScanMode::kContinuous) check_continuous(plan, recipe.camera, devices->stage);
+  check_plan(plan, devices->stage);
+  const int width = recipe.camera.width > 0 ? recipe.camera.width : devices->sensor_width;
+  const int height = recipe.camera.height > 0 ? recipe.camera.height : devices->sensor_height;
+  require_memory(job_memory(recipe, width, height, limits.threads), width, height, limits.memory_bytes);
+}
+
+}  // namespace fvd

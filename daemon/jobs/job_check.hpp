@@ -1,0 +1,21 @@
+#pragma once
+
+/// Whether a recipe can be run on the devices that are open.
+
+#include <cstddef>
+#include <optional>
+
+#include "daemon/devices/device_hub.hpp"
+#include "daemon/recipes/recipe.hpp"
+
+namespace fvd {
+
+struct ComputeLimits {
+  int threads = 1;               ///< of the worker pool
+  std::size_t memory_bytes = 0;  ///< budget of a job
+};
+
+/// Throws Error kNotReady without devices, kStageLimit, kBadRecipe, kMemoryBudget.
+void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& devices, const ComputeLimits& limits);
+
+}  // namespace fvd

@@ -1,0 +1,162 @@
+#include "daemon/jobs/job_queue.hpp"
+
+#include "core/base/error.hpp"
+
+namespace fvd {
+
+/// Holds a client's sequence number while its request is answered. A repetition waits here, and then finds the first one's row.
+class JobQueue::Claim {
+ public:
+  Claim(JobQueue& queue, const JobRequest& request) : queue_(queue), key_(key_of(request)) {
+    MutexLock lock(queue_.mutex_);
+    queue_.claim_ended_.wait(lock, [this] {
+      queue_.mutex_.assert_held();
+      return queue_.claimed_.count(key_) == 0;
+    });
+    queue_.claimed_.insert(key_);
+  }
+  ~Claim() {
+    {
+      const MutexLock lock(queue_.mutex_);
+      queue_.claimed_.erase(key_);
+    }
+    queue_.claim_ended_.notify_all();
+  }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+
+ private:
+  JobQueue& queue_;
+  RequestKey key_;
+};
+
+JobService::Started JobQueue::start(const JobRequest& request) {
+  const Claim claim(*this, request);
+  if (auto known = deps_.store.find_repeated(request)) {
+    // The running job is known better on the board than in the database.
+    return {on_board(known->job_id).value_or(*known), true};
+  }
+  const Offer offered = offer(request);
+  AcceptedJob job;
+  try {
+    job = made_durable(request, offered);
+  } catch (...) {
+    deps_.board.update([](MachineRecord& machine) { machine.apply(MachineEvent::kJobRefused); });
+    throw;
+  }
+  accept(job);
+  return {job.status, false};
+}
+
+JobQueue::Offer JobQueue::offer(const JobRequest& request) {
+  Offer offer;
+  deps_.board.update([&](MachineRecord& machine) {
+    machine.require(Command::kStartJob);
+    machine.apply(MachineEvent::kJobOffered);
+    offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices};
+  });
+  return offer;
+}
+
+AcceptedJob JobQueue::made_durable(const JobRequest& request, const Offer& offer) {
+  AcceptedJob job;
+  job.recipe = checked_recipe(offer.recipe_id, offer.devices);
+  JobRequest resolved = request;
+  resolved.recipe = job.recipe.id;
+  job.status = deps_.store.accept(resolved);
+  job.status.slices_planned = job.recipe.slices;
+  job.status.phase = "preparing";
+  return job;
+}
+
+void JobQueue::accept(const AcceptedJob& job) {
+  std::stop_source stop;
+  std::stop_source task_stop{std::nostopstate};
+  bool posted = false;
+  deps_.board.update([&](MachineRecord& machine) {
+    machine.apply(MachineEvent::kJobAccepted);
+    machine.recipe = job.recipe.id;
+    machine.job = job.status;
+    if (machine.state.halted) stop.request_stop();  // stop_job() was called before it could reach this job
+    task_stop = deps_.task_stop();
+    {
+      const MutexLock lock(mutex_);
+      stoppable_ = job.status.job_id;
+      stop_ = stop;
+    }
+    posted = deps_.work.post({.run = [this, job, token = stop.get_token()] { deps_.runner.run(job, token); },
+                              .refuse = [this, job] { deps_.runner.refuse(job); }});
+  });
+  task_stop.request_stop();  // measuring comes first
+  if (!posted) deps_.runner.refuse(job);
+}
+
+Recipe JobQueue::checked_recipe(const std::string& recipe_id, const std::optional<DeviceFacts>& devices) const {
+  if (recipe_id.empty()) {
+    throw Error(ErrorCode::kUnknownRecipe, "no recipe is named and none is prepared: name one or call recipe.prepare");
+  }
+  Recipe recipe = deps_.load_recipe(recipe_id);
+  require_acceptable(recipe, devices, deps_.limits);
+  return recipe;
+}
+
+std::optional<JobStatus> JobQueue::on_board(const JobKey& key) const {
+  auto job = deps_.board.snapshot()->job;
+  return job && names(key, *job) ? job : std::nullopt;
+}
+
+JobStatus JobQueue::job(const JobKey& key) const {
+  if (const auto job = on_board(key)) return *job;
+  return deps_.store.find(key).status;
+}
+
+JobStatus JobQueue::abort(const JobKey& key) {
+  const auto job = on_board(key);
+  if (!job) return deps_.store.find(key).status;
+  std::optional<std::stop_source> stop;
+  {
+    const MutexLock lock(mutex_);
+    if (stoppable_ == job->job_id) stop = stop_;
+  }
+  if (stop && job->state == JobState::kProcessing) stop->request_stop();
+  return *job;
+}
+
+void JobQueue::stop_job() {
+  std::stop_source stop{std::nostopstate};
+  {
+    const MutexLock lock(mutex_);
+    stop = stop_;
+  }
+  stop.request_stop();  // not under the lock: it calls what waits for it
+}
+
+void JobQueue::prepare(const std::string& recipe_id) {
+  const MachineRecord now = deps_.board.read();
+  now.require(Command::kPrepareRecipe);
+  const Recipe recipe = checked_recipe(recipe_id, now.devices);
+  deps_.board.update([&](MachineRecord& machine) {
+    machine.require(Command::kPrepareRecipe);
+    machine.recipe = recipe.id;
+    machine.apply(MachineEvent::kRecipePrepared);
+  });
+}
+
+std::string JobQueue::result_json(const JobKey& key) const { return deps_.store.find(key).result_json; }
+
+std::string JobQueue::result_dir(const JobKey& key) const { return deps_.store.find(key).result_dir; }
+
+std::optional<JobStatus> JobQueue::next_unacknowledged() const { return deps_.store.next_unacknowledged(); }
+
+int JobQueue::acknowledge(const JobKey& key) {
+  if (const auto job = on_board(key); job && job->state == JobState::kProcessing) {
+    throw Error(ErrorCode::kBusy, "job " + job->job_id + " is still running; acknowledge it when it has ended");
+  }
+  const int remaining = deps_.store.acknowledge(key);
+  deps_.board.update([&](MachineRecord& machine) {
+    if (machine.job && names(key, *machine.job)) machine.job->acknowledged = true;
+  });
+  return remaining;
+}
+
+}  // namespace fvd

@@ -1,0 +1,77 @@
+#pragma once
+
+/// Accepts jobs, one at a time, and tells of them and their results.
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/mutex.hpp"
+#include "daemon/jobs/job_check.hpp"
+#include "daemon/jobs/job_runner.hpp"
+#include "daemon/jobs/machine_board.hpp"
+#include "daemon/jobs/services.hpp"
+#include "daemon/jobs/work_queue.hpp"
+#include "daemon/recipes/recipe.hpp"
+#include "daemon/store/job_store.hpp"
+
+namespace fvd {
+
+/// A job is offered (the machine takes no other), made durable, accepted (readers see it) and posted. Files and the
+/// database are read and written between these steps, with no lock held.
+/// context: thread-safe.
+class JobQueue final : public JobService, public ResultService {
+ public:
+  struct Dependencies {
+    JobStore& store;
+    MachineBoard& board;
+    WorkQueue& work;
+    JobRunner& runner;
+    ComputeLimits limits;
+    std::function<Recipe(const std::string& recipe_id)> load_recipe;  ///< throws as load_recipe() does
+    std::function<std::stop_source()> task_stop;                      ///< as TaskRunner::task_stop()
+  };
+  explicit JobQueue(Dependencies dependencies) : deps_(std::move(dependencies)) {}
+
+  Started start(const JobRequest& request) override;
+  [[nodiscard]] JobStatus job(const JobKey& key) const override;
+  JobStatus abort(const JobKey& key) override;
+  void prepare(const std::string& recipe_id) override;
+
+  [[nodiscard]] std::string result_json(const JobKey& key) const override;
+  [[nodiscard]] std::string result_dir(const JobKey& key) const override;
+  [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override;
+  int acknowledge(const JobKey& key) override;
+
+  /// Asks the job that waits or runs to end.
+  void stop_job();
+
+ private:
+  using RequestKey = std::pair<std::string, std::int64_t>;  // client and sequence number
+  class Claim;
+  struct Offer {
+    std::string recipe_id;
+    std::optional<DeviceFacts> devices;
+  };
+
+  [[nodiscard]] static RequestKey key_of(const JobRequest& request) { return {request.client, request.seq}; }
+  [[nodiscard]] Offer offer(const JobRequest& request);
+  [[nodiscard]] AcceptedJob made_durable(const JobRequest& request, const Offer& offer);
+  void accept(const AcceptedJob& job);
+  [[nodiscard]] Recipe checked_recipe(const std::string& recipe_id, const std::optional<DeviceFacts>& devices) const;
+  [[nodiscard]] std::optional<JobStatus> on_board(const JobKey& key) const;
+
+  const Dependencies deps_;
+
+  Mutex mutex_;
+  Condition claim_ended_;
+  std::set<RequestKey> claimed_ FVD_GUARDED_BY(mutex_);  ///< requests that are being answered
+  std::string stoppable_ FVD_GUARDED_BY(mutex_);         ///< id of the job that stop_ ends
+  std::stop_source stop_ FVD_GUARDED_BY(mutex_);
+};
+
+}  // namespace fvd

@@ -1,0 +1,157 @@
+#include "daemon/jobs/job_runner.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.hpp"
+#include "daemon/base/version.hpp"
+#include "daemon/export/recorded_slices.hpp"
+
+namespace fvd {
+
+namespace {
+
+ResultData described(const AcceptedJob& job, const Config& config) {
+  ResultData result;
+  result.software_version = kVersion;
+  result.created = std::chrono::system_clock::now();
+  result.simulated = config.camera.simulated || config.stage.simulated;
+  result.job_id = job.status.job_id;
+  result.seq = job.status.request.seq;
+  result.part_id = job.status.request.part_id;
+  result.recipe_id = job.recipe.id;
+  result.recipe_sha256 = job.recipe.sha256;
+  result.focus = focus_settings(job.recipe);
+  result.peak = job.recipe.peak;
+  result.pixel_pitch_x_um = job.recipe.pixel_pitch_x_um;
+  result.pixel_pitch_y_um = job.recipe.pixel_pitch_y_um;
+  return result;
+}
+
+}  // namespace
+
+void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
+  if (stop.stop_requested()) {
+    if (halted()) return refuse(job);
+    return end(job, {.state = JobState::kAborted,
+                     .error = ErrorCode::kAborted,
+                     .message = "the job was aborted before it began",
+                     .used_devices = false});
+  }
+  spdlog::info("job {} starts: seq {}, part '{}', recipe {}", job.status.job_id, job.status.request.seq,
+               job.status.request.part_id, job.recipe.id);
+  deps_.preview.clear();
+  if (const auto failure = deps_.hub.open()) {
+    return end(job, {.error = failure->code, .message = failure->message, .failure = failure});
+  }
+  end(job, measured(job, stop));
+}
+
+void JobRunner::refuse(const AcceptedJob& job) {
+  end(job, {.error = ErrorCode::kShuttingDown,
+            .message = "the daemon was shut down before this could begin; ask again when it is back",
+            .used_devices = false});
+}
+
+JobRunner::JobEnd JobRunner::measured(const AcceptedJob& job, const std::stop_token& stop) {
+  try {
+    JobEnd end{.state = JobState::kCompleted, .result = acquire_and_store(job, stop)};
+    if (end.result.error) {
+      end.state = JobState::kFailed;
+      end.error = end.result.error;
+      end.message = end.result.message;
+    }
+    end.failure = deps_.hub.lost();
+    return end;
+  } catch (const Error& error) {
+    return failed(error.code(), error.what());
+  } catch (const std::exception& error) {
+    return failed(ErrorCode::kInternal, error.what());
+  }
+}
+
+JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_token& stop) {
+  ResultData acquired = described(job, deps_.config);
+  AtomicDirectory directory(deps_.config.paths.state_dir / "results" / job.status.job_id);
+  MeasurementObserver observer = this->observer();
+  std::optional<SliceRecorder> recorder;
+  if (job.recipe.record_slices) recorder.emplace(directory);
+  observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
+    if (recorder) recorder->add(pixels, z_um);
+    deps_.preview.offer(pixels, z_um);
+  };
+  measure(job.recipe,
+          {deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.pool,
+           static_cast<std::size_t>(deps_.config.compute.queue_slices), deps_.config.camera.time_offset},
+          observer, acquired, stop);
+  observer.on_phase("storing");
+  // In a continuous scan nobody commands the stage to be just there.
+  if (job.recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
+  if (recorder) recorder->finish("job " + job.status.job_id + (acquired.simulated ? ", simulated" : ""));
+  return deps_.make_result(directory, job.recipe, acquired);
+}
+
+JobRunner::JobEnd JobRunner::failed(ErrorCode code, const std::string& message) {
+  const bool aborted = code == ErrorCode::kAborted;
+  return {.state = aborted ? JobState::kAborted : JobState::kFailed,
+          .error = aborted && halted() ? ErrorCode::kShuttingDown : code,
+          .message = message,
+          .failure = deps_.hub.after_failure(code, message)};
+}
+
+MeasurementObserver JobRunner::observer() {
+  const auto change_job = [this](const std::function<void(MachineRecord&, JobStatus&)>& change) {
+    deps_.board.update([&change](MachineRecord& machine) { change(machine, *machine.job); });
+  };
+  MeasurementObserver observer;
+  observer.on_phase = [change_job](std::string_view phase) {
+    change_job([phase](MachineRecord&, JobStatus& job) { job.phase = phase; });
+  };
+  observer.on_slice = [change_job](const ScanReport& report) {
+    change_job([&report](MachineRecord&, JobStatus& job) {
+      job.slices_done = static_cast<int>(report.steps.size());
+      job.frames = report.frames;
+    });
+  };
+  observer.on_acquired = [change_job] {
+    change_job([](MachineRecord& machine, JobStatus& job) {
+      job.acquired = true;
+      machine.apply(MachineEvent::kJobAcquired);
+    });
+  };
+  return observer;
+}
+
+void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
+  if (end.error) {
+    spdlog::error("job {} {}: {}: {}", job.status.job_id, job_state_name(end.state), error_name(*end.error),
+                  end.message);
+  } else {
+    spdlog::info("job {} completed: {}", job.status.job_id, end.result.directory);
+  }
+  JobStatus ended = deps_.board.read().job.value_or(job.status);
+  ended.state = end.state;
+  ended.phase.clear();
+  ended.acquired = true;
+  ended.error = end.error;
+  ended.error_message = end.message;
+  // The row is durable before anybody can see the job's end; a database that fails must not hide that it ended.
+  try {
+    deps_.store.finish(ended, end.result.directory, end.result.text);
+  } catch (const Error& failure) {
+    spdlog::critical("job {}: its end could not be stored: {}", ended.job_id, failure.what());
+    ended.state = JobState::kFailed;
+    ended.error = failure.code();
+    ended.error_message = failure.what();
+  }
+  deps_.board.update([&](MachineRecord& machine) {
+    machine.job = ended;
+    machine.apply(MachineEvent::kJobEnded);
+    if (end.used_devices) machine.set_devices(end.failure);
+    machine.apply(MachineEvent::kRecipePrepared);  // by the job, on the way
+  });
+}
+
+}  // namespace fvd

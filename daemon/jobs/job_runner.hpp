@@ -1,0 +1,75 @@
+#pragma once
+
+/// One job from its start to its durable end.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+
+#include "core/base/clock.hpp"
+#include "core/runtime/worker_pool.hpp"
+#include "daemon/config/config.hpp"
+#include "daemon/devices/device_hub.hpp"
+#include "daemon/jobs/machine_board.hpp"
+#include "daemon/jobs/result_pipeline.hpp"
+#include "daemon/pipeline/measurement.hpp"
+#include "daemon/pipeline/preview_hub.hpp"
+#include "daemon/recipes/recipe.hpp"
+#include "daemon/store/job_store.hpp"
+#include "daemon/store/stage_history.hpp"
+
+namespace fvd {
+
+struct AcceptedJob {
+  JobStatus status;
+  Recipe recipe;
+};
+
+/// context: run() on the device thread, refuse() on any.
+class JobRunner {
+ public:
+  struct Dependencies {
+    const Config& config;
+    JobStore& store;
+    MachineBoard& board;
+    DeviceHub& hub;
+    Clock& clock;
+    WorkerPool& pool;
+    PreviewHub& preview;
+    StageHistory& history;
+    ResultPipeline make_result = store_result;
+  };
+  explicit JobRunner(Dependencies dependencies) : deps_(std::move(dependencies)) {}
+
+  /// Measures, and ends the job however that goes: its row first, then the board, then the devices are looked after.
+  /// Never throws.
+  void run(const AcceptedJob& job, const std::stop_token& stop);
+
+  /// Ends a job that did not begin because the daemon goes: failed, kShuttingDown. Never throws.
+  void refuse(const AcceptedJob& job);
+
+ private:
+  /// How a job ended.
+  struct JobEnd {
+    JobState state = JobState::kFailed;
+    std::optional<ErrorCode> error = std::nullopt;
+    std::string message = {};
+    JobResult result = {};                                ///< empty directory = none
+    bool used_devices = true;                             ///< and knows how they are:
+    std::optional<DeviceFailure> failure = std::nullopt;  ///< why they cannot be used after it
+  };
+
+  [[nodiscard]] JobEnd measured(const AcceptedJob& job, const std::stop_token& stop);
+  [[nodiscard]] JobResult acquire_and_store(const AcceptedJob& job, const std::stop_token& stop);
+  [[nodiscard]] JobEnd failed(ErrorCode code, const std::string& message);
+  [[nodiscard]] MeasurementObserver observer();
+  [[nodiscard]] bool halted() const { return deps_.board.read().state.halted; }
+  void end(const AcceptedJob& job, const JobEnd& end);
+
+  Dependencies deps_;
+};
+
+}  // namespace fvd

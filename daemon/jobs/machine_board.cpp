@@ -1,0 +1,110 @@
+#include "daemon/jobs/machine_board.hpp"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.hpp"
+#include "daemon/base/systemd_notify.hpp"
+
+namespace fvd {
+
+void MachineRecord::apply(MachineEvent event) { state = after(state, event).value_or(state); }
+
+void MachineRecord::set_devices(const std::optional<DeviceFailure>& why_not) {
+  apply(why_not ? MachineEvent::kDevicesDown : MachineEvent::kDevicesUp);
+  failure = why_not;
+}
+
+void MachineRecord::require(Command command) const {
+  switch (refusal(state, command)) {
+    case Refusal::kNone:
+      return;
+    case Refusal::kShuttingDown:
+      throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down and takes no more jobs");
+    case Refusal::kJobRuns:
+      throw Error(ErrorCode::kBusy, "job " + (job ? job->job_id : "") + " is running; wait for it to end");
+    case Refusal::kJobOffered:
+      throw Error(ErrorCode::kBusy, "another job is being accepted; wait for it to end");
+    case Refusal::kTaskRuns:
+      throw Error(ErrorCode::kBusy, "the devices are busy with another command; try again when it is done");
+    case Refusal::kOpening:
+      throw Error(ErrorCode::kNotReady, "the devices are still being opened");
+    case Refusal::kDeviceMissing:
+      throw Error(ErrorCode::kNotReady, failure ? failure->message : "a device is missing");
+  }
+}
+
+MachineBoard::MachineBoard(Constants constants, std::optional<JobStatus> latest_job)
+    : constants_(std::move(constants)) {
+  const MutexLock lock(mutex_);
+  record_.job = std::move(latest_job);
+  publish_locked();
+}
+
+std::shared_ptr<const MachineStatus> MachineBoard::snapshot() const {
+  const MutexLock lock(status_mutex_);
+  return status_;
+}
+
+void MachineBoard::on_change(std::function<void()> listener) {
+  const MutexLock lock(telling_mutex_);
+  listener_ = std::move(listener);
+}
+
+MachineRecord MachineBoard::read() const {
+  const MutexLock lock(mutex_);
+  return record_;
+}
+
+void MachineBoard::update(const std::function<void(MachineRecord&)>& change) {
+  {
+    const MutexLock lock(mutex_);
+    MachineRecord next = record_;
+    change(next);
+    const ScanState before = scan_state(record_.state);
+    const bool was_free = signals(record_.state).part_release;
+    record_ = std::move(next);
+    publish_locked();
+    const ScanState now = scan_state(record_.state);
+    const bool is_free = signals(record_.state).part_release;
+    if (now != before) {
+      untold_.push_back("state " + std::string(scan_state_name(before)) + " -> " + std::string(scan_state_name(now)));
+    }
+    if (is_free != was_free) untold_.push_back(std::string("part_release ") + (is_free ? "true" : "false"));
+  }
+  tell();
+}
+
+void MachineBoard::publish_locked() {
+  auto status = std::make_shared<MachineStatus>();
+  status->state = scan_state(record_.state);
+  status->signals = signals(record_.state);
+  status->recipe = record_.recipe;
+  status->job = record_.job;
+  status->results_waiting = constants_.results_waiting();
+  status->simulated = constants_.simulated || (record_.devices && record_.devices->simulated);
+  status->epoch = constants_.epoch;
+  if (record_.failure) {
+    status->error = record_.failure->code;
+    status->error_message = record_.failure->message;
+  }
+  const MutexLock lock(status_mutex_);
+  status_ = std::move(status);
+}
+
+void MachineBoard::tell() {
+  const MutexLock telling(telling_mutex_);  // the log has the changes in their order
+  std::vector<std::string> news;
+  std::string state;
+  {
+    const MutexLock lock(mutex_);
+    news = std::exchange(untold_, {});
+    state = scan_state_name(scan_state(record_.state));
+  }
+  for (const std::string& change : news) spdlog::info("{}", change);
+  if (!news.empty()) notify_status(state);
+  if (listener_) listener_();
+}
+
+}  // namespace fvd

@@ -1,0 +1,72 @@
+#pragma once
+
+/// What is known of the machine: changed in one place, read by everybody without waiting.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/mutex.hpp"
+#include "daemon/devices/device_hub.hpp"
+#include "daemon/jobs/machine_state.hpp"
+#include "daemon/jobs/services.hpp"
+#include "daemon/store/job_status.hpp"
+
+namespace fvd {
+
+struct MachineRecord {
+  MachineState state;
+  std::string recipe;                    ///< prepared recipe, empty = none
+  std::optional<JobStatus> job;          ///< the running or the latest job
+  std::optional<DeviceFailure> failure;  ///< why the devices cannot be used
+  std::optional<DeviceFacts> devices;    ///< of the devices when they were opened last
+
+  /// Ignores an event that its table does not allow.
+  void apply(MachineEvent event);
+  /// DevicesDown for the reason, or DevicesUp for nothing.
+  void set_devices(const std::optional<DeviceFailure>& why_not);
+  /// Throws Error kShuttingDown, kBusy, kNotReady.
+  void require(Command command) const;
+};
+
+/// context: thread-safe. A reader waits for the copy of a pointer alone. The log is written, and the listener called,
+/// under a lock that no reader needs; no lock is held over a database or a device.
+class MachineBoard final : public MachineView {
+ public:
+  struct Constants {
+    bool simulated = false;  ///< whatever the devices say of themselves
+    std::int64_t epoch = 0;
+    std::function<int()> results_waiting;  ///< must not block
+  };
+  MachineBoard(Constants constants, std::optional<JobStatus> latest_job);
+
+  [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override;
+  void on_change(std::function<void()> listener) override;
+
+  [[nodiscard]] MachineRecord read() const;
+
+  /// Changes the record in one piece: readers see the whole change or nothing of it, and nothing if it throws. Then logs
+  /// what changed for clients and tells the listener. change: short, calls nothing of the board, takes no lock that is
+  /// held while the board is called.
+  void update(const std::function<void(MachineRecord&)>& change);
+
+ private:
+  void publish_locked() FVD_REQUIRES(mutex_);
+  void tell();
+
+  const Constants constants_;
+
+  mutable Mutex mutex_;
+  MachineRecord record_ FVD_GUARDED_BY(mutex_);
+  std::vector<std::string> untold_ FVD_GUARDED_BY(mutex_);  ///< changes that the log lacks, in their order
+
+  mutable Mutex status_mutex_;  // held for a pointer's copy alone, inside mutex_ or without it
+  std::shared_ptr<const MachineStatus> status_ FVD_GUARDED_BY(status_mutex_);
+
+  Mutex telling_mutex_;  // held while the listener runs: once on_change({}) returned, it is not called again
+  std::function<void()> listener_ FVD_GUARDED_BY(telling_mutex_);
+};
+
+}  // namespace fvd

@@ -1,0 +1,54 @@
+#pragma once
+
+/// Commands to the devices between two jobs: images, exposure, focus, moves.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+#include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
+#include "daemon/devices/device_hub.hpp"
+#include "daemon/jobs/machine_board.hpp"
+#include "daemon/jobs/services.hpp"
+#include "daemon/jobs/work_queue.hpp"
+#include "daemon/pipeline/preview_hub.hpp"
+#include "daemon/store/stage_history.hpp"
+
+namespace fvd {
+
+/// One command at a time. Every command that was taken is answered, whatever happens.
+/// context: thread-safe; the commands run on the device thread.
+class TaskRunner final : public TaskService {
+ public:
+  struct Dependencies {
+    MachineBoard& board;
+    DeviceHub& hub;
+    WorkQueue& work;
+    Clock& clock;
+    PreviewHub& preview;
+    const StageHistory& history;
+    std::filesystem::path state_dir;
+  };
+  explicit TaskRunner(Dependencies dependencies) : deps_(std::move(dependencies)) {}
+
+  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) override;
+  std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override;
+  [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override;
+
+  /// Ends the command that was taken last, if it still waits or runs. May be called inside MachineBoard::update().
+  [[nodiscard]] std::stop_source task_stop();
+
+ private:
+  void run(DeviceTask& task, const std::stop_token& stop);
+  void refuse(DeviceTask& task);
+  [[nodiscard]] DeviceTask::Outcome performed(const DeviceTask& task, const std::stop_token& stop) const;
+
+  const Dependencies deps_;
+  Mutex mutex_;
+  std::stop_source stop_ FVD_GUARDED_BY(mutex_);  // of the command taken last
+};
+
+}  // namespace fvd

@@ -1,0 +1,89 @@
+#include "daemon/jobs/machine_board.hpp"
+
+#include <atomic>
+#include <thread>
+
+#include "core/base/error.hpp"
+#include "gtest/gtest.h"
+#include "tests/support/expect_error.hpp"
+
+namespace fvd {
+namespace {
+
+MachineBoard::Constants constants() {
+  return {.simulated = false, .epoch = 17, .results_waiting = [] { return 3; }};
+}
+
+void up(MachineRecord& machine) { machine.set_devices(std::nullopt); }
+
+TEST(MachineBoard, ShowsTheLatestJobAndTheConstantsFromTheStart) {
+  JobStatus job;
+  job.job_id = "latest";
+  const MachineBoard board(constants(), job);
+  const auto now = board.snapshot();
+  EXPECT_EQ(now->state, ScanState::kPreoperational);
+  EXPECT_EQ(now->job->job_id, "latest");
+  EXPECT_EQ(now->epoch, 17);
+  EXPECT_EQ(now->results_waiting, 3);
+}
+
+TEST(MachineBoard, ChangesNothingWhenTheChangeThrows) {
+  MachineBoard board(constants(), std::nullopt);
+  board.update(up);
+  EXPECT_THROW(board.update([](MachineRecord& machine) {
+                 machine.apply(MachineEvent::kMotionStarted);
+                 machine.recipe = "other";
+                 throw Error(ErrorCode::kBusy, "no");
+               }),
+               Error);
+  EXPECT_EQ(board.snapshot()->state, ScanState::kInitialized);
+  EXPECT_EQ(board.read().recipe, "");
+}
+
+TEST(MachineBoard, ShowsAJobsEndAndItsLostDeviceAsOneChange) {
+  MachineBoard board(constants(), std::nullopt);
+  board.update(up);
+  board.update([](MachineRecord& machine) {
+    machine.apply(MachineEvent::kJobOffered);
+    machine.apply(MachineEvent::kJobAccepted);
+  });
+  std::vector<ScanState> seen;
+  board.on_change([&] { seen.push_back(board.snapshot()->state); });
+  board.update([](MachineRecord& machine) {
+    machine.apply(MachineEvent::kJobEnded);
+    machine.set_devices(DeviceFailure{ErrorCode::kCameraDisconnected, "gone"});
+  });
+  EXPECT_EQ(seen, std::vector<ScanState>{ScanState::kError});
+  EXPECT_EQ(board.snapshot()->error, ErrorCode::kCameraDisconnected);
+}
+
+TEST(MachineBoard, SaysWhyItRefuses) {
+  MachineBoard board(constants(), std::nullopt);
+  const auto require = [&](Command command) { board.read().require(command); };
+  expect_error(ErrorCode::kNotReady, [&] { require(Command::kStartJob); });
+  board.update([](MachineRecord& machine) { machine.set_devices(DeviceFailure{ErrorCode::kStageDisconnected, "no axis"}); });
+  expect_error(ErrorCode::kNotReady, [&] { require(Command::kRunTask); }, "no axis");
+  board.update(up);
+  require(Command::kStartJob);
+  board.update([](MachineRecord& machine) { machine.apply(MachineEvent::kLookStarted); });
+  expect_error(ErrorCode::kBusy, [&] { require(Command::kRunTask); });
+  board.update([](MachineRecord& machine) { machine.apply(MachineEvent::kHalt); });
+  expect_error(ErrorCode::kShuttingDown, [&] { require(Command::kStartJob); });
+}
+
+TEST(MachineBoard, CallsNoListenerOnceItWasTakenAway) {
+  MachineBoard board(constants(), std::nullopt);
+  std::jthread changing([&](std::stop_token stop) {
+    while (!stop.stop_requested()) board.update([](MachineRecord&) {});
+  });
+  for (int i = 0; i < 200; ++i) {
+    auto alive = std::make_unique<std::atomic<int>>(0);
+    board.on_change([&counter = *alive] { ++counter; });
+    while (*alive == 0) std::this_thread::yield();
+    board.on_change({});
+    alive.reset();  // a call from now on is found by the address sanitizer
+  }
+}
+
+}  // namespace
+}  // namespace fvd
