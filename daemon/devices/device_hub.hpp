@@ -66,7 +66,7 @@ class DeviceHub {
   struct Row {
     const char* kind;  ///< as messages name it
     AnyDeviceSlot& slot;
-    std::optional<ErrorCode> renewed_after = std::nullopt;        ///< an error that only a new opening mends
+    std::optional<ErrorCode> renewed_after = std::nullopt;          ///< an error that only a new opening mends
     std::function<std::optional<DeviceFailure>()> check = nullptr;  ///< what must be so of an open device
   };
 

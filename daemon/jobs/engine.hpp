@@ -6,10 +6,10 @@
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
-#include "daemon/jobs/device_thread.hpp"
 #include "daemon/jobs/job_queue.hpp"
 #include "daemon/jobs/job_runner.hpp"
 #include "daemon/jobs/machine_board.hpp"
+#include "daemon/jobs/machine_thread.hpp"
 #include "daemon/jobs/recipe_folder.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/task_runner.hpp"
@@ -40,8 +40,8 @@ class Engine {
 
   /// Takes no more jobs and commands from now on, and asks what runs to end; returns at once. context: any thread.
   void shut_down();
-  /// shut_down(), then waits until all has ended and the devices were given up. A job that ran ends as aborted, one that
-  /// had not begun as failed, and a command that had not begun is answered as failed, each with kShuttingDown.
+  /// shut_down(), then waits until all has ended and the devices were given up. A job that ran ends as aborted, one
+  /// that had not begun as failed, and a command that had not begun is answered as failed, each with kShuttingDown.
   void finish();
 
  private:
@@ -55,7 +55,7 @@ class Engine {
   TaskRunner tasks_;
   JobRunner runner_;
   JobQueue jobs_;
-  DeviceThread thread_;  // last: ends before anything it uses
+  MachineThread thread_;  // last: ends before anything it uses
 };
 
 }  // namespace fvd

@@ -4,7 +4,8 @@
 
 namespace fvd {
 
-/// Holds a client's sequence number while its request is answered. A repetition waits here, and then finds the first one's row.
+/// Holds a client's sequence number while its request is answered. A repetition waits here, and then finds the first
+/// one's row.
 class JobQueue::Claim {
  public:
   Claim(JobQueue& queue, const JobRequest& request) : queue_(queue), key_(key_of(request)) {

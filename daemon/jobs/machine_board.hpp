@@ -47,9 +47,9 @@ class MachineBoard final : public MachineView {
 
   [[nodiscard]] MachineRecord read() const;
 
-  /// Changes the record in one piece: readers see the whole change or nothing of it, and nothing if it throws. Then logs
-  /// what changed for clients and tells the listener. change: short, calls nothing of the board, takes no lock that is
-  /// held while the board is called.
+  /// Changes the record in one piece: readers see the whole change or nothing of it, and nothing if it throws. Then
+  /// logs what changed for clients and tells the listener. change: short, calls nothing of the board, takes no lock
+  /// that is held while the board is called.
   void update(const std::function<void(MachineRecord&)>& change);
 
  private:

@@ -48,11 +48,11 @@ enum class MachineEvent {
   kHalt
 };
 inline constexpr std::array kAllMachineEvents{
-    MachineEvent::kDevicesUp,      MachineEvent::kDevicesDown, MachineEvent::kStandstillMeasured,
-    MachineEvent::kMotionSeen,     MachineEvent::kJobOffered,  MachineEvent::kRecipePrepared,
-    MachineEvent::kJobRefused,     MachineEvent::kJobAccepted, MachineEvent::kJobAcquired,
-    MachineEvent::kJobEnded,       MachineEvent::kLookStarted, MachineEvent::kMotionStarted,
-    MachineEvent::kTaskEnded,      MachineEvent::kHalt};
+    MachineEvent::kDevicesUp,  MachineEvent::kDevicesDown, MachineEvent::kStandstillMeasured,
+    MachineEvent::kMotionSeen, MachineEvent::kJobOffered,  MachineEvent::kRecipePrepared,
+    MachineEvent::kJobRefused, MachineEvent::kJobAccepted, MachineEvent::kJobAcquired,
+    MachineEvent::kJobEnded,   MachineEvent::kLookStarted, MachineEvent::kMotionStarted,
+    MachineEvent::kTaskEnded,  MachineEvent::kHalt};
 
 /// The first row that fits:
 ///

@@ -17,8 +17,8 @@ std::shared_ptr<DeviceTask> TaskRunner::submit(DeviceTask::Work work, TaskMotion
       const MutexLock lock(mutex_);
       stop_ = stop;
     }
-    posted = deps_.work.post(
-        {.run = [this, task, token = stop.get_token()] { run(*task, token); }, .refuse = [this, task] { refuse(*task); }});
+    posted = deps_.work.post({.run = [this, task, token = stop.get_token()] { run(*task, token); },
+                              .refuse = [this, task] { refuse(*task); }});
   });
   if (!posted) refuse(*task);
   return task;
@@ -58,7 +58,7 @@ void TaskRunner::run(DeviceTask& task, const std::stop_token& stop) {
     machine.apply(MachineEvent::kTaskEnded);
     if (begins) machine.set_devices(failure);
   });
-  task.end(std::move(outcome));                 // whoever reads it finds the devices free
+  task.end(std::move(outcome));               // whoever reads it finds the devices free
   deps_.board.update([](MachineRecord&) {});  // its caller is told
 }
 
