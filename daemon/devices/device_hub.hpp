@@ -29,10 +29,10 @@ struct DeviceFacts {
   bool simulated = false;
 };
 
-/// context: one thread, the device thread.
+/// context: one thread, the machine's thread.
 class DeviceHub {
  public:
-  /// on_rest: told whenever at_rest() changes, on the device thread.
+  /// on_rest: told whenever at_rest() changes, on the machine's thread.
   DeviceHub(DeviceOpeners openers, Clock& clock, std::function<void(bool at_rest)> on_rest);
   DeviceHub(const DeviceHub&) = delete;
   DeviceHub& operator=(const DeviceHub&) = delete;
