@@ -17,7 +17,8 @@ class App {
  public:
   /// Opens the store, starts the engine and listens. Throws Error kDatabase, kStorageWrite, kBadConfig.
   explicit App(const Config& config);
-  /// Ordered stop: the job is aborted, the stage halted, then connections close.
+  /// Ordered stop: the job is aborted, the stage halted, devices are given up, replies that are owed are sent, then
+  /// connections close.
   ~App();
   App(const App&) = delete;
   App& operator=(const App&) = delete;

@@ -77,8 +77,7 @@ std::optional<DeviceFailure> DeviceHub::measure_standstill() {
     const bool rests = bring_to_rest(axis_.get(), clock_, [this] { set_at_rest(false); });
     set_at_rest(rests);
     if (rests) return std::nullopt;
-    return DeviceFailure{ErrorCode::kNotReady,
-                         "the stage was found moving and is being stopped; wait until it rests"};
+    return DeviceFailure{ErrorCode::kNotReady, "the stage was found moving and is being stopped; wait until it rests"};
   } catch (const Error& error) {
     set_at_rest(false);
     if (error.code() == axis_.lost()) axis_.drop();

@@ -29,10 +29,10 @@ struct DeviceFacts {
   bool simulated = false;
 };
 
-/// context: one thread, the device thread.
+/// context: one thread, the machine's thread.
 class DeviceHub {
  public:
-  /// on_rest: told whenever at_rest() changes, on the device thread.
+  /// on_rest: told whenever at_rest() changes, on the machine's thread.
   DeviceHub(DeviceOpeners openers, Clock& clock, std::function<void(bool at_rest)> on_rest);
   DeviceHub(const DeviceHub&) = delete;
   DeviceHub& operator=(const DeviceHub&) = delete;
@@ -66,7 +66,7 @@ class DeviceHub {
   struct Row {
     const char* kind;  ///< as messages name it
     AnyDeviceSlot& slot;
-    std::optional<ErrorCode> renewed_after = std::nullopt;        ///< an error that only a new opening mends
+    std::optional<ErrorCode> renewed_after = std::nullopt;          ///< an error that only a new opening mends
     std::function<std::optional<DeviceFailure>()> check = nullptr;  ///< what must be so of an open device
   };
 

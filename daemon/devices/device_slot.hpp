@@ -21,7 +21,7 @@ struct DeviceFailure {
 };
 
 /// A slot of whatever kind of device.
-/// context: the device thread.
+/// context: the machine's thread.
 class AnyDeviceSlot {
  public:
   virtual ~AnyDeviceSlot() = default;

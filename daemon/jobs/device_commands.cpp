@@ -23,11 +23,11 @@ namespace {
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr int kRetries = 3;
+constexpr int kFrameRetries = 3;
 constexpr std::size_t kSnapsKept = 100;
-constexpr int kLooks = 8;
-/// The exposure is right when it is this near.
-constexpr double kNear = 0.05;
+constexpr int kMostExposureLooks = 8;
+/// The exposure is right when the factor that would correct it differs from 1 by no more.
+constexpr double kExposureTolerance = 0.05;
 
 struct Shot {
   Frame frame;
@@ -59,10 +59,10 @@ Shot shoot(const Devices& devices, const CameraSettings& settings, const std::st
   Shot shot;
   shot.settings = devices.camera.configure(settings);
   FrameLedger ledger;
-  auto captured = SliceCapture(devices.camera, devices.clock, ledger).capture(devices.clock.now(), kRetries, stop);
+  auto captured = SliceCapture(devices.camera, devices.clock, ledger).capture(devices.clock.now(), kFrameRetries, stop);
   if (!captured) {
     throw Error(ErrorCode::kCameraFramesLost,
-                "the camera sent no good frame for " + std::to_string(1 + kRetries) + " triggers: check its link");
+                "the camera sent no good frame for " + std::to_string(1 + kFrameRetries) + " triggers: check its link");
   }
   shot.frame = std::move(captured->frame);
   shot.z_um = devices.stage.mean_position(shot.frame.exposure_start, shot.frame.exposure_end).mean.value;
@@ -138,11 +138,11 @@ DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
     CameraSettings settings = asked;
     ordered_json result;
     const RestoredSettings restored(devices.camera, asked);
-    for (int look = 1; look <= kLooks; ++look) {
+    for (int look = 1; look <= kMostExposureLooks; ++look) {
       const Shot shot = shoot(devices, settings, stop);
       const GreyStatistics grey = grey_statistics(shot.frame.image);
       const double factor = exposure_factor(grey, shot.frame.image.format, target);
-      const bool reached = std::abs(factor - 1.0) <= kNear;
+      const bool reached = std::abs(factor - 1.0) <= kExposureTolerance;
       result = {
           {"exposure_us", shot.settings.exposure_us}, {"reached", reached}, {"looks", look}, {"grey", grey_json(grey)}};
       if (reached) break;

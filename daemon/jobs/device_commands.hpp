@@ -1,6 +1,6 @@
 #pragma once
 
-/// What may be asked of the devices between two jobs; each becomes the work of a DeviceTask whose result is a JSON
+/// The commands to the devices between two jobs: each function gives the work of a DeviceTask; the work returns a JSON
 /// text.
 
 #include "core/scan/autofocus.hpp"
@@ -8,15 +8,16 @@
 
 namespace fvd {
 
-/// One image, by a software trigger, in full: <state_dir>/snaps/<UTC time>.png, 8 or 16 bit, and what its grey levels
-/// say. The newest hundred are kept. Throws what the camera throws, kCameraFramesLost, kStorageWrite.
+/// Takes one image by a software trigger, writes it in full size to <state_dir>/snaps/<UTC time>-<n>.png, 8 or 16 bit,
+/// and tells the statistics of its grey levels. The newest hundred files are kept. Throws what the camera throws,
+/// kCameraFramesLost, kStorageWrite.
 [[nodiscard]] DeviceTask::Work snap_work(const CameraSettings& settings);
 
 /// One image scaled down, as preview_json().
 [[nodiscard]] DeviceTask::Work preview_work(const CameraSettings& settings);
 
-/// Looks, and changes the exposure, until 0.1 % of the pixels are brighter than `target` of full scale, 8 looks at
-/// most. However it ends, `settings` are put back in force.
+/// Takes images, and changes the exposure, until 0.1 % of the pixels are brighter than `target` (0..1) of full scale, 8
+/// images at most. However it ends, `settings` are put back in force.
 [[nodiscard]] DeviceTask::Work exposure_work(const CameraSettings& settings, double target);
 
 /// See autofocus().

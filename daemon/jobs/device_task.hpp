@@ -1,6 +1,6 @@
 #pragma once
 
-/// Something to be done with the devices between two jobs: an image, an autofocus.
+/// A command to the devices between two jobs: an image, an autofocus, a move.
 
 #include <filesystem>
 #include <functional>
@@ -23,10 +23,10 @@ struct Devices {
   std::filesystem::path state_dir;
 };
 
-/// What a command does to the axis: a part under one that moves may not be touched.
+/// What a command does to the axis: a part may not be touched while a command moves it.
 enum class TaskMotion { kNone, kMoves };
 
-/// context: run() on the engine's thread, the rest on any.
+/// context: perform() and run() on the machine's thread, the rest on any.
 class DeviceTask {
  public:
   /// Returns the result as a JSON text. A stop request ends it: a job has come, or the daemon goes.
@@ -39,18 +39,18 @@ class DeviceTask {
   };
 
   explicit DeviceTask(Work work, TaskMotion motion = TaskMotion::kNone) : work_(std::move(work)), motion_(motion) {}
-  /// One that is done already.
+  /// A task that is done already.
   explicit DeviceTask(Outcome outcome) : outcome_(std::move(outcome)) {}
 
   /// Does the work and tells nobody yet: the machine's state comes before the answer.
   [[nodiscard]] Outcome perform(const Devices& devices, std::stop_token stop) const noexcept;
-  /// The first end counts.
+  /// Gives the answer; only the first call counts.
   void end(Outcome outcome) noexcept;
-  /// Both in one.
+  /// perform() and end().
   void run(const Devices& devices, std::stop_token stop) noexcept;
   void fail(ErrorCode code, const std::string& message) noexcept;
 
-  /// Nothing while it is not done.
+  /// Nothing until the task is done.
   [[nodiscard]] std::optional<Outcome> outcome() const;
   [[nodiscard]] bool moves() const noexcept { return motion_ == TaskMotion::kMoves; }
 

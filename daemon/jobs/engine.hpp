@@ -7,10 +7,10 @@
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
-#include "daemon/jobs/device_thread.hpp"
 #include "daemon/jobs/job_queue.hpp"
 #include "daemon/jobs/job_runner.hpp"
 #include "daemon/jobs/machine_board.hpp"
+#include "daemon/jobs/machine_thread.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/task_runner.hpp"
 #include "daemon/jobs/work_queue.hpp"
@@ -55,7 +55,7 @@ class Engine {
   TaskRunner tasks_;
   JobRunner runner_;
   JobQueue jobs_;
-  DeviceThread thread_;  // last: ends before anything it uses
+  MachineThread thread_;  // last: ends before anything it uses
 };
 
 }  // namespace fvd

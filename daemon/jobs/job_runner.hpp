@@ -28,7 +28,7 @@ struct AcceptedJob {
   Recipe recipe;
 };
 
-/// context: run() on the device thread, refuse() on any.
+/// context: run() on the machine's thread, refuse() on any.
 class JobRunner {
  public:
   struct Dependencies {

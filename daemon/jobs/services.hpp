@@ -53,10 +53,10 @@ class JobService {
     JobStatus job;
     bool duplicate = false;
   };
-  /// Accepts a job and returns after its row is durable; the scan runs later on the device thread. A repeated request
-  /// returns the existing job, also while the first is still being made durable: it waits for it then.
-  /// Throws Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kMemoryBudget, kSeqConflict,
-  /// kSeqStale, kStorageFull, kDatabase, kShuttingDown.
+  /// Accepts a job and returns after its row is durable; the scan runs later on the machine's thread. A repeated
+  /// request returns the existing job, also while the first is still being made durable: it waits for it then. Throws
+  /// Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kMemoryBudget, kSeqConflict, kSeqStale,
+  /// kStorageFull, kDatabase, kShuttingDown.
   virtual Started start(const JobRequest& request) = 0;
 
   /// Throws Error kUnknownJob.

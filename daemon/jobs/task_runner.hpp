@@ -20,7 +20,7 @@
 namespace fvd {
 
 /// One command at a time. Every command that was taken is answered, whatever happens.
-/// context: thread-safe; the commands run on the device thread.
+/// context: thread-safe; the commands run on the machine's thread.
 class TaskRunner final : public TaskService {
  public:
   struct Dependencies {

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What waits for the device thread: at most one command and one job, in the order in which they were taken.
+/// What waits for the machine's thread: at most one command and one job, in the order in which they were taken.
 
 #include <chrono>
 #include <deque>
@@ -14,7 +14,7 @@ namespace fvd {
 
 /// One of the two is called, once. Neither throws.
 struct Work {
-  std::function<void()> run;     ///< on the device thread
+  std::function<void()> run;     ///< on the machine's thread
   std::function<void()> refuse;  ///< in its place if the queue was closed before; on the thread that closes it
 };
 

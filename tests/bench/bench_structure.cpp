@@ -5,6 +5,7 @@
 /// bench_structure FVD [KILLS] [LOSSES]: the program to be looked at, e.g. build/daemon/fvd.
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -213,6 +214,17 @@ json ping_beside_a_slow_disk(const std::filesystem::path& program) {
           {"jobs_beside_pings", jobs}};
 }
 
+/// A command's stop against what ends the command: 0 if the program that runs the rounds ended badly.
+json stop_race() {
+  json figures{{"stop_race_rounds", 0}};
+  std::FILE* output = ::popen(FVD_STOP_RACE, "r");
+  if (output == nullptr) return figures;
+  std::array<char, 256> line{};
+  const bool told = std::fgets(line.data(), static_cast<int>(line.size()), output) != nullptr;
+  if (::pclose(output) == 0 && told) figures.update(json::parse(line.data()));
+  return figures;
+}
+
 int run(int argc, char** argv) {
   if (argc < 2) {
     std::cerr << "usage: bench_structure FVD [KILLS] [LOSSES]\n";
@@ -223,6 +235,7 @@ int run(int argc, char** argv) {
   std::cerr << figures.dump() << '\n';
   figures.update(ready_before_error(program, argc > 3 ? std::atoi(argv[3]) : 50));
   std::cerr << figures.dump() << '\n';
+  figures.update(stop_race());
   figures.update(ping_beside_a_slow_disk(program));
   std::cout << figures.dump() << std::endl;
   return 0;

@@ -1,7 +1,9 @@
 #include "daemon/jobs/machine_board.hpp"
 
 #include <atomic>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "gtest/gtest.h"
@@ -31,10 +33,10 @@ TEST(MachineBoard, ChangesNothingWhenTheChangeThrows) {
   MachineBoard board(constants(), std::nullopt);
   board.update(up);
   EXPECT_THROW(board.update([](MachineRecord& machine) {
-                 machine.apply(MachineEvent::kMotionStarted);
-                 machine.recipe = "other";
-                 throw Error(ErrorCode::kBusy, "no");
-               }),
+    machine.apply(MachineEvent::kMotionStarted);
+    machine.recipe = "other";
+    throw Error(ErrorCode::kBusy, "no");
+  }),
                Error);
   EXPECT_EQ(board.snapshot()->state, ScanState::kInitialized);
   EXPECT_EQ(board.read().recipe, "");
@@ -60,15 +62,17 @@ TEST(MachineBoard, ShowsAJobsEndAndItsLostDeviceAsOneChange) {
 TEST(MachineBoard, SaysWhyItRefuses) {
   MachineBoard board(constants(), std::nullopt);
   const auto require = [&](Command command) { board.read().require(command); };
-  expect_error(ErrorCode::kNotReady, [&] { require(Command::kStartJob); });
-  board.update([](MachineRecord& machine) { machine.set_devices(DeviceFailure{ErrorCode::kStageDisconnected, "no axis"}); });
-  expect_error(ErrorCode::kNotReady, [&] { require(Command::kRunTask); }, "no axis");
+  FVD_EXPECT_ERROR(kNotReady, require(Command::kStartJob));
+  board.update([](MachineRecord& machine) {
+    machine.set_devices(DeviceFailure{ErrorCode::kStageDisconnected, "no axis"});
+  });
+  FVD_EXPECT_ERROR_SAYING(kNotReady, require(Command::kRunTask), testing::HasSubstr("no axis"));
   board.update(up);
   require(Command::kStartJob);
   board.update([](MachineRecord& machine) { machine.apply(MachineEvent::kLookStarted); });
-  expect_error(ErrorCode::kBusy, [&] { require(Command::kRunTask); });
+  FVD_EXPECT_ERROR(kBusy, require(Command::kRunTask));
   board.update([](MachineRecord& machine) { machine.apply(MachineEvent::kHalt); });
-  expect_error(ErrorCode::kShuttingDown, [&] { require(Command::kStartJob); });
+  FVD_EXPECT_ERROR(kShuttingDown, require(Command::kStartJob));
 }
 
 TEST(MachineBoard, CallsNoListenerOnceItWasTakenAway) {

@@ -1,4 +1,4 @@
-#include "daemon/jobs/device_thread.hpp"
+#include "daemon/jobs/machine_thread.hpp"
 
 #include <chrono>
 #include <optional>
@@ -19,23 +19,23 @@ constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
 
 }  // namespace
 
-DeviceThread::DeviceThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work)
+MachineThread::MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work)
     : hub_(hub),
       board_(board),
       work_(work),
-      thread_(start_thread("fvd-devices", [this](std::stop_token stop) { run(stop); })) {}
+      thread_(start_thread("fvd-machine", [this](std::stop_token stop) { run(stop); })) {}
 
-DeviceThread::~DeviceThread() { finish(); }
+MachineThread::~MachineThread() { finish(); }
 
-void DeviceThread::request_stop() { thread_.request_stop(); }
+void MachineThread::request_stop() { thread_.request_stop(); }
 
-void DeviceThread::finish() {
+void MachineThread::finish() {
   request_stop();
   if (thread_.joinable()) thread_.join();
   work_.close();
 }
 
-void DeviceThread::run(std::stop_token stop) {
+void MachineThread::run(std::stop_token stop) {
   while (!stop.stop_requested()) {
     const bool complete = look_after_devices();
     if (const auto work = work_.take(stop, complete ? kDeviceCheckPeriod : kDeviceRetryPeriod)) work->run();
@@ -43,7 +43,7 @@ void DeviceThread::run(std::stop_token stop) {
   hub_.drop_all();
 }
 
-bool DeviceThread::look_after_devices() {
+bool MachineThread::look_after_devices() {
   const std::optional<DeviceFailure> failure = hub_.open();
   const MachineRecord known = board_.read();
   if (failure && failure != known.failure) spdlog::warn("{}: {}", error_name(failure->code), failure->message);

@@ -11,14 +11,14 @@
 
 namespace fvd {
 
-class DeviceThread {
+class MachineThread {
  public:
   /// Starts at once; opens the devices first.
-  DeviceThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work);
+  MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work);
   /// finish().
-  ~DeviceThread();
-  DeviceThread(const DeviceThread&) = delete;
-  DeviceThread& operator=(const DeviceThread&) = delete;
+  ~MachineThread();
+  MachineThread(const MachineThread&) = delete;
+  MachineThread& operator=(const MachineThread&) = delete;
 
   /// Asks the thread to end after the work that runs. context: any thread.
   void request_stop();

@@ -1,0 +1,175 @@
+#include "daemon/devices/device_hub.hpp"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "gtest/gtest.h"
+#include "sim/fakes/fakes.hpp"
+
+namespace fvd {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+/// What the devices are told to be; it outlives them.
+struct Cables {
+  bool camera = true;
+  bool axis = true;
+  bool axis_moves = false;
+  bool axis_stops = true;
+  bool status_fails = false;
+};
+
+class CabledCamera final : public sim::FakeCamera {
+ public:
+  CabledCamera(sim::FakeClock& clock, const Cables& cables) : FakeCamera(clock, 16, 12), cables_(cables) {}
+  [[nodiscard]] bool connected() const noexcept override { return cables_.camera; }
+
+ private:
+  const Cables& cables_;
+};
+
+class CabledAxis final : public sim::FakeAxis {
+ public:
+  CabledAxis(sim::FakeClock& clock, Cables& cables) : FakeAxis(clock), cables_(cables) {}
+  StageStatus status() override {
+    if (!cables_.axis || cables_.status_fails) throw Error(ErrorCode::kStageDisconnected, "no answer");
+    StageStatus status = FakeAxis::status();
+    status.moving = cables_.axis_moves;
+    return status;
+  }
+  void stop() noexcept override { cables_.axis_moves = cables_.axis_moves && !cables_.axis_stops; }
+  [[nodiscard]] bool connected() const noexcept override { return cables_.axis; }
+
+ private:
+  Cables& cables_;
+};
+
+class ADeviceHub : public testing::Test {
+ protected:
+  sim::FakeClock clock_;
+  Cables cables_;
+  Strings opened_;
+  std::vector<bool> rest_;
+  DeviceHub hub_{{.camera = [this]() -> std::unique_ptr<Camera> {
+                    opened_.emplace_back("camera");
+                    if (!cables_.camera) throw Error(ErrorCode::kCameraDisconnected, "no camera answers");
+                    return std::make_unique<CabledCamera>(clock_, cables_);
+                  },
+                  .axis = [this]() -> std::unique_ptr<Axis> {
+                    opened_.emplace_back("axis");
+                    if (!cables_.axis) throw Error(ErrorCode::kStageDisconnected, "no stage answers");
+                    return std::make_unique<CabledAxis>(clock_, cables_);
+                  }},
+                 clock_,
+                 [this](bool at_rest) { rest_.push_back(at_rest); }};
+};
+
+TEST_F(ADeviceHub, OpensTheAxisFirstAndEachDeviceOnce) {
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(opened_, (Strings{"axis", "camera"}));
+  EXPECT_EQ(hub_.openings(), 2);
+  EXPECT_EQ(rest_, std::vector<bool>{true});
+  EXPECT_EQ(hub_.facts().sensor_height, 12);
+}
+
+TEST_F(ADeviceHub, TriesAMissingDeviceAgainAndStopsTheAxisMeanwhile) {
+  cables_.camera = false;
+  cables_.axis_moves = true;
+  EXPECT_EQ(hub_.open(), (DeviceFailure{ErrorCode::kCameraDisconnected, "no camera answers"}));
+  EXPECT_FALSE(cables_.axis_moves);
+  EXPECT_TRUE(hub_.at_rest());
+  cables_.camera = true;
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(opened_, (Strings{"axis", "camera", "camera"}));
+}
+
+TEST_F(ADeviceHub, IsNotUsableWhileTheAxisMovesOn) {
+  cables_.axis_moves = true;
+  cables_.axis_stops = false;
+  ASSERT_TRUE(hub_.open().has_value());
+  EXPECT_EQ(hub_.open()->code, ErrorCode::kNotReady);
+  EXPECT_FALSE(hub_.at_rest());
+  EXPECT_TRUE(rest_.empty()) << "at rest is told when it is measured, and never was";
+  cables_.axis_stops = true;
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(rest_, std::vector<bool>{true});
+}
+
+TEST_F(ADeviceHub, NamesTheDeviceThatWasLostAndOpensItAnew) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(hub_.lost(), std::nullopt);
+  cables_.camera = false;
+  EXPECT_EQ(hub_.lost()->code, ErrorCode::kCameraDisconnected);
+  EXPECT_TRUE(hub_.at_rest());
+  cables_.axis = false;
+  EXPECT_EQ(hub_.lost()->code, ErrorCode::kStageDisconnected);
+  EXPECT_EQ(rest_, (std::vector<bool>{true, false})) << "an axis that cannot be seen is not at rest";
+  cables_ = {};
+  EXPECT_EQ(hub_.open(), std::nullopt) << "the fakes are connected again: the devices are the same";
+  EXPECT_EQ(rest_, (std::vector<bool>{true, false, true}));
+}
+
+TEST_F(ADeviceHub, MeasuresStandstillAnewAfterEveryOpening) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(hub_.after_failure(ErrorCode::kStageDisconnected, "no answer"),
+            (DeviceFailure{ErrorCode::kStageDisconnected, "no answer"}));
+  EXPECT_FALSE(hub_.at_rest());
+  cables_.axis_moves = true;
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_FALSE(cables_.axis_moves) << "it was found moving and stopped";
+  EXPECT_EQ(rest_, (std::vector<bool>{true, false, true}));
+}
+
+TEST_F(ADeviceHub, GivesUpTheDeviceThatAnErrorNamesAndOpensNothing) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  opened_.clear();
+  EXPECT_EQ(hub_.after_failure(ErrorCode::kCameraDisconnected, "pulled"),
+            (DeviceFailure{ErrorCode::kCameraDisconnected, "pulled"}));
+  EXPECT_TRUE(opened_.empty());
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(opened_, Strings{"camera"});
+}
+
+TEST_F(ADeviceHub, RenewsACameraThatLostFramesAtTheNextOpeningOnly) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  opened_.clear();
+  EXPECT_EQ(hub_.after_failure(ErrorCode::kCameraFramesLost, "no frames"), std::nullopt);
+  EXPECT_TRUE(opened_.empty()) << "the end of the job is told first";
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(opened_, Strings{"camera"});
+}
+
+TEST_F(ADeviceHub, KeepsItsDevicesAfterAnErrorThatIsNotTheirs) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  opened_.clear();
+  EXPECT_EQ(hub_.after_failure(ErrorCode::kStorageFull, "full"), std::nullopt);
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_TRUE(opened_.empty());
+}
+
+TEST_F(ADeviceHub, StopsAnAxisThatMovesAfterAnError) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  cables_.axis_moves = true;
+  EXPECT_EQ(hub_.after_failure(ErrorCode::kStagePosition, "does not settle"), std::nullopt);
+  EXPECT_FALSE(cables_.axis_moves);
+  EXPECT_EQ(rest_, (std::vector<bool>{true, false, true})) << "seen moving, then at rest";
+}
+
+TEST_F(ADeviceHub, GivesUpAnAxisThatStopsAnsweringWhileStandstillIsMeasured) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  opened_.clear();
+  cables_.status_fails = true;
+  EXPECT_EQ(hub_.after_failure(ErrorCode::kAborted, "aborted")->code, ErrorCode::kStageDisconnected);
+  EXPECT_FALSE(hub_.at_rest());
+  cables_.status_fails = false;
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(opened_, Strings{"axis"});
+}
+
+}  // namespace
+}  // namespace fvd

@@ -1,0 +1,171 @@
+/// Devices that are lost, disks that are full: at every point the job or the command ends, is told, and the machine
+/// says why it is not ready.
+
+#include <cerrno>
+
+#include "daemon/jobs/device_commands.hpp"
+#include "gtest/gtest.h"
+#include "tests/daemon/jobs/engine_bench.hpp"
+#include "tests/daemon/store/broken_disk.hpp"
+
+namespace fvd {
+namespace {
+
+using test::AnEngine;
+using T = sim::TriggerOutcome;
+
+class ACameraLossAtSlice : public AnEngine, public testing::WithParamInterface<int> {};
+
+TEST_P(ACameraLossAtSlice, EndsTheJobAndLeadsToErrorDirectly) {
+  bench_.script.assign(static_cast<std::size_t>(GetParam()), T::kFrame);
+  bench_.script.push_back(T::kDisconnect);
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  unplug_camera_for_good();
+  jobs().start({1, "a", "part"});
+  ASSERT_TRUE(await_end_of(1));
+  const auto now = machine().snapshot();
+  EXPECT_EQ(now->job->state, JobState::kFailed);
+  EXPECT_EQ(now->job->error, ErrorCode::kCameraDisconnected);
+  EXPECT_EQ(state_behind_executing(), ScanState::kError);
+  EXPECT_EQ(now->error, ErrorCode::kCameraDisconnected);
+  EXPECT_TRUE(now->signals.part_release) << "the axis stands, and that was measured";
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kCameraDisconnected);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfFive, ACameraLossAtSlice, testing::Range(0, 5));
+
+class AStageLossAtMove : public AnEngine, public testing::WithParamInterface<int> {};
+
+TEST_P(AStageLossAtMove, EndsTheJobAndHoldsThePart) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  bench_.moves_until_lost = GetParam();
+  jobs().start({1, "a", "part"});
+  ASSERT_TRUE(await_end_of(1));
+  const auto now = machine().snapshot();
+  EXPECT_EQ(now->job->state, JobState::kFailed);
+  EXPECT_EQ(now->job->error, ErrorCode::kStageDisconnected);
+  EXPECT_EQ(state_behind_executing(), ScanState::kError);
+  EXPECT_FALSE(now->signals.part_release) << "nobody knows whether it moves";
+  {
+    const std::lock_guard lock(bench_.mutex);
+    bench_.axis_plugged = true;
+  }
+  ASSERT_TRUE(await_state(ScanState::kInitialized)) << "it is opened anew by itself";
+  EXPECT_TRUE(signals().part_release);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfSix, AStageLossAtMove, testing::Range(0, 6));  // the take-up, then five slices
+
+TEST_F(AnEngine, FailsAJobWhoseCameraIsGoneBeforeItBegins) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  test::Hold hold;
+  const auto task = tasks().submit(
+      [&hold](const Devices& devices, std::stop_token) -> std::string {
+        hold.began.set_value();
+        hold.go.get_future().wait_for(std::chrono::seconds(10));
+        (void)devices;
+        throw Error(ErrorCode::kCameraDisconnected, "pulled");
+      },
+      TaskMotion::kMoves);
+  hold.began.get_future().wait();
+  unplug_camera_for_good();
+  jobs().start({1, "a", "part"});
+  hold.go.set_value();
+  ASSERT_TRUE(await_end_of(1));
+  EXPECT_EQ(task->outcome()->error, ErrorCode::kCameraDisconnected);
+  EXPECT_EQ(machine().snapshot()->job->error, ErrorCode::kCameraDisconnected);
+  EXPECT_EQ(state_behind_executing(), ScanState::kError);
+}
+
+TEST_F(AnEngine, AnswersACommandWhoseStageIsLostAndGoesToErrorDirectly) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  bench_.moves_until_lost = 0;
+  const auto task = tasks().submit(move_work(Micrometers{10.0}), TaskMotion::kMoves);
+  ASSERT_TRUE(await_answer(*task));
+  EXPECT_EQ(task->outcome()->error, ErrorCode::kStageDisconnected);
+  EXPECT_EQ(machine().snapshot()->state, ScanState::kError) << "the state comes before the answer";
+  EXPECT_EQ(state_behind_executing(), ScanState::kError);
+  EXPECT_FALSE(signals().part_release);
+}
+
+TEST_F(AnEngine, AnswersACommandWhoseCameraIsLost) {
+  bench_.script = {T::kDisconnect};
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  unplug_camera_for_good();
+  const auto task = tasks().submit(snap_work(CameraSettings{}), TaskMotion::kNone);
+  ASSERT_TRUE(await_answer(*task));
+  EXPECT_EQ(task->outcome()->error, ErrorCode::kCameraDisconnected);
+  EXPECT_EQ(machine().snapshot()->state, ScanState::kError);
+}
+
+TEST_F(AnEngine, AnswersACommandThatWaitedForADeviceThatIsMissing) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  bench_.moves_until_lost = 0;
+  (void)tasks().submit(move_work(Micrometers{10.0}), TaskMotion::kMoves);
+  ASSERT_TRUE(await_state(ScanState::kError));
+  EXPECT_THROW(tasks().submit(move_work(Micrometers{20.0}), TaskMotion::kMoves), Error);
+  EXPECT_THROW(jobs().start({1, "a", "part"}), Error);
+}
+
+TEST_F(AnEngine, FailsAJobWhoseResultFindsTheDiskFullAndTakesTheNext) {
+  std::atomic<int> results = 0;
+  open([&results](AtomicDirectory& directory, const Recipe& recipe, const ResultData& acquired) -> JobResult {
+    if (results++ == 0) {
+      directory.add_file("height.tiff", "half of it");
+      throw Error(ErrorCode::kStorageFull, "no space is left on the device");
+    }
+    return store_result(directory, recipe, acquired);
+  });
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  const std::string first = jobs().start({1, "a", "part"}).job.job_id;
+  ASSERT_TRUE(await_end_of(1));
+  EXPECT_EQ(store_->find(first).status.error, ErrorCode::kStorageFull);
+  EXPECT_EQ(store_->find(first).result_dir, "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "results")) << "nothing half is left";
+  EXPECT_EQ(machine().snapshot()->state, ScanState::kReady);
+  EXPECT_TRUE(signals().part_release);
+
+  const std::string second = jobs().start({2, "a", "part"}).job.job_id;
+  ASSERT_TRUE(await_end_of(2));
+  EXPECT_EQ(store_->find(second).status.state, JobState::kCompleted);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "results" / second / "result.json"));
+}
+
+TEST_F(AnEngine, TellsAJobFailedWhoseEndFindsTheDatabasesDiskFull) {
+  std::unique_ptr<test::BrokenDisk> broken;
+  open([&broken](AtomicDirectory& directory, const Recipe& recipe, const ResultData& acquired) {
+    JobResult result = store_result(directory, recipe, acquired);
+    broken = std::make_unique<test::BrokenDisk>(ENOSPC);
+    return result;
+  });
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  jobs().start({1, "a", "part"});
+  ASSERT_TRUE(await_end_of(1));
+  engine_->finish();
+  broken.reset();
+  const auto now = machine().snapshot();
+  EXPECT_EQ(now->job->state, JobState::kFailed) << "what is not durable is not told as completed";
+  EXPECT_EQ(now->job->error, ErrorCode::kStorageFull);
+}
+
+TEST_F(AnEngine, RefusesAJobWhoseRowFindsTheDiskFullAndTakesTheNext) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  {
+    const test::BrokenDisk broken(ENOSPC);
+    EXPECT_THROW(jobs().start({1, "a", "part"}), Error);
+  }
+  EXPECT_EQ(machine().snapshot()->state, ScanState::kInitialized);
+  EXPECT_FALSE(jobs().start({1, "a", "part"}).duplicate);
+  ASSERT_TRUE(await_end_of(1));
+  EXPECT_EQ(machine().snapshot()->job->state, JobState::kCompleted);
+}
+
+}  // namespace
+}  // namespace fvd
