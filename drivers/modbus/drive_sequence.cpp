@@ -1,9 +1,9 @@
 #include "drivers/modbus/drive_sequence.hpp"
 
-#include <condition_variable>
-#include <mutex>
 #include <sstream>
 #include <utility>
+
+#include "core/base/mutex.hpp"
 
 namespace fvd {
 
@@ -13,13 +13,13 @@ using std::chrono::milliseconds;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr int kRepeats = 3;            // of a write that does no harm twice
-constexpr milliseconds kLookEvery{2};  // a wait's pause between two looks
+constexpr milliseconds kWaitPollPeriod{2};  // between two readings of a wait's condition
 
 /// False when the wait was ended by a stop request.
 bool pause(milliseconds time, const std::stop_token& stop) {
-  std::mutex mutex;
-  std::condition_variable_any never;
-  std::unique_lock lock(mutex);
+  Mutex mutex;
+  Condition never;
+  MutexLock lock(mutex);
   never.wait_for(lock, stop, time, [] { return false; });
   return !stop.stop_requested();
 }
@@ -110,7 +110,7 @@ class Runner {
         return {ModbusOutcome::kRejected,
                 "wait for " + names(step.condition) + " ran out after " + std::to_string(step.timeout.count()) + " ms"};
       }
-      if (!pause(kLookEvery, stop_)) return interrupted("wait");
+      if (!pause(kWaitPollPeriod, stop_)) return interrupted("wait");
     }
   }
 

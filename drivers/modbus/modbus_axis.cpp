@@ -1,16 +1,13 @@
 #include "drivers/modbus/modbus_axis.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <sstream>
 
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
-#include "core/scan/settle_detector.hpp"
-#include "drivers/modbus/axis_poller.hpp"
+#include "drivers/common/axis_controller.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 #include "drivers/modbus/modbus_link.hpp"
 
@@ -18,31 +15,29 @@ namespace fvd {
 
 namespace {
 
-/// A stop that got no answer is sent again: it does no harm twice.
-constexpr int kStopAttempts = 3;
-/// A sample of a resting axis counts as present for so long.
-constexpr std::chrono::milliseconds kFresh{50};
-/// A sweep has ended when the axis rests this close to its target, so long after its due time at the latest.
-constexpr Micrometers kSweepWindow{5.0};
-constexpr std::chrono::milliseconds kSweepPatience{3000};
+CommandResult command_result(const SequenceResult& result) {
+  switch (result.outcome) {
+    case ModbusOutcome::kOk:
+      return {};
+    case ModbusOutcome::kRejected:
+      return {CommandOutcome::kRefused, result.error};
+    case ModbusOutcome::kUnknown:
+      break;
+  }
+  return {CommandOutcome::kUnknown, result.error};
+}
 
-class ModbusAxis final : public Axis {
+/// A drive that its profile describes. The calls of one motion come from one thread.
+class ModbusPort final : public AxisPort {
  public:
-  explicit ModbusAxis(const StageConfig& config)
-      : config_(config), profile_(load_drive_profile(config.profile)), link_(modbus_link_config(config)) {
+  explicit ModbusPort(const StageConfig& config)
+      : profile_(load_drive_profile(config.profile)), link_(modbus_link_config(config)) {
     identify();
-    check_soft_limits();
-    poller_ = std::make_unique<AxisPoller>(link_, profile_, config_.speed_um_per_s);
-    enable({});
-    arm_watchdog();
-    state_ = AxisState::kReady;
+    describe(config);
   }
 
-  ~ModbusAxis() override {
-    if (profile_.watchdog && poller_->connected()) {
-      (void)write(profile_.watchdog->reg, profile_.watchdog->disarmed);
-    }
-    poller_.reset();
+  ~ModbusPort() override {
+    if (watchdog_armed_ && answers_) (void)write_watchdog(profile_.watchdog->disarmed);
     const ModbusLinkStats stats = link_.stats();
     spdlog::info(
         "stage link closed: {} transactions, {} retries, {} unknown, {} reconnects, {} bytes discarded, latency p50 "
@@ -51,153 +46,91 @@ class ModbusAxis final : public Axis {
         stats.latency_p99_us);
   }
 
-  [[nodiscard]] StageInfo info() const override {
-    StageInfo info;
-    info.name = profile_.name;
-    info.address = link_.description();
-    info.feedback = profile_.feedback;
-    info.step_quantum = Micrometers{1.0 / profile_.steps_per_um};
-    info.feedback_resolution = Micrometers{std::max(profile_.feedback_resolution_um, 1.0 / profile_.counts_per_um)};
-    info.min = config_.min;
-    info.max = config_.max;
-    info.take_up = config_.take_up;
-    info.lead = Micrometers{profile_.lead_um};
-    info.speed_um_per_s = config_.speed_um_per_s;
-    info.acceleration_um_per_s2 = config_.acceleration_um_per_s2;
-    info.simulated = config_.simulated;
-    return info;
+  [[nodiscard]] const AxisTraits& traits() const override { return traits_; }
+
+  [[nodiscard]] std::optional<AxisSample> sample(std::string& error) override {
+    RegisterImage image;
+    AxisSample sample;
+    sample.begun = HostClock::now();
+    for (const PollBlock& block : profile_.poll) {
+      ModbusReply reply = link_.read(block.table, block.address, block.count);
+      answers_ = reply.outcome == ModbusOutcome::kOk;
+      if (!answers_) {
+        error = reply.error;
+        return std::nullopt;
+      }
+      sample.time = reply.sampled;  // the last block's, which holds the position
+      image.add(block, std::move(reply.values));
+    }
+    const auto lookup = [&](const DriveRegister& reg) { return image.value(reg); };
+    const auto holds = [&](const DriveCondition& condition) { return condition.holds(lookup).value_or(false); };
+    const auto holds_if = [&](const std::optional<DriveCondition>& condition) { return condition && holds(*condition); };
+    sample.position = Micrometers{profile_.direction * static_cast<double>(image.value(profile_.position).value_or(0)) /
+                                  profile_.counts_per_um};
+    sample.enabled = holds(profile_.enabled);
+    sample.homed = holds_if(profile_.homed);
+    sample.moving = holds(profile_.moving);
+    sample.in_position = holds(profile_.in_position);
+    sample.alarm = holds(profile_.alarm);
+    if (profile_.target) sample.target = image.value(*profile_.target);
+    if (sample.alarm) add_alarm(sample, image.value(profile_.alarm_code));
+    sample.limit_positive = holds_if(profile_.limit_positive);
+    sample.limit_negative = holds_if(profile_.limit_negative);
+    sample.emergency_stop = holds_if(profile_.emergency_stop);
+    return sample;
   }
 
-  [[nodiscard]] StageStatus status() override {
-    const AxisSample sample = poller_->sample_after(HostClock::now(), {});
-    StageStatus status;
-    status.enabled = sample.enabled;
-    status.homed = sample.homed;
-    status.moving = sample.moving;
-    status.in_position = sample.in_position;
-    status.alarm = sample.alarm;
-    status.alarm_code = sample.alarm_code;
-    if (sample.alarm) status.alarm_text = alarm_text(profile_, sample.alarm_code);
-    status.position = sample.position;
-    status.temperatures = poller_->temperatures();
-    status.state = state_of(sample);
-    return status;
+  [[nodiscard]] CommandResult enable(const MotionLimits& limits, std::stop_token stop) override {
+    CommandResult result = run(profile_.enable, values({}, limits), std::move(stop));
+    if (result.outcome == CommandOutcome::kDone) arm_watchdog();
+    return result;
+  }
+
+  [[nodiscard]] CommandResult home(const MotionLimits& limits, std::stop_token stop) override {
+    return run(profile_.home, values({}, limits), std::move(stop));
+  }
+
+  [[nodiscard]] CommandResult move(StageCounts target, const MotionLimits& limits, std::stop_token stop) override {
+    move_ = values(target, limits);
+    const SequenceResult result =
+        run_sequence(link_, profile_.move_absolute, move_, ModbusPriority::kNormal, std::move(stop));
+    unanswered_step_ = result.step;
+    return command_result(result);
+  }
+
+  /// Edges that were set are taken back.
+  [[nodiscard]] CommandResult complete_move(std::stop_token stop) override {
+    return command_result(run_sequence(link_, profile_.move_absolute, move_, ModbusPriority::kNormal, std::move(stop),
+                                       unanswered_step_ + 1));
+  }
+
+  [[nodiscard]] CommandResult stop() override {
+    return command_result(run_sequence(link_, profile_.stop, {}, ModbusPriority::kUrgent, {}));
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> remembered_target() override {
+    return profile_.target ? read_register(link_, *profile_.target) : std::nullopt;
+  }
+
+  [[nodiscard]] std::string alarm_text(int code) const override { return fvd::alarm_text(profile_, code); }
+
+  [[nodiscard]] std::vector<StageTemperature> temperatures() override {
+    std::vector<StageTemperature> read;
+    for (const DriveTemperature& temperature : profile_.temperatures) {
+      const auto value = read_register(link_, temperature.reg);
+      if (value) read.push_back({temperature.name, static_cast<double>(*value) * temperature.celsius_per_unit});
+    }
+    return read;
   }
 
   [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
     const ModbusLinkStats stats = link_.stats();
-    return StageLinkStats{stats.transactions,   stats.retries,         stats.unknown,          stats.rejected,
-                          stats.reconnects,     stats.discarded_bytes, poller_->implausible(), stats.latency_p50_us,
+    return StageLinkStats{stats.transactions,    stats.retries,        stats.unknown,  stats.rejected,
+                          stats.reconnects,      stats.discarded_bytes, 0,              stats.latency_p50_us,
                           stats.latency_p99_us, stats.latency_max_us};
   }
 
-  void home(std::stop_token stop) override {
-    require_no_alarm(sample_after(HostClock::now(), stop));
-    if (!sample_after(HostClock::now(), stop).enabled) enable(stop);
-    const Doing homing(state_, AxisState::kHoming);
-    target_.reset();
-    const HostTime started = HostClock::now();
-    poller_->remember_homed(false);
-    const Outcome sent = run(profile_.home, "home", stop);
-    halting_on_stop([&] {
-      if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
-    });
-    require_done(sent);
-    bool moved = false;
-    for (HostTime last = HostClock::now();;) {
-      const AxisSample sample = halting_on_stop([&] { return sample_after(last, stop); });
-      last = sample.begun;
-      if (!sample.limit_positive && !sample.limit_negative) require_no_alarm(sample);  // a reference may be a limit
-      moved = moved || sample.moving || (profile_.homed && !sample.homed);
-      // An axis that was homed and rests at its origin never shows motion: then the start time decides.
-      const bool begun = moved || sample.time - started > profile_.start_within;
-      if (begun && !sample.moving && (sample.homed || !profile_.homed)) {
-        poller_->remember_homed(true);
-        changed_ = HostClock::now();
-        return;
-      }
-      if (sample.time - started > profile_.home_timeout) {
-        this->stop();
-        throw Error(ErrorCode::kTimeout,
-                    "homing of " + link_.description() + " did not end within " +
-                        std::to_string(profile_.home_timeout.count()) +
-                        " ms; the axis was stopped: check the home sensor and the profile's timing");
-      }
-    }
-  }
-
-  MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) override {
-    return move_at(config_.speed_um_per_s, target, criterion, stop);
-  }
-
-  MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override {
-    if (!(speed_um_per_s > 0.0) || speed_um_per_s > config_.speed_um_per_s) {
-      std::ostringstream message;
-      message << "a sweep at " << speed_um_per_s << " um/s is outside 0.." << config_.speed_um_per_s
-              << " um/s, the speed of moves; nothing was moved";
-      throw Error(ErrorCode::kStageLimit, message.str());
-    }
-    const AxisSample here = sample_after(std::max(HostClock::now() - kFresh, changed_.load()), stop);
-    const double seconds =
-        abs(target - here.position).value / speed_um_per_s + speed_um_per_s / config_.acceleration_um_per_s2;
-    const SettleCriterion rest{kSweepWindow, 1, std::chrono::milliseconds(0),
-                               kSweepPatience + std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000.0))};
-    return move_at(speed_um_per_s, target, rest, stop);
-  }
-
-  MoveRecord move_at(double speed_um_per_s, Micrometers target, const SettleCriterion& criterion,
-                     std::stop_token stop) {
-    MoveRecord move;
-    move.target = target;
-    move.target_counts = quantise(target);
-    move.target_quantised = Micrometers{profile_.direction * move.target_counts.value / profile_.steps_per_um};
-    require_within_limits(move.target_quantised);
-    // The axis rests and is sampled all the time; what happens to it from now on, settle() sees.
-    const AxisSample before = sample_after(std::max(HostClock::now() - kFresh, changed_.load()), stop);
-    require_no_alarm(before);
-    if (!before.homed) {
-      throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + link_.description() + " before it is homed");
-    }
-    require_enabled(before);
-    if (!before.enabled) enable(stop);  // halted by our own stop, or back from an alarm: this is a new command
-    require_reference(before);
-    const Doing moving(state_, AxisState::kMoving);
-    move.started = HostClock::now();
-    start_move(move, speed_um_per_s, before, criterion, stop);
-    halting_on_stop([&] { settle(move, before, criterion, stop); });
-    return move;
-  }
-
-  [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
-    (void)sample_after(to, {});
-    return poller_->mean(from, to);
-  }
-
-  [[nodiscard]] PositionMean position_at(HostTime at, std::chrono::microseconds reach) override {
-    (void)sample_after(at + reach, {});
-    return poller_->line(at, reach);
-  }
-
-  void stop() noexcept override {
-    expect_enabled_ = false;  // some drives' quick stop ends in "disabled"
-    try {
-      SequenceResult result;
-      for (int attempt = 0; attempt < kStopAttempts; ++attempt) {
-        result = run_sequence(link_, profile_.stop, {}, ModbusPriority::kUrgent, {});
-        changed_ = HostClock::now();
-        if (result.outcome == ModbusOutcome::kOk) return;
-      }
-      spdlog::error("stage stop was not confirmed: {}", result.error);
-    } catch (const std::exception& error) {
-      spdlog::error("stage stop failed: {}", error.what());
-    }
-  }
-
-  [[nodiscard]] bool connected() const noexcept override { return poller_->connected(); }
-
  private:
-  // --- before anything may move ---
-
   /// A wrong device, or the right one with another register map, must not be moved.
   void identify() {
     const auto lookup = [this](const DriveRegister& reg) { return read_register(link_, reg); };
@@ -210,262 +143,69 @@ class ModbusAxis final : public Axis {
     }
   }
 
-  /// The configuration's limits lie within the drive's own.
-  void check_soft_limits() {
-    if (!profile_.soft_limits) return;
+  void describe(const StageConfig& config) {
+    traits_.name = profile_.name;
+    traits_.address = link_.description();
+    traits_.feedback = profile_.feedback;
+    traits_.steps_per_um = profile_.direction * profile_.steps_per_um;
+    traits_.feedback_resolution =
+        Micrometers{std::max(profile_.feedback_resolution_um, 1.0 / profile_.counts_per_um)};
+    traits_.lead = Micrometers{profile_.lead_um};
+    traits_.limits = soft_limits();
+    traits_.tells_homed = profile_.homed.has_value();
+    traits_.start_within = profile_.start_within;
+    traits_.home_timeout = profile_.home_timeout;
+    // Two readings of every block, each tried three times, behind one start of a move with its handshakes.
+    traits_.sample_timeout =
+        std::chrono::seconds(5) + 6 * static_cast<int>(profile_.poll.size() + 1) * (config.response_timeout + config.quiet);
+  }
+
+  [[nodiscard]] std::optional<std::pair<Micrometers, Micrometers>> soft_limits() {
+    if (!profile_.soft_limits) return std::nullopt;
     const auto positive = read_register(link_, profile_.soft_limits->positive);
     const auto negative = read_register(link_, profile_.soft_limits->negative);
-    if (!positive || !negative || *negative >= *positive) return;  // not set
-    const double one = static_cast<double>(*positive) * profile_.direction / profile_.steps_per_um;
-    const double other = static_cast<double>(*negative) * profile_.direction / profile_.steps_per_um;
-    if (config_.min.value >= std::min(one, other) && config_.max.value <= std::max(one, other)) return;
-    std::ostringstream message;
-    message << "the configured limits of " << config_.min.value << ".." << config_.max.value
-            << " um reach beyond the drive's own, " << std::min(one, other) << ".." << std::max(one, other)
-            << " um: narrow /stage/min_um and max_um, or widen the drive's";
-    throw Error(ErrorCode::kStageLimit, message.str());
+    if (!positive || !negative || *negative >= *positive) return std::nullopt;  // not set
+    const Micrometers one{static_cast<double>(*positive) / traits_.steps_per_um};
+    const Micrometers other{static_cast<double>(*negative) / traits_.steps_per_um};
+    return std::pair(std::min(one, other), std::max(one, other));
   }
 
-  void enable(std::stop_token stop) {
-    require_done(run(profile_.enable, "enable", std::move(stop)));
-    expect_enabled_ = true;
-    changed_ = HostClock::now();
+  void add_alarm(AxisSample& sample, std::optional<std::int64_t> code) {
+    if (!code) code = read_register(link_, profile_.alarm_code);
+    sample.alarm_code = static_cast<int>(code.value_or(0));
+    const auto known = profile_.alarms.find(sample.alarm_code);
+    sample.reference_lost = known != profile_.alarms.end() && known->second.position_lost;
   }
 
-  /// A drive that somebody else has disabled - an emergency stop, a power cut - may have been moved by hand since.
-  void require_enabled(const AxisSample& sample) {
-    if (sample.enabled || !expect_enabled_) return;
-    expect_enabled_ = false;
-    poller_->remember_homed(false);
-    throw Error(ErrorCode::kStageAlarm,
-                "the drive at " + link_.description() +
-                    " was disabled, and not by fvd: an emergency stop or a power cut? See to it, then home again");
-  }
-
-  /// Drives that do not say whether they are homed forget their last target in a restart.
-  void require_reference(const AxisSample& sample) {
-    if (profile_.homed || !target_) return;
-    auto read = sample.target;
-    if (!read) read = read_register(link_, *profile_.target);
-    if (!read || *read == *target_) return;
-    poller_->remember_homed(false);
-    target_.reset();
-    throw Error(ErrorCode::kStageNotHomed, "the drive at " + link_.description() +
-                                               " has forgotten its last target, as after a power cut; home again");
-  }
-
+  /// After the first enable: a drive that is being halted or identified is not to be stopped by silence in between.
   void arm_watchdog() {
-    if (!profile_.watchdog) return;
-    const ModbusReply reply = write(profile_.watchdog->reg, profile_.watchdog->armed);
+    if (!profile_.watchdog || watchdog_armed_) return;
+    const ModbusReply reply = write_watchdog(profile_.watchdog->armed);
+    watchdog_armed_ = reply.outcome != ModbusOutcome::kRejected;
     if (reply.outcome != ModbusOutcome::kOk) spdlog::warn("the drive's watchdog could not be armed: {}", reply.error);
   }
 
-  ModbusReply write(const DriveRegister& reg, std::int64_t value) {
+  ModbusReply write_watchdog(std::int64_t value) {
+    const DriveRegister& reg = profile_.watchdog->reg;
     return link_.write(reg.table, reg.address, encode(reg, value), ModbusPriority::kNormal, reg.write_single);
   }
 
-  // --- looking ---
-
-  AxisSample sample_after(HostTime after, std::stop_token stop) { return poller_->sample_after(after, stop); }
-
-  [[nodiscard]] AxisState state_of(const AxisSample& sample) const {
-    if (!poller_->connected()) return AxisState::kCommLost;
-    if (sample.alarm || sample.emergency_stop) return AxisState::kAlarm;
-    const AxisState doing = state_;
-    if (doing == AxisState::kHoming) return doing;
-    if (sample.moving) return AxisState::kMoving;
-    if (doing == AxisState::kMoving) return AxisState::kSettling;
-    if (!sample.enabled) return AxisState::kDisabled;
-    return sample.homed ? AxisState::kReady : AxisState::kNotHomed;
+  [[nodiscard]] DriveValues values(StageCounts target, const MotionLimits& limits) const {
+    return {target.value, profile_.speed.value(limits.speed_um_per_s),
+            profile_.acceleration.value(limits.acceleration_um_per_s2)};
   }
 
-  /// What the axis is commanded to do, for as long as it is.
-  class Doing {
-   public:
-    Doing(std::atomic<AxisState>& state, AxisState now) : state_(state) { state_ = now; }
-    ~Doing() { state_ = AxisState::kReady; }
-    Doing(const Doing&) = delete;
-    Doing& operator=(const Doing&) = delete;
-
-   private:
-    std::atomic<AxisState>& state_;
-  };
-
-  /// Runs `wait`; an axis that moves is halted if a stop request or an error ends the wait.
-  template <typename Wait>
-  auto halting_on_stop(Wait wait) -> decltype(wait()) {
-    try {
-      return wait();
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::kAborted) stop();
-      throw;
-    }
+  CommandResult run(const DriveSequence& sequence, const DriveValues& values, std::stop_token stop) {
+    return command_result(run_sequence(link_, sequence, values, ModbusPriority::kNormal, std::move(stop)));
   }
 
-  // --- moving ---
-
-  [[nodiscard]] DriveValues values(StageCounts target, double speed_um_per_s) const {
-    return {target.value, profile_.speed.value(speed_um_per_s),
-            profile_.acceleration.value(config_.acceleration_um_per_s2)};
-  }
-
-  struct Outcome {
-    SequenceResult result;
-    const char* name;
-  };
-  Outcome run(const DriveSequence& sequence, const char* name, std::stop_token stop) {
-    return {run_sequence(link_, sequence, values({}, config_.speed_um_per_s), ModbusPriority::kNormal, std::move(stop)),
-            name};
-  }
-
-  /// For sequences whose repetition would do no harm: anything but "ok" is an error.
-  void require_done(const Outcome& outcome) const {
-    if (outcome.result.outcome == ModbusOutcome::kOk) return;
-    const auto code =
-        outcome.result.outcome == ModbusOutcome::kRejected ? ErrorCode::kStagePosition : ErrorCode::kStageDisconnected;
-    throw Error(
-        code, "the drive at " + link_.description() + " did not take '" + outcome.name + "': " + outcome.result.error);
-  }
-
-  [[nodiscard]] StageCounts quantise(Micrometers target) const {
-    const double steps = std::round(target.value * profile_.steps_per_um) * profile_.direction;
-    if (!(std::abs(steps) <= std::numeric_limits<std::int32_t>::max())) {
-      throw Error(ErrorCode::kStageLimit,
-                  "a target of " + std::to_string(target.value) + " um is beyond the drive's counter");
-    }
-    return {static_cast<std::int32_t>(steps)};
-  }
-
-  void require_within_limits(Micrometers target) const {
-    if (target >= config_.min && target <= config_.max) return;
-    std::ostringstream message;
-    message << "a target of " << target.value << " um is outside the stage's limits of " << config_.min.value << ".."
-            << config_.max.value << " um; nothing was moved";
-    throw Error(ErrorCode::kStageLimit, message.str());
-  }
-
-  void require_no_alarm(const AxisSample& sample) const {
-    if (sample.emergency_stop) {
-      throw Error(ErrorCode::kStageAlarm, "the emergency stop of the drive at " + link_.description() +
-                                              " is on; release it, reset the alarm, and home again");
-    }
-    if (sample.alarm) {
-      throw Error(ErrorCode::kStageAlarm, "the drive at " + link_.description() + " reports " +
-                                              alarm_text(profile_, sample.alarm_code) +
-                                              "; clear the cause, then reset the alarm");
-    }
-    if (sample.limit_positive || sample.limit_negative) {
-      throw Error(ErrorCode::kStageLimit, "the axis at " + link_.description() + " stands on its " +
-                                              (sample.limit_positive ? "positive" : "negative") +
-                                              " limit switch; move it away by hand, or home");
-    }
-  }
-
-  /// Sends the move. Without a usable answer it looks whether the axis obeys, and only if it does not, sends the same
-  /// absolute target once more: an absolute move that did arrive is not repeated by that.
-  void start_move(const MoveRecord& move, double speed_um_per_s, const AxisSample& before,
-                  const SettleCriterion& criterion, std::stop_token stop) {
-    const DriveValues sent = values(move.target_counts, speed_um_per_s);
-    for (int attempt = 1;; ++attempt) {
-      const SequenceResult result = [&] {
-        const auto paused = poller_->pause();
-        return run_sequence(link_, profile_.move_absolute, sent, ModbusPriority::kNormal, stop);
-      }();
-      target_ = move.target_counts.value;
-      if (result.outcome == ModbusOutcome::kOk) return;
-      if (stop.stop_requested()) {
-        this->stop();
-        throw Error(ErrorCode::kAborted, "the axis was asked to stop");
-      }
-      if (result.outcome == ModbusOutcome::kRejected) {
-        throw Error(ErrorCode::kStagePosition,
-                    "the drive at " + link_.description() + " refused the move: " + result.error);
-      }
-      spdlog::warn("no answer to a move to {} um: {}", move.target.value, result.error);
-      if (has_begun(move, before, criterion, stop)) {
-        finish_start(result.step + 1, sent, stop);
-        return;
-      }
-      if (attempt == 2) {
-        throw Error(ErrorCode::kStageDisconnected, "the drive at " + link_.description() + " answers no move command");
-      }
-    }
-  }
-
-  /// The rest of a start whose decisive step was executed but not answered: edges are to be taken back.
-  void finish_start(std::size_t first, const DriveValues& sent, std::stop_token stop) {
-    const SequenceResult rest = run_sequence(link_, profile_.move_absolute, sent, ModbusPriority::kNormal, stop, first);
-    if (rest.outcome != ModbusOutcome::kOk) spdlog::warn("the start of a move could not be completed: {}", rest.error);
-  }
-
-  [[nodiscard]] bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& before,
-                           const SettleCriterion& criterion) const {
-    return sample.moving || abs(sample.position - move.target_quantised) <= criterion.window ||
-           abs(sample.position - before.position) > criterion.window;
-  }
-
-  bool has_begun(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
-                 std::stop_token stop) {
-    const HostTime started = HostClock::now();
-    for (HostTime last = started;;) {
-      const AxisSample sample = halting_on_stop([&] { return sample_after(last, stop); });
-      last = sample.begun;
-      if (obeys(sample, move, before, criterion)) return true;
-      if (sample.time - started > profile_.start_within) return false;
-    }
-  }
-
-  void settle(MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion, std::stop_token stop) {
-    SettleDetector detector(move.target_quantised, criterion);
-    bool begun = false;
-    // Only samples taken after the command count: the drive's "in position" of the move before is stale.
-    const HostTime commanded = HostClock::now();  // the last attempt, which move.started may lie well before
-    for (HostTime last = commanded;;) {
-      const AxisSample sample = sample_after(last, stop);
-      last = sample.begun;
-      ++move.polls;
-      require_no_alarm(sample);
-      require_enabled(sample);
-      if (begun && sample.target) require_reference(sample);
-      if (!sample.homed) {
-        throw Error(ErrorCode::kStageNotHomed, "the drive at " + link_.description() +
-                                                   " lost its reference in the move, as after a power cut; home again");
-      }
-      begun = begun || obeys(sample, move, before, criterion);
-      if (sample.moving || !begun) {
-        move.halted = {};
-      } else if (move.halted == HostTime{}) {
-        move.halted = sample.time;
-      }
-      if (!begun && sample.time - commanded > profile_.start_within) {
-        throw Error(ErrorCode::kStagePosition, "the drive at " + link_.description() + " took the move to " +
-                                                   std::to_string(move.target.value) +
-                                                   " um without a word and does not move: is it ready and enabled?");
-      }
-      if (detector.add(sample.time, sample.position, !sample.moving && sample.in_position)) {
-        move.position = sample.position;
-        move.settled = HostClock::now();
-        return;
-      }
-      if (sample.time - move.started > criterion.timeout) {
-        this->stop();
-        std::ostringstream message;
-        message << "the axis did not settle within " << criterion.window.value << " um of "
-                << move.target_quantised.value << " um in " << criterion.timeout.count() << " ms; it stands at "
-                << sample.position.value << " um";
-        throw Error(ErrorCode::kStagePosition, message.str());
-      }
-    }
-  }
-
-  const StageConfig config_;
   const DriveProfile profile_;
   ModbusLink link_;
-  std::atomic<AxisState> state_{AxisState::kIdentifying};
-  std::atomic<bool> expect_enabled_{false};
-  std::atomic<HostTime> changed_{HostTime{}};  // by fvd: older samples do not tell what the drive is like now
-  std::optional<std::int64_t> target_;         // steps, last one sent since homing
-  std::unique_ptr<AxisPoller> poller_;
+  AxisTraits traits_;
+  std::atomic<bool> answers_{true};
+  bool watchdog_armed_ = false;       // the mover's thread only, as the two below
+  DriveValues move_;                  // the last that was sent
+  std::size_t unanswered_step_ = 0;   // of it
 };
 
 }  // namespace
@@ -484,6 +224,8 @@ ModbusLinkConfig modbus_link_config(const StageConfig& config) {
   return link;
 }
 
-std::unique_ptr<Axis> open_modbus_stage(const StageConfig& config) { return std::make_unique<ModbusAxis>(config); }
+std::unique_ptr<Axis> open_modbus_stage(const StageConfig& config) {
+  return make_axis(std::make_unique<ModbusPort>(config), axis_settings(config));
+}
 
 }  // namespace fvd

@@ -13,10 +13,9 @@ namespace fvd {
 /// The line a configuration describes.
 [[nodiscard]] ModbusLinkConfig modbus_link_config(const StageConfig& config);
 
-/// Connects, makes sure it is the profile's drive, arms the drive's own watchdog where there is one, and keeps sampling
-/// it: fast while something moves or is measured, slowly else. A drive that stops answering makes every call throw
-/// kStageDisconnected within about a second; the object is dead then. Throws Error kBadConfig (profile, line),
-/// kStageDisconnected, kStageLimit (the drive's own limits are narrower than the configured ones).
+/// Connects, makes sure that it is the profile's drive, halts it if it moves, enables it, arms the drive's own watchdog
+/// where there is one. A drive that stops answering makes every call throw kStageDisconnected within about a second;
+/// the object is dead then. Throws Error kBadConfig (profile, line), kStageDisconnected, and as make_axis does.
 [[nodiscard]] std::unique_ptr<Axis> open_modbus_stage(const StageConfig& config);
 
 }  // namespace fvd

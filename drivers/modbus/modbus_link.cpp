@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <condition_variable>
-#include <deque>
-#include <future>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <thread>
+#include <utility>
 
-#include <pthread.h>
+#include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
+#include "core/runtime/guarded_thread.hpp"
+#include "drivers/modbus/modbus_queue.hpp"
 
 namespace fvd {
 
@@ -23,12 +23,6 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr int kReadAttempts = 3;
 constexpr std::size_t kLatencySamples = 1024;
 
-struct Request {
-  ModbusRequest what;
-  int attempts_left = 1;
-  std::promise<ModbusReply> done;
-};
-
 }  // namespace
 
 struct ModbusLink::Impl {
@@ -38,49 +32,46 @@ struct ModbusLink::Impl {
       throw Error(ErrorCode::kStageDisconnected, "no Modbus connection to " + transport.description() + ": " + reason +
                                                      "; is the drive switched on and its address right?");
     }
-    thread = std::jthread([this](std::stop_token stop) { run(stop); });
-    pthread_setname_np(thread.native_handle(), "fvd-modbus");
+    thread = start_thread(
+        "fvd-modbus", [this](const std::stop_token& stop) { run(stop); },
+        [this](std::string_view name, const std::exception_ptr& failure) { give_up(name, failure); });
   }
 
-  void run(std::stop_token stop) {
+  void run(const std::stop_token& stop) {
     for (;;) {
       resolve_doubt(stop);
-      auto request = next(stop);
+      auto request = queue.next(stop);
       if (!request) break;
       ModbusReply reply = attempt(*request);
       if (reply.outcome == ModbusOutcome::kUnknown && --request->attempts_left > 0 && !stop.stop_requested()) {
-        const std::lock_guard lock(mutex);
+        const MutexLock lock(mutex);
         ++statistics.retries;
-        normal.push_front(std::move(*request));  // what is urgent still goes first
+        queue.put_back(std::move(*request));  // what is urgent still goes first
         continue;
       }
       request->done.set_value(std::move(reply));
     }
-    const std::lock_guard lock(mutex);
-    for (auto* queue : {&urgent, &normal}) {
-      for (Request& request : *queue)
-        request.done.set_value({ModbusOutcome::kUnknown, "the link is being closed", {}, {}});
-      queue->clear();
-    }
-    closed = true;
+    queue.close("the link is closed");
   }
 
-  std::optional<Request> next(std::stop_token stop) {
-    std::unique_lock lock(mutex);
-    if (!arrived.wait(lock, stop, [this] { return !urgent.empty() || !normal.empty(); }) || stop.stop_requested()) {
-      return std::nullopt;
+  /// The thread has ended by an exception: everybody who waits is told.
+  void give_up(std::string_view name, const std::exception_ptr& failure) {
+    std::string why = "unknown exception";
+    try {
+      std::rethrow_exception(failure);
+    } catch (const std::exception& error) {
+      why = error.what();
+    } catch (...) {
     }
-    auto& queue = urgent.empty() ? normal : urgent;
-    Request request = std::move(queue.front());
-    queue.pop_front();
-    return request;
+    spdlog::error("thread {} ended by an exception: {}", name, why);
+    queue.close("the link has failed: " + why);
   }
 
-  ModbusReply attempt(const Request& request) {
+  ModbusReply attempt(const QueuedRequest& request) {
     ModbusReply reply;
     if (!transport.connected()) {
       {
-        const std::lock_guard lock(mutex);
+        const MutexLock lock(mutex);
         ++statistics.reconnects;
       }
       std::string reason;
@@ -108,19 +99,17 @@ struct ModbusLink::Impl {
   }
 
   /// Before the next request, so that who waits for this one's outcome need not wait for the line's silence.
-  void resolve_doubt(std::stop_token stop) {
+  void resolve_doubt(const std::stop_token& stop) {
     if (!doubtful) return;
     doubtful = false;
-    const std::size_t discarded = transport.resynchronise([&] {
-      const std::lock_guard lock(mutex);
-      return stop.stop_requested() || !urgent.empty();
-    });
-    const std::lock_guard lock(mutex);
+    const std::size_t discarded =
+        transport.resynchronise([&] { return stop.stop_requested() || queue.has_urgent(); });
+    const MutexLock lock(mutex);
     statistics.discarded_bytes += discarded;
   }
 
   ModbusReply book(ModbusReply reply, SteadyClock::duration latency) {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     ++statistics.transactions;
     if (reply.outcome == ModbusOutcome::kUnknown) ++statistics.unknown;
     if (reply.outcome == ModbusOutcome::kRejected) ++statistics.rejected;
@@ -130,27 +119,13 @@ struct ModbusLink::Impl {
     return reply;
   }
 
-  ModbusReply submit(Request request, ModbusPriority priority) {
-    auto reply = request.done.get_future();
-    {
-      const std::lock_guard lock(mutex);
-      if (closed) return {ModbusOutcome::kUnknown, "the link is closed", {}, {}};
-      (priority == ModbusPriority::kUrgent ? urgent : normal).push_back(std::move(request));
-    }
-    arrived.notify_one();
-    return reply.get();
-  }
-
   ModbusTransport transport;  // I/O thread only, once it runs
   bool doubtful = false;      // likewise: bytes of an answer may still come
-  mutable std::mutex mutex;
-  std::condition_variable_any arrived;
-  std::deque<Request> urgent;  // this and all below: guarded by mutex
-  std::deque<Request> normal;
-  bool closed = false;
-  ModbusLinkStats statistics;
-  std::array<double, kLatencySamples> latencies_us{};
-  std::size_t latency_count = 0;
+  ModbusQueue queue;
+  mutable Mutex mutex;
+  ModbusLinkStats statistics FVD_GUARDED_BY(mutex);
+  std::array<double, kLatencySamples> latencies_us FVD_GUARDED_BY(mutex){};
+  std::size_t latency_count FVD_GUARDED_BY(mutex) = 0;
   std::jthread thread;  // last
 };
 
@@ -158,21 +133,21 @@ ModbusLink::ModbusLink(const ModbusLinkConfig& config) : impl_(std::make_unique<
 ModbusLink::~ModbusLink() = default;
 
 ModbusReply ModbusLink::read(ModbusTable table, int address, int count, ModbusPriority priority) {
-  Request request;
+  QueuedRequest request;
   request.what = {table, address, count, {}, false};
   request.attempts_left = kReadAttempts;
-  return impl_->submit(std::move(request), priority);
+  return impl_->queue.submit(std::move(request), priority);
 }
 
 ModbusReply ModbusLink::write(ModbusTable table, int address, std::span<const std::uint16_t> values,
                               ModbusPriority priority, bool single) {
-  Request request;
+  QueuedRequest request;
   request.what = {table, address, 0, {values.begin(), values.end()}, single};
-  return impl_->submit(std::move(request), priority);
+  return impl_->queue.submit(std::move(request), priority);
 }
 
 ModbusLinkStats ModbusLink::stats() const {
-  const std::lock_guard lock(impl_->mutex);
+  const MutexLock lock(impl_->mutex);
   ModbusLinkStats stats = impl_->statistics;
   std::vector<double> sorted(
       impl_->latencies_us.begin(),

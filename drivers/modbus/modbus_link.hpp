@@ -10,25 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "drivers/modbus/modbus_queue.hpp"
 #include "drivers/modbus/modbus_transport.hpp"
 
 namespace fvd {
-
-enum class ModbusOutcome {
-  kOk,
-  kRejected,  ///< the device answered with an exception: surely not executed, the link is fine
-  kUnknown,   ///< no usable answer: may or may not have been executed
-};
-
-enum class ModbusPriority { kNormal, kUrgent };
-
-struct ModbusReply {
-  ModbusOutcome outcome = ModbusOutcome::kUnknown;
-  std::string error;                  ///< empty if kOk
-  std::vector<std::uint16_t> values;  ///< of a read that is kOk
-  /// Middle of the transaction that succeeded: the best guess of when the device sampled its registers.
-  std::chrono::steady_clock::time_point sampled{};
-};
 
 struct ModbusLinkStats {
   std::uint64_t transactions = 0;

@@ -22,6 +22,7 @@ struct AxisSample {
   bool in_position = false;
   bool alarm = false;
   int alarm_code = 0;
+  bool reference_lost = false;  ///< by that alarm: home again after its reset
   bool limit_positive = false;
   bool limit_negative = false;
   bool emergency_stop = false;

@@ -1,4 +1,4 @@
-#include "drivers/modbus/position_log.hpp"
+#include "drivers/common/position_log.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -1,0 +1,394 @@
+#include "drivers/common/axis_controller.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <sstream>
+
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.hpp"
+#include "core/scan/settle_detector.hpp"
+#include "drivers/common/axis_poller.hpp"
+#include "drivers/common/axis_stopper.hpp"
+
+namespace fvd {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Maximum age of a sample that is treated as current while the axis rests.
+constexpr milliseconds kSampleAge{50};
+/// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
+constexpr Micrometers kSweepWindow{5.0};
+constexpr milliseconds kSweepGrace{3000};
+
+/// What the axis is commanded to do, for as long as it is.
+class Commanded {
+ public:
+  Commanded(std::atomic<AxisState>& state, AxisState now) : state_(state) { state_ = now; }
+  ~Commanded() { state_ = AxisState::kReady; }
+  Commanded(const Commanded&) = delete;
+  Commanded& operator=(const Commanded&) = delete;
+
+ private:
+  std::atomic<AxisState>& state_;
+};
+
+class AxisController final : public Axis {
+ public:
+  AxisController(std::unique_ptr<AxisPort> port, const AxisSettings& settings)
+      : settings_(settings),
+        port_(std::move(port)),
+        traits_(checked(port_->traits(), settings)),
+        poller_(*port_, settings.limits.speed_um_per_s),
+        stopper_(*port_, poller_, settings.limits) {
+    come_to_rest();
+    enable({});
+  }
+
+  [[nodiscard]] StageInfo info() const override {
+    StageInfo info;
+    info.name = traits_.name;
+    info.address = traits_.address;
+    info.feedback = traits_.feedback;
+    info.step_quantum = Micrometers{1.0 / std::abs(traits_.steps_per_um)};
+    info.feedback_resolution = traits_.feedback_resolution;
+    info.min = settings_.min;
+    info.max = settings_.max;
+    info.take_up = settings_.take_up;
+    info.lead = traits_.lead;
+    info.speed_um_per_s = settings_.limits.speed_um_per_s;
+    info.acceleration_um_per_s2 = settings_.limits.acceleration_um_per_s2;
+    info.simulated = settings_.simulated;
+    return info;
+  }
+
+  [[nodiscard]] StageStatus status() override {
+    const AxisSample sample = poller_.sample_after(HostClock::now(), {});
+    StageStatus status;
+    status.enabled = sample.enabled;
+    status.homed = sample.homed;
+    status.moving = sample.moving;
+    status.in_position = sample.in_position;
+    status.alarm = sample.alarm;
+    status.alarm_code = sample.alarm_code;
+    if (sample.alarm) status.alarm_text = port_->alarm_text(sample.alarm_code);
+    status.position = sample.position;
+    status.temperatures = poller_.temperatures();
+    status.state = state_of(sample);
+    return status;
+  }
+
+  [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
+    auto stats = port_->link_stats();
+    if (stats) stats->implausible = poller_.implausible();
+    return stats;
+  }
+
+  void home(std::stop_token stop) override {
+    const AxisSample before = poller_.sample_after(HostClock::now(), stop);
+    require_no_alarm(*port_, before);
+    require_off_limits(traits_, before);
+    if (!before.enabled) enable(stop);
+    const Commanded homing(state_, AxisState::kHoming);
+    target_.reset();
+    poller_.remember_homed(false);
+    halting_on_error([&] {
+      const HostTime started = HostClock::now();
+      const CommandResult sent = port_->home(settings_.limits, stop);
+      if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
+      require_done(traits_, sent, "home");
+      wait_until_homed(started, stop);
+    });
+  }
+
+  MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) override {
+    return move_at(settings_.limits.speed_um_per_s, target, criterion, stop);
+  }
+
+  MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override {
+    require_sweep_speed(settings_, speed_um_per_s);
+    const AxisSample here = current_sample(stop);
+    const double seconds = abs(target - here.position).value / speed_um_per_s +
+                           speed_um_per_s / settings_.limits.acceleration_um_per_s2;
+    const SettleCriterion rest{kSweepWindow, 1, milliseconds(0),
+                               kSweepGrace + milliseconds(static_cast<std::int64_t>(seconds * 1000.0))};
+    return move_at(speed_um_per_s, target, rest, stop);
+  }
+
+  [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
+    (void)poller_.sample_after(to, {});
+    return poller_.mean(from, to);
+  }
+
+  [[nodiscard]] PositionMean position_at(HostTime at, std::chrono::microseconds reach) override {
+    (void)poller_.sample_after(at + reach, {});
+    return poller_.line(at, reach);
+  }
+
+  void stop() noexcept override {
+    expect_disabling();
+    (void)stopper_.send();
+    changed_ = HostClock::now();
+  }
+
+  [[nodiscard]] bool connected() const noexcept override { return poller_.connected(); }
+
+ private:
+  // --- before anything may move ---
+
+  static const AxisTraits& checked(const AxisTraits& traits, const AxisSettings& settings) {
+    require_limits_inside(traits, settings);
+    return traits;
+  }
+
+  /// Whoever set it in motion is gone.
+  void come_to_rest() {
+    if (stopper_.rests()) return;
+    spdlog::warn("the axis at {} was found moving; it is halted", traits_.address);
+    const std::string failure = stopper_.halt();
+    if (failure.empty()) return;
+    throw Error(ErrorCode::kStagePosition, "the axis at " + traits_.address + " was found moving, and " + failure +
+                                               "; stop it by its emergency stop");
+  }
+
+  void enable(std::stop_token stop) {
+    require_done(traits_, port_->enable(settings_.limits, std::move(stop)), "enable");
+    expect_enabled_ = true;
+    changed_ = HostClock::now();
+  }
+
+  /// Some drives are disabled after a stop. A stop explains nothing about a drive that was disabled before.
+  void expect_disabling() noexcept {
+    if (poller_.latest().enabled) expect_enabled_ = false;
+  }
+
+  /// A drive that somebody else has disabled - an emergency stop, a power cut - may have been moved by hand since.
+  void require_enabled(const AxisSample& sample) {
+    if (sample.enabled || !expect_enabled_) return;
+    poller_.remember_homed(false);
+    throw Error(ErrorCode::kStageAlarm,
+                "the drive at " + traits_.address +
+                    " was disabled, and not by fvd: an emergency stop or a power cut? See to it, then home again");
+  }
+
+  /// Drives that do not say whether they are homed forget their last target in a restart.
+  void require_reference(const AxisSample& sample) {
+    if (traits_.tells_homed || !target_) return;
+    auto read = sample.target;
+    if (!read) read = port_->remembered_target();
+    if (!read || *read == *target_) return;
+    poller_.remember_homed(false);
+    target_.reset();
+    throw Error(ErrorCode::kStageNotHomed, "the drive at " + traits_.address +
+                                               " has forgotten its last target, as after a power cut; home again");
+  }
+
+  /// The axis rests and is sampled all the time; what happens to it from now on, settle() sees.
+  AxisSample current_sample(const std::stop_token& stop) {
+    return poller_.sample_after(std::max(HostClock::now() - kSampleAge, changed_.load()), stop);
+  }
+
+  [[nodiscard]] AxisState state_of(const AxisSample& sample) const {
+    if (!poller_.connected()) return AxisState::kCommLost;
+    if (sample.alarm || sample.emergency_stop) return AxisState::kAlarm;
+    const AxisState commanded = state_;
+    if (commanded == AxisState::kHoming) return commanded;
+    if (sample.moving) return AxisState::kMoving;
+    if (commanded == AxisState::kMoving) return AxisState::kSettling;
+    if (!sample.enabled) return AxisState::kDisabled;
+    return sample.homed ? AxisState::kReady : AxisState::kNotHomed;
+  }
+
+  // --- moving ---
+
+  /// Runs a motion. An exception that leaves it first halts the axis; what of that failed is added to its message.
+  template <typename Motion>
+  void halting_on_error(Motion motion) {
+    ErrorCode code = ErrorCode::kInternal;
+    std::string message;
+    try {
+      motion();
+      return;
+    } catch (const Error& error) {
+      code = error.code();
+      message = error.what();
+    } catch (const std::exception& error) {
+      message = error.what();
+    }
+    expect_disabling();
+    const std::string failure = stopper_.halt();
+    changed_ = HostClock::now();
+    throw Error(code, failure.empty() ? message : message + "; " + failure);
+  }
+
+  void wait_until_homed(HostTime started, const std::stop_token& stop) {
+    bool moved = false;
+    for (HostTime last = HostClock::now();;) {
+      const AxisSample sample = poller_.sample_after(last, stop);
+      last = sample.begun;
+      // A limit switch may be the reference, and some drives report it as an alarm.
+      if (!sample.limit_positive && !sample.limit_negative) require_no_alarm(*port_, sample);
+      moved = moved || sample.moving || (traits_.tells_homed && !sample.homed);
+      // An axis that was homed and rests at its origin never shows motion: then the start time decides.
+      const bool begun = moved || sample.time - started > traits_.start_within;
+      if (begun && !sample.moving && (sample.homed || !traits_.tells_homed)) {
+        poller_.remember_homed(true);
+        changed_ = HostClock::now();
+        return;
+      }
+      if (sample.time - started > traits_.home_timeout) {
+        throw Error(ErrorCode::kTimeout, "homing of " + traits_.address + " did not end within " +
+                                             std::to_string(traits_.home_timeout.count()) +
+                                             " ms; the axis was told to stop: check the home sensor and the timing");
+      }
+    }
+  }
+
+  MoveRecord move_at(double speed_um_per_s, Micrometers target, const SettleCriterion& criterion,
+                     std::stop_token stop) {
+    MoveRecord move;
+    move.target = target;
+    move.target_counts = quantise(traits_, target);
+    move.target_quantised = Micrometers{move.target_counts.value / traits_.steps_per_um};
+    require_within_limits(settings_, move.target_quantised);
+    const AxisSample before = current_sample(stop);
+    require_no_alarm(*port_, before);
+    require_off_limits(traits_, before);
+    if (!before.homed) {
+      throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + traits_.address + " before it is homed");
+    }
+    require_enabled(before);
+    if (!before.enabled) enable(stop);  // halted by our own stop: this is a new command
+    require_reference(before);
+    const Commanded moving(state_, AxisState::kMoving);
+    move.started = HostClock::now();
+    halting_on_error([&] {
+      start_move(move, {speed_um_per_s, settings_.limits.acceleration_um_per_s2}, before, criterion, stop);
+      settle(move, before, criterion, stop);
+    });
+    return move;
+  }
+
+  /// Sends the move. Without a usable answer it looks whether the axis obeys, and only if it does not, sends the same
+  /// absolute target once more: an absolute move that did arrive is not repeated by that.
+  void start_move(const MoveRecord& move, const MotionLimits& limits, const AxisSample& before,
+                  const SettleCriterion& criterion, const std::stop_token& stop) {
+    for (int attempt = 1;; ++attempt) {
+      CommandResult result;
+      poller_.pause([&] { result = port_->move(move.target_counts, limits, stop); });
+      target_ = move.target_counts.value;
+      if (result.outcome == CommandOutcome::kDone) return;
+      if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
+      if (result.outcome == CommandOutcome::kRefused) {
+        require_sound(poller_.sample_after(HostClock::now(), stop), false);  // which says why, if the drive does
+        throw Error(ErrorCode::kStagePosition,
+                    "the drive at " + traits_.address + " refused the move: " + result.error);
+      }
+      spdlog::warn("no answer to a move to {} um: {}", move.target.value, result.error);
+      if (has_begun(move, before, criterion, stop)) {
+        const CommandResult rest = port_->complete_move(stop);
+        if (rest.outcome != CommandOutcome::kDone) {
+          spdlog::warn("the start of a move could not be completed: {}", rest.error);
+        }
+        return;
+      }
+      if (attempt == 2) {
+        throw Error(ErrorCode::kStageDisconnected, "the drive at " + traits_.address + " answers no move command");
+      }
+    }
+  }
+
+  [[nodiscard]] static bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& before,
+                                  const SettleCriterion& criterion) {
+    return sample.moving || abs(sample.position - move.target_quantised) <= criterion.window ||
+           abs(sample.position - before.position) > criterion.window;
+  }
+
+  bool has_begun(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
+                 const std::stop_token& stop) {
+    const HostTime started = HostClock::now();
+    for (HostTime last = started;;) {
+      const AxisSample sample = poller_.sample_after(last, stop);
+      last = sample.begun;
+      if (obeys(sample, move, before, criterion)) return true;
+      if (sample.time - started > traits_.start_within) return false;
+    }
+  }
+
+  /// What must hold of every sample of a move.
+  void require_sound(const AxisSample& sample, bool begun) {
+    require_no_alarm(*port_, sample);
+    require_off_limits(traits_, sample);
+    require_enabled(sample);
+    if (begun && sample.target) require_reference(sample);
+    if (sample.homed) return;
+    throw Error(ErrorCode::kStageNotHomed,
+                "the drive at " + traits_.address + " lost its reference in the move, as after a power cut; home again");
+  }
+
+  void settle(MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
+              const std::stop_token& stop) {
+    SettleDetector detector(move.target_quantised, criterion);
+    bool begun = false;
+    // Only samples taken after the command count: the drive's "in position" of the move before is stale.
+    const HostTime commanded = HostClock::now();  // the last attempt, which move.started may lie well before
+    for (HostTime last = commanded;;) {
+      const AxisSample sample = poller_.sample_after(last, stop);
+      last = sample.begun;
+      ++move.polls;
+      require_sound(sample, begun);
+      begun = begun || obeys(sample, move, before, criterion);
+      if (sample.moving || !begun) {
+        move.halted = {};
+      } else if (move.halted == HostTime{}) {
+        move.halted = sample.time;
+      }
+      if (!begun && sample.time - commanded > traits_.start_within) {
+        throw Error(ErrorCode::kStagePosition, "the drive at " + traits_.address + " took the move to " +
+                                                   std::to_string(move.target.value) +
+                                                   " um without a word and does not move: is it ready and enabled?");
+      }
+      if (detector.add(sample.time, sample.position, !sample.moving && sample.in_position)) {
+        move.position = sample.position;
+        move.settled = HostClock::now();
+        return;
+      }
+      if (sample.time - move.started > criterion.timeout) {
+        std::ostringstream message;
+        message << "the axis did not settle within " << criterion.window.value << " um of "
+                << move.target_quantised.value << " um in " << criterion.timeout.count() << " ms; it was at "
+                << sample.position.value << " um";
+        throw Error(ErrorCode::kStagePosition, message.str());
+      }
+    }
+  }
+
+  const AxisSettings settings_;
+  const std::unique_ptr<AxisPort> port_;
+  const AxisTraits& traits_;
+  std::atomic<AxisState> state_{AxisState::kReady};
+  std::atomic<bool> expect_enabled_{false};
+  std::atomic<HostTime> changed_{HostTime{}};  // by fvd: older samples do not tell what the drive is like now
+  std::optional<std::int64_t> target_;         // steps, last one sent since homing
+  AxisPoller poller_;
+  AxisStopper stopper_;
+};
+
+}  // namespace
+
+AxisSettings axis_settings(const StageConfig& config) {
+  return {config.min,
+          config.max,
+          config.take_up,
+          {config.speed_um_per_s, config.acceleration_um_per_s2},
+          config.simulated};
+}
+
+std::unique_ptr<Axis> make_axis(std::unique_ptr<AxisPort> port, const AxisSettings& settings) {
+  return std::make_unique<AxisController>(std::move(port), settings);
+}
+
+}  // namespace fvd

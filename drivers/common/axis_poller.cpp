@@ -1,0 +1,197 @@
+#include "drivers/common/axis_poller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.hpp"
+#include "core/runtime/guarded_thread.hpp"
+
+namespace fvd {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFastPeriod{2};
+constexpr milliseconds kIdlePeriod{50};
+constexpr milliseconds kFastDuration{1000};  ///< sampling stays fast this long after the last call that needed it
+constexpr milliseconds kTemperaturePeriod{1000};
+constexpr std::size_t kLoggedSamples = 8192;
+
+/// A position is believed at once if it lies within the reach of this multiple of the commanded speed, and this margin.
+constexpr double kSpeedFactor = 2.0;
+constexpr double kPositionMargin_um = 50.0;
+
+std::string text_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "unknown exception";
+  }
+}
+
+}  // namespace
+
+AxisPoller::AxisPoller(AxisPort& port, double max_speed_um_per_s)
+    : port_(port), max_speed_um_per_s_(max_speed_um_per_s), log_(kLoggedSamples) {
+  {
+    const MutexLock polling(polling_);
+    poll_once();
+  }
+  {
+    const MutexLock lock(mutex_);
+    if (!connected_) throw Error(ErrorCode::kStageDisconnected, loss_);
+  }
+  thread_ = start_thread(
+      "fvd-stage", [this](const std::stop_token& stop) { run(stop); },
+      [this](std::string_view name, const std::exception_ptr& failure) {
+        const std::string why = text_of(failure);
+        spdlog::error("thread {} ended by an exception: {}", name, why);
+        if (lose("sampling ended by an exception: " + why)) stop_lost_axis();
+      });
+}
+
+void AxisPoller::run(const std::stop_token& stop) {
+  while (!stop.stop_requested() && connected()) {
+    {
+      const MutexLock polling(polling_);
+      poll_once();
+      read_temperatures();
+    }
+    MutexLock lock(mutex_);
+    const HostTime now = HostClock::now();
+    const HostTime next = now + (now < fast_until_ ? kFastPeriod : kIdlePeriod);
+    const HostTime fast_until = fast_until_;
+    wake_.wait_until(lock, stop, next, [&] {
+      mutex_.assert_held();
+      return fast_until_ != fast_until && next - now > kFastPeriod;
+    });
+  }
+  if (stop.stop_requested()) lose("the driver is being closed");
+}
+
+std::optional<AxisSample> AxisPoller::read_sample(std::string& error) {
+  auto sample = port_.sample(error);
+  if (!sample) return sample;
+  if (sample->reference_lost) homed_ = false;
+  if (!port_.traits().tells_homed) sample->homed = homed_;
+  return sample;
+}
+
+bool AxisPoller::plausible(const AxisSample& sample) const {
+  const auto last = log_.latest();
+  if (!last) return true;
+  const double seconds = std::chrono::duration<double>(sample.time - last->time).count();
+  const double reach_um = kSpeedFactor * max_speed_um_per_s_ * seconds + kPositionMargin_um;
+  return std::abs((sample.position - last->position).value) <= reach_um;
+}
+
+void AxisPoller::poll_once() {
+  std::string error;
+  auto sample = read_sample(error);
+  const auto doubtful = [&] {
+    const MutexLock lock(mutex_);
+    return sample && !plausible(*sample);
+  };
+  if (doubtful()) {
+    // A jump is real after a power cycle or a preset; then the second reading says the same.
+    ++implausible_;
+    spdlog::debug("stage: a position of {} um cannot have been reached; reading again", sample->position.value);
+    sample = read_sample(error);
+  }
+  if (sample) {
+    const MutexLock lock(mutex_);
+    log_.add(*sample);
+    sampled_.notify_all();
+    return;
+  }
+  if (lose("it does not answer: " + error)) stop_lost_axis();
+}
+
+void AxisPoller::stop_lost_axis() noexcept {
+  try {
+    const CommandResult stopped = port_.stop();
+    spdlog::error("stage lost in motion; stop {}",
+                  stopped.outcome == CommandOutcome::kDone ? "confirmed" : "not confirmed");
+  } catch (const std::exception& error) {
+    spdlog::error("stage lost in motion; stop failed: {}", error.what());
+  }
+}
+
+bool AxisPoller::lose(const std::string& error) {
+  const MutexLock lock(mutex_);
+  if (!connected_) return false;
+  connected_ = false;
+  loss_ = "the drive at " + port_.traits().address + " is lost: " + error;
+  sampled_.notify_all();
+  const auto last = log_.latest();
+  return last && last->moving;
+}
+
+void AxisPoller::read_temperatures() {
+  const HostTime now = HostClock::now();
+  if (!connected() || now - temperatures_read_ < kTemperaturePeriod) return;
+  temperatures_read_ = now;
+  std::vector<StageTemperature> read = port_.temperatures();
+  const MutexLock lock(mutex_);
+  temperatures_ = std::move(read);
+}
+
+std::vector<StageTemperature> AxisPoller::temperatures() const {
+  const MutexLock lock(mutex_);
+  return temperatures_;
+}
+
+bool AxisPoller::connected() const noexcept {
+  const MutexLock lock(mutex_);
+  return connected_;
+}
+
+void AxisPoller::pause(const std::function<void()>& action) {
+  const MutexLock polling(polling_);
+  action();
+}
+
+AxisSample AxisPoller::sample_after(HostTime after, std::stop_token stop) {
+  return sample_after(after, std::move(stop), std::max(after, HostClock::now()) + port_.traits().sample_timeout);
+}
+
+AxisSample AxisPoller::sample_after(HostTime after, std::stop_token stop, HostTime deadline) {
+  MutexLock lock(mutex_);
+  fast_until_ = HostClock::now() + kFastDuration;
+  wake_.notify_all();
+  const bool ended = sampled_.wait_until(lock, stop, deadline, [&] {
+    mutex_.assert_held();
+    const auto latest = log_.latest();
+    return !connected_ || (latest && latest->begun > after);
+  });
+  if (!ended && stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
+  if (!connected_) throw Error(ErrorCode::kStageDisconnected, loss_);
+  if (!ended) {
+    throw Error(ErrorCode::kStageDisconnected,
+                "the drive at " + port_.traits().address + " gave no position in time: is its line overloaded?");
+  }
+  return *log_.latest();
+}
+
+AxisSample AxisPoller::latest() const {
+  const MutexLock lock(mutex_);
+  return *log_.latest();
+}
+
+PositionMean AxisPoller::mean(HostTime from, HostTime to) const {
+  const MutexLock lock(mutex_);
+  return log_.mean(from, to);
+}
+
+PositionMean AxisPoller::line(HostTime at, std::chrono::microseconds reach) const {
+  const MutexLock lock(mutex_);
+  return log_.line(at, reach);
+}
+
+}  // namespace fvd

@@ -1,0 +1,75 @@
+#pragma once
+
+/// Samples an axis for as long as it lives: fast while somebody needs it, slowly otherwise.
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/base/mutex.hpp"
+#include "drivers/common/axis_port.hpp"
+#include "drivers/common/position_log.hpp"
+
+namespace fvd {
+
+/// A controller that stops answering is lost for good: everything throws kStageDisconnected from then on, and if the
+/// axis moved it is told to stop, once. A position that the axis cannot have reached since the last sample is read
+/// again before it is believed. context: thread-safe.
+class AxisPoller {
+ public:
+  /// Takes the first sample. max_speed_um_per_s: what the axis is commanded to; homing may be as fast. The port
+  /// outlives the poller. Throws Error kStageDisconnected.
+  AxisPoller(AxisPort& port, double max_speed_um_per_s);
+  AxisPoller(const AxisPoller&) = delete;
+  AxisPoller& operator=(const AxisPoller&) = delete;
+
+  /// The first sample that was begun after `after`. Throws Error kStageDisconnected, also if no sample came until
+  /// `deadline` (by default the port's sample_timeout after `after`), kAborted on a stop request.
+  [[nodiscard]] AxisSample sample_after(HostTime after, std::stop_token stop);
+  [[nodiscard]] AxisSample sample_after(HostTime after, std::stop_token stop, HostTime deadline);
+
+  /// The latest sample, whatever its age. Throws nothing.
+  [[nodiscard]] AxisSample latest() const;
+  [[nodiscard]] PositionMean mean(HostTime from, HostTime to) const;
+  [[nodiscard]] PositionMean line(HostTime at, std::chrono::microseconds reach) const;
+  [[nodiscard]] std::vector<StageTemperature> temperatures() const;
+
+  /// Runs the action between two samples: on a slow line they would come between the frames of a start.
+  void pause(const std::function<void()>& action);
+  /// For controllers that do not tell.
+  void remember_homed(bool homed) noexcept { homed_ = homed; }
+  [[nodiscard]] bool connected() const noexcept;
+  [[nodiscard]] std::uint64_t implausible() const noexcept { return implausible_; }
+
+ private:
+  void run(const std::stop_token& stop);
+  void poll_once() FVD_REQUIRES(polling_);
+  [[nodiscard]] std::optional<AxisSample> read_sample(std::string& error);
+  [[nodiscard]] bool plausible(const AxisSample& sample) const FVD_REQUIRES(mutex_);
+  /// Publishes the loss and returns whether the axis moved when it was last seen.
+  bool lose(const std::string& error);
+  void stop_lost_axis() noexcept;
+  void read_temperatures() FVD_REQUIRES(polling_);
+
+  AxisPort& port_;
+  const double max_speed_um_per_s_;
+  Mutex polling_;  // held for the length of a poll; taken before mutex_
+  mutable Mutex mutex_;
+  Condition sampled_;
+  Condition wake_;
+  PositionLog log_ FVD_GUARDED_BY(mutex_);
+  HostTime fast_until_ FVD_GUARDED_BY(mutex_){};
+  bool connected_ FVD_GUARDED_BY(mutex_) = true;
+  std::string loss_ FVD_GUARDED_BY(mutex_);
+  std::vector<StageTemperature> temperatures_ FVD_GUARDED_BY(mutex_);
+  HostTime temperatures_read_ FVD_GUARDED_BY(polling_){};
+  std::atomic<bool> homed_{false};
+  std::atomic<std::uint64_t> implausible_{0};
+  std::jthread thread_;  // last
+};
+
+}  // namespace fvd

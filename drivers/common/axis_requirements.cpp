@@ -1,0 +1,73 @@
+#include "drivers/common/axis_requirements.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/base/error.hpp"
+
+namespace fvd {
+
+void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings) {
+  if (!traits.limits) return;
+  const auto& [lower, upper] = *traits.limits;
+  if (settings.min >= lower && settings.max <= upper) return;
+  std::ostringstream message;
+  message << "the configured limits of " << settings.min.value << ".." << settings.max.value
+          << " um reach beyond the drive's own, " << lower.value << ".." << upper.value
+          << " um: narrow /stage/min_um and max_um, or widen the drive's";
+  throw Error(ErrorCode::kStageLimit, message.str());
+}
+
+StageCounts quantise(const AxisTraits& traits, Micrometers target) {
+  const double steps = std::round(target.value * traits.steps_per_um);
+  if (!(std::abs(steps) <= std::numeric_limits<std::int32_t>::max())) {
+    throw Error(ErrorCode::kStageLimit,
+                "a target of " + std::to_string(target.value) + " um is beyond the drive's counter");
+  }
+  return {static_cast<std::int32_t>(steps)};
+}
+
+void require_within_limits(const AxisSettings& settings, Micrometers target) {
+  if (target >= settings.min && target <= settings.max) return;
+  std::ostringstream message;
+  message << "a target of " << target.value << " um is outside the stage's limits of " << settings.min.value << ".."
+          << settings.max.value << " um; nothing was moved";
+  throw Error(ErrorCode::kStageLimit, message.str());
+}
+
+void require_sweep_speed(const AxisSettings& settings, double speed_um_per_s) {
+  if (speed_um_per_s > 0.0 && speed_um_per_s <= settings.limits.speed_um_per_s) return;
+  std::ostringstream message;
+  message << "a sweep at " << speed_um_per_s << " um/s is outside 0.." << settings.limits.speed_um_per_s
+          << " um/s, the speed of moves; nothing was moved";
+  throw Error(ErrorCode::kStageLimit, message.str());
+}
+
+void require_no_alarm(const AxisPort& port, const AxisSample& sample) {
+  if (sample.emergency_stop) {
+    throw Error(ErrorCode::kStageAlarm, "the emergency stop of the drive at " + port.traits().address +
+                                            " is on; release it, reset the alarm, and home again");
+  }
+  if (sample.alarm) {
+    throw Error(ErrorCode::kStageAlarm, "the drive at " + port.traits().address + " reports " +
+                                            port.alarm_text(sample.alarm_code) +
+                                            "; clear the cause, then reset the alarm");
+  }
+}
+
+void require_off_limits(const AxisTraits& traits, const AxisSample& sample) {
+  if (!sample.limit_positive && !sample.limit_negative) return;
+  throw Error(ErrorCode::kStageLimit, "the axis at " + traits.address + " stands on its " +
+                                          (sample.limit_positive ? "positive" : "negative") +
+                                          " limit switch; move it away by hand, or home");
+}
+
+void require_done(const AxisTraits& traits, const CommandResult& result, const char* command) {
+  if (result.outcome == CommandOutcome::kDone) return;
+  const auto code =
+      result.outcome == CommandOutcome::kRefused ? ErrorCode::kStagePosition : ErrorCode::kStageDisconnected;
+  throw Error(code, "the drive at " + traits.address + " did not take '" + command + "': " + result.error);
+}
+
+}  // namespace fvd

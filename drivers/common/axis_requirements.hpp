@@ -1,0 +1,33 @@
+#pragma once
+
+/// What must hold before and while an axis moves; each check throws an Error that says what to do.
+
+#include "drivers/common/axis_port.hpp"
+
+namespace fvd {
+
+/// What the configuration says of an axis.
+struct AxisSettings {
+  Micrometers min;  ///< lowest target, take-up included
+  Micrometers max;  ///< highest target
+  Micrometers take_up;
+  MotionLimits limits;  ///< of moves, and the fastest a sweep may be
+  bool simulated = false;
+};
+
+/// Throws Error kStageLimit if the configured limits reach beyond the controller's own.
+void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings);
+/// Throws Error kStageLimit if the target is beyond the controller's counter.
+[[nodiscard]] StageCounts quantise(const AxisTraits& traits, Micrometers target);
+/// Throws Error kStageLimit for a target outside min..max.
+void require_within_limits(const AxisSettings& settings, Micrometers target);
+/// Throws Error kStageLimit for a speed that is not above 0 or above that of moves.
+void require_sweep_speed(const AxisSettings& settings, double speed_um_per_s);
+/// Throws Error kStageAlarm for an alarm or an emergency stop.
+void require_no_alarm(const AxisPort& port, const AxisSample& sample);
+/// Throws Error kStageLimit on a limit switch.
+void require_off_limits(const AxisTraits& traits, const AxisSample& sample);
+/// Throws Error kStagePosition (refused) or kStageDisconnected (no answer) for a command that was not done.
+void require_done(const AxisTraits& traits, const CommandResult& result, const char* command);
+
+}  // namespace fvd

@@ -1,0 +1,38 @@
+#pragma once
+
+/// Ends a motion: a stop, and a standstill that was measured.
+
+#include <string>
+
+#include "drivers/common/axis_poller.hpp"
+#include "drivers/common/axis_port.hpp"
+
+namespace fvd {
+
+/// Standstill: samples over at least 50 ms, three or more, none of which reports motion, all within 1 um. An axis
+/// without torque counts as reporting none: some drives say "target reached" only while they are enabled.
+/// context: thread-safe.
+class AxisStopper {
+ public:
+  /// limits: of all moves; they tell how long the axis brakes. Port and poller outlive the stopper.
+  AxisStopper(AxisPort& port, AxisPoller& poller, const MotionLimits& limits);
+
+  /// Sends the stop up to three times, until the controller has taken it. Empty, or why it was not taken.
+  std::string send() noexcept;
+
+  /// Sends the stop and waits for the standstill, two seconds longer than braking takes at most. Empty when the
+  /// standstill was measured; else a sentence "standstill was not confirmed: ...".
+  std::string halt() noexcept;
+
+  /// False at the first sample that shows motion. Throws Error kStageDisconnected.
+  [[nodiscard]] bool rests();
+
+ private:
+  bool wait_for_standstill(HostTime deadline, bool patient);
+
+  AxisPort& port_;
+  AxisPoller& poller_;
+  const std::chrono::milliseconds braking_;
+};
+
+}  // namespace fvd

@@ -1,0 +1,131 @@
+/// Who waits for a sample gets one, or an error, whatever becomes of the thread that takes them.
+
+#include "drivers/common/axis_poller.hpp"
+
+#include <atomic>
+#include <future>
+#include <stdexcept>
+
+#include "gtest/gtest.h"
+#include "tests/support/expect_error.hpp"
+
+namespace fvd {
+namespace {
+
+using std::chrono::milliseconds;
+using test::expect_error;
+
+/// Answers until it is told otherwise.
+class ScriptedPort final : public AxisPort {
+ public:
+  enum class Mode { kAnswers, kSilent, kThrows };
+
+  ScriptedPort() {
+    traits_.address = "the fake";
+    traits_.sample_timeout = milliseconds(150);
+  }
+  [[nodiscard]] const AxisTraits& traits() const override { return traits_; }
+  [[nodiscard]] std::optional<AxisSample> sample(std::string& error) override {
+    if (mode == Mode::kThrows) throw std::runtime_error("out of luck");
+    if (mode == Mode::kSilent) {
+      error = "no answer";
+      return std::nullopt;
+    }
+    AxisSample sample;
+    sample.begun = sample.time = HostClock::now();
+    sample.moving = moving;
+    return sample;
+  }
+  [[nodiscard]] CommandResult enable(const MotionLimits& /*limits*/, std::stop_token /*stop*/) override { return {}; }
+  [[nodiscard]] CommandResult home(const MotionLimits& /*limits*/, std::stop_token /*stop*/) override { return {}; }
+  [[nodiscard]] CommandResult move(StageCounts /*target*/, const MotionLimits& /*limits*/,
+                                   std::stop_token /*stop*/) override {
+    return {};
+  }
+  [[nodiscard]] CommandResult stop() override {
+    if (const AxisPoller* const seen = poller; seen != nullptr) connected_at_stop = seen->connected();
+    ++stops;
+    return {};
+  }
+  [[nodiscard]] std::string alarm_text(int /*code*/) const override { return "alarm"; }
+
+  std::atomic<Mode> mode{Mode::kAnswers};
+  std::atomic<bool> moving{false};
+  std::atomic<int> stops{0};
+  std::atomic<bool> connected_at_stop{true};
+  std::atomic<AxisPoller*> poller{nullptr};
+
+ private:
+  AxisTraits traits_;
+};
+
+TEST(AxisPoller, GivesSamplesThatWereBegunAfterTheQuestion) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0);
+  for (int i = 0; i < 20; ++i) {
+    const HostTime asked = HostClock::now();
+    EXPECT_GT(poller.sample_after(asked, {}).begun, asked);
+  }
+}
+
+TEST(AxisPoller, TellsWaitersOfALossAndOnlyThenStopsTheAxis) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0);
+  port.poller = &poller;
+  port.moving = true;
+  (void)poller.sample_after(HostClock::now(), {});
+  port.mode = ScriptedPort::Mode::kSilent;
+  expect_error(ErrorCode::kStageDisconnected, {"the fake", "no answer"},
+               [&] { (void)poller.sample_after(HostClock::now() + milliseconds(50), {}); });
+  EXPECT_FALSE(poller.connected());
+  while (port.stops == 0) std::this_thread::yield();
+  EXPECT_FALSE(port.connected_at_stop) << "who looks while the stop is on its way must see the loss";
+}
+
+TEST(AxisPoller, TellsWaitersThatItsThreadHasEndedByAnException) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0);
+  (void)poller.sample_after(HostClock::now(), {});
+  port.mode = ScriptedPort::Mode::kThrows;
+  expect_error(ErrorCode::kStageDisconnected, {"out of luck"},
+               [&] { (void)poller.sample_after(HostClock::now() + milliseconds(20), {}); });
+  EXPECT_FALSE(poller.connected());
+  EXPECT_EQ(port.stops, 0) << "it did not move";
+}
+
+TEST(AxisPoller, LetsNobodyWaitForEver) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0);
+  poller.pause([&] {
+    const HostTime asked = HostClock::now();
+    expect_error(ErrorCode::kStageDisconnected, {"in time"}, [&] { (void)poller.sample_after(asked, {}); });
+    EXPECT_LT(HostClock::now() - asked, std::chrono::seconds(5));
+  });
+  EXPECT_NO_THROW((void)poller.sample_after(HostClock::now(), {}));
+}
+
+TEST(AxisPoller, EndsAWaitOnAStopRequest) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0);
+  std::stop_source stop;
+  auto waiter = std::async(std::launch::async, [&] {
+    return test::name_of(test::error_of(
+        [&] { (void)poller.sample_after(HostClock::now() + std::chrono::hours(1), stop.get_token()); }));
+  });
+  stop.request_stop();
+  EXPECT_EQ(waiter.get(), "aborted");
+}
+
+TEST(AxisPoller, TakesNoSampleInAPause) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0);
+  (void)poller.sample_after(HostClock::now(), {});
+  poller.pause([&] {
+    const HostTime before = poller.latest().begun;
+    expect_error(ErrorCode::kStageDisconnected, {}, [&] { (void)poller.sample_after(HostClock::now(), {}); });
+    EXPECT_EQ(poller.latest().begun, before);
+  });
+}
+
+}  // namespace
+}  // namespace fvd
