@@ -115,12 +115,12 @@ TEST_F(AnEngine, AnswersACommandThatWaitedForADeviceThatIsMissing) {
 
 TEST_F(AnEngine, FailsAJobWhoseResultFindsTheDiskFullAndTakesTheNext) {
   std::atomic<int> results = 0;
-  open([&results](AtomicDirectory& directory, const Recipe& recipe, const ResultData& acquired) -> JobResult {
+  open([&results](AtomicDirectory& directory, const ResultData& acquired) -> JobResult {
     if (results++ == 0) {
       directory.add_file("height.tiff", "half of it");
       throw Error(ErrorCode::kStorageFull, "no space is left on the device");
     }
-    return store_result(directory, recipe, acquired);
+    return store_result(directory, acquired);
   });
   ASSERT_TRUE(await_state(ScanState::kInitialized));
   const std::string first = jobs().start({1, "a", "part"}).job.job_id;
@@ -139,8 +139,8 @@ TEST_F(AnEngine, FailsAJobWhoseResultFindsTheDiskFullAndTakesTheNext) {
 
 TEST_F(AnEngine, TellsAJobFailedWhoseEndFindsTheDatabasesDiskFull) {
   std::unique_ptr<test::BrokenDisk> broken;
-  open([&broken](AtomicDirectory& directory, const Recipe& recipe, const ResultData& acquired) {
-    JobResult result = store_result(directory, recipe, acquired);
+  open([&broken](AtomicDirectory& directory, const ResultData& acquired) {
+    JobResult result = store_result(directory, acquired);
     broken = std::make_unique<test::BrokenDisk>(ENOSPC);
     return result;
   });

@@ -75,7 +75,7 @@ class Race {
                                     {.camera = [this] { return std::make_unique<RaceCamera>(clock_); },
                                      .axis = [this] { return std::make_unique<sim::FakeAxis>(clock_); }},
                                     // The race is over when the job measures: no files, so that rounds are many.
-                                    [](AtomicDirectory&, const Recipe&, const ResultData&) -> JobResult {
+                                    [](AtomicDirectory&, const ResultData&) -> JobResult {
                                       throw Error(ErrorCode::kBadInput, "this job makes no result");
                                     }});
     await_ready();
