@@ -111,8 +111,8 @@ class AxisController final : public Axis {
   MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override {
     require_sweep_speed(settings_, speed_um_per_s);
     const AxisSample here = current_sample(stop);
-    const double seconds = abs(target - here.position).value / speed_um_per_s +
-                           speed_um_per_s / settings_.limits.acceleration_um_per_s2;
+    const double seconds =
+        abs(target - here.position).value / speed_um_per_s + speed_um_per_s / settings_.limits.acceleration_um_per_s2;
     const SettleCriterion rest{kSweepWindow, 1, milliseconds(0),
                                kSweepGrace + milliseconds(static_cast<std::int64_t>(seconds * 1000.0))};
     return move_at(speed_um_per_s, target, rest, stop);
@@ -182,8 +182,8 @@ class AxisController final : public Axis {
     if (!read || *read == *target_) return;
     poller_.remember_homed(false);
     target_.reset();
-    throw Error(ErrorCode::kStageNotHomed, "the drive at " + traits_.address +
-                                               " has forgotten its last target, as after a power cut; home again");
+    throw Error(ErrorCode::kStageNotHomed,
+                "the drive at " + traits_.address + " has forgotten its last target, as after a power cut; home again");
   }
 
   /// The axis rests and is sampled all the time; what happens to it from now on, settle() sees.
@@ -257,10 +257,10 @@ class AxisController final : public Axis {
     const AxisSample before = current_sample(stop);
     require_no_alarm(*port_, before);
     require_off_limits(traits_, before);
+    require_enabled(before);
     if (!before.homed) {
       throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + traits_.address + " before it is homed");
     }
-    require_enabled(before);
     if (!before.enabled) enable(stop);  // halted by our own stop: this is a new command
     require_reference(before);
     const Commanded moving(state_, AxisState::kMoving);
@@ -325,8 +325,8 @@ class AxisController final : public Axis {
     require_enabled(sample);
     if (begun && sample.target) require_reference(sample);
     if (sample.homed) return;
-    throw Error(ErrorCode::kStageNotHomed,
-                "the drive at " + traits_.address + " lost its reference in the move, as after a power cut; home again");
+    throw Error(ErrorCode::kStageNotHomed, "the drive at " + traits_.address +
+                                               " lost its reference in the move, as after a power cut; home again");
   }
 
   void settle(MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
@@ -380,11 +380,8 @@ class AxisController final : public Axis {
 }  // namespace
 
 AxisSettings axis_settings(const StageConfig& config) {
-  return {config.min,
-          config.max,
-          config.take_up,
-          {config.speed_um_per_s, config.acceleration_um_per_s2},
-          config.simulated};
+  return {
+      config.min, config.max, config.take_up, {config.speed_um_per_s, config.acceleration_um_per_s2}, config.simulated};
 }
 
 std::unique_ptr<Axis> make_axis(std::unique_ptr<AxisPort> port, const AxisSettings& settings) {

@@ -33,12 +33,12 @@ struct AxisTraits {
   std::string name;     ///< of the drive
   std::string address;  ///< of the line, e.g. "127.0.0.1:502 unit 1"
   FeedbackSource feedback = FeedbackSource::kNone;
-  double steps_per_um = 1.0;                                      ///< of targets; negative where steps fall as z grows
-  Micrometers feedback_resolution;                                ///< smallest step of the measured position
-  Micrometers lead{};                                             ///< of the screw; 0 = unknown
-  std::optional<std::pair<Micrometers, Micrometers>> limits{};    ///< the controller's own, lower and upper
-  bool tells_homed = true;                                        ///< false: AxisSample::homed means nothing
-  std::chrono::milliseconds start_within{150};                    ///< a move that has not begun by then was refused
+  double steps_per_um = 1.0;                                    ///< of targets; negative where steps fall as z grows
+  Micrometers feedback_resolution;                              ///< smallest step of the measured position
+  Micrometers lead{};                                           ///< of the screw; 0 = unknown
+  std::optional<std::pair<Micrometers, Micrometers>> limits{};  ///< the controller's own, lower and upper
+  bool tells_homed = true;                                      ///< false: AxisSample::homed means nothing
+  std::chrono::milliseconds start_within{150};                  ///< a move that has not begun by then was refused
   std::chrono::milliseconds home_timeout{60000};
   std::chrono::milliseconds sample_timeout{10000};  ///< longest time between two samples on a line that is alive
 };

@@ -64,7 +64,9 @@ class ModbusPort final : public AxisPort {
     }
     const auto lookup = [&](const DriveRegister& reg) { return image.value(reg); };
     const auto holds = [&](const DriveCondition& condition) { return condition.holds(lookup).value_or(false); };
-    const auto holds_if = [&](const std::optional<DriveCondition>& condition) { return condition && holds(*condition); };
+    const auto holds_if = [&](const std::optional<DriveCondition>& condition) {
+      return condition && holds(*condition);
+    };
     sample.position = Micrometers{profile_.direction * static_cast<double>(image.value(profile_.position).value_or(0)) /
                                   profile_.counts_per_um};
     sample.enabled = holds(profile_.enabled);
@@ -125,9 +127,16 @@ class ModbusPort final : public AxisPort {
 
   [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
     const ModbusLinkStats stats = link_.stats();
-    return StageLinkStats{stats.transactions,    stats.retries,        stats.unknown,  stats.rejected,
-                          stats.reconnects,      stats.discarded_bytes, 0,              stats.latency_p50_us,
-                          stats.latency_p99_us, stats.latency_max_us};
+    return StageLinkStats{stats.transactions,
+                          stats.retries,
+                          stats.unknown,
+                          stats.rejected,
+                          stats.reconnects,
+                          stats.discarded_bytes,
+                          0,
+                          stats.latency_p50_us,
+                          stats.latency_p99_us,
+                          stats.latency_max_us};
   }
 
  private:
@@ -148,16 +157,15 @@ class ModbusPort final : public AxisPort {
     traits_.address = link_.description();
     traits_.feedback = profile_.feedback;
     traits_.steps_per_um = profile_.direction * profile_.steps_per_um;
-    traits_.feedback_resolution =
-        Micrometers{std::max(profile_.feedback_resolution_um, 1.0 / profile_.counts_per_um)};
+    traits_.feedback_resolution = Micrometers{std::max(profile_.feedback_resolution_um, 1.0 / profile_.counts_per_um)};
     traits_.lead = Micrometers{profile_.lead_um};
     traits_.limits = soft_limits();
     traits_.tells_homed = profile_.homed.has_value();
     traits_.start_within = profile_.start_within;
     traits_.home_timeout = profile_.home_timeout;
     // Two readings of every block, each tried three times, behind one start of a move with its handshakes.
-    traits_.sample_timeout =
-        std::chrono::seconds(5) + 6 * static_cast<int>(profile_.poll.size() + 1) * (config.response_timeout + config.quiet);
+    traits_.sample_timeout = std::chrono::seconds(5) +
+                             6 * static_cast<int>(profile_.poll.size() + 1) * (config.response_timeout + config.quiet);
   }
 
   [[nodiscard]] std::optional<std::pair<Micrometers, Micrometers>> soft_limits() {
@@ -203,9 +211,9 @@ class ModbusPort final : public AxisPort {
   ModbusLink link_;
   AxisTraits traits_;
   std::atomic<bool> answers_{true};
-  bool watchdog_armed_ = false;       // the mover's thread only, as the two below
-  DriveValues move_;                  // the last that was sent
-  std::size_t unanswered_step_ = 0;   // of it
+  bool watchdog_armed_ = false;      // the mover's thread only, as the two below
+  DriveValues move_;                 // the last that was sent
+  std::size_t unanswered_step_ = 0;  // of it
 };
 
 }  // namespace

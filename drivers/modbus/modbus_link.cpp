@@ -102,8 +102,7 @@ struct ModbusLink::Impl {
   void resolve_doubt(const std::stop_token& stop) {
     if (!doubtful) return;
     doubtful = false;
-    const std::size_t discarded =
-        transport.resynchronise([&] { return stop.stop_requested() || queue.has_urgent(); });
+    const std::size_t discarded = transport.resynchronise([&] { return stop.stop_requested() || queue.has_urgent(); });
     const MutexLock lock(mutex);
     statistics.discarded_bytes += discarded;
   }

@@ -109,8 +109,8 @@ TEST(AxisPoller, EndsAWaitOnAStopRequest) {
   AxisPoller poller(port, 1000.0);
   std::stop_source stop;
   auto waiter = std::async(std::launch::async, [&] {
-    return test::name_of(test::error_of(
-        [&] { (void)poller.sample_after(HostClock::now() + std::chrono::hours(1), stop.get_token()); }));
+    return test::name_of(
+        test::error_of([&] { (void)poller.sample_after(HostClock::now() + std::chrono::hours(1), stop.get_token()); }));
   });
   stop.request_stop();
   EXPECT_EQ(waiter.get(), "aborted");

@@ -17,9 +17,8 @@ QueuedRequest request_to(int address) {
 }
 
 std::future<ModbusReply> submitted(ModbusQueue& queue, int address, ModbusPriority priority = ModbusPriority::kNormal) {
-  return std::async(std::launch::async, [&queue, address, priority] {
-    return queue.submit(request_to(address), priority);
-  });
+  return std::async(std::launch::async,
+                    [&queue, address, priority] { return queue.submit(request_to(address), priority); });
 }
 
 TEST(ModbusQueue, GivesUrgentRequestsFirst) {

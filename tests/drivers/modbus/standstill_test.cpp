@@ -41,7 +41,8 @@ class AMotion : public testing::Test {
 TEST_F(AMotion, ThatRunsOutOfTimeEndsAtRest) {
   const auto stage = open_slow();
   criterion_.timeout = milliseconds(300);
-  expect_error(ErrorCode::kStagePosition, {"did not settle"}, [&] { stage->move_to(Micrometers{1000}, criterion_, {}); });
+  expect_error(ErrorCode::kStagePosition, {"did not settle"},
+               [&] { stage->move_to(Micrometers{1000}, criterion_, {}); });
   EXPECT_FALSE(moves());
 }
 
