@@ -19,14 +19,14 @@ enum class ErrorCode {
   kBusy,         ///< another job is running
   kSeqConflict,  ///< same sequence number, different request
   kSeqStale,     ///< sequence number older than the window that is remembered
-  kJobFailed,    ///< the job ended without a result
+  kJobFailed,    ///< reserved, never raised: a job tells its own error
   kTimeout,
   kAborted,
   kInterrupted,  ///< the daemon stopped or died while the job ran
   kShuttingDown,
   kCameraDisconnected,  ///< no reply from the camera, control lost, or not open
   kCameraFramesLost,    ///< a slice could not be had within the retries
-  kCameraTimeout,       ///< no frame at all before the deadline
+  kCameraTimeout,       ///< reserved, never raised: kCameraFramesLost
   kCameraSettings,      ///< the camera refused a setting or reads back another value
   kStageDisconnected,   ///< no reply from the drive, or the link is gone
   kStageLimit,          ///< a target outside the configured or the drive's limits
@@ -49,7 +49,7 @@ inline constexpr ErrorCode kLastErrorCode = ErrorCode::kDatabase;
 /// The code of a name; kInternal for one that is none.
 [[nodiscard]] ErrorCode error_from_name(std::string_view name) noexcept;
 
-/// what() says what failed, where, and what to do. Context is added with std::throw_with_nested.
+/// what() says what failed, where, and what to do. A caller that knows more catches it and throws one that says more.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

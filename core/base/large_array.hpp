@@ -14,7 +14,7 @@ namespace detail {
 [[nodiscard]] void* allocate_large(std::size_t bytes);
 void release_large(void* memory, std::size_t bytes) noexcept;
 
-/// Of released memory so much is kept for the next array of the same size.
+/// Bytes of released memory that are kept at most for the next array of the same size.
 inline constexpr std::size_t kMostKeptBytes = std::size_t{1} << 30;
 }  // namespace detail
 

@@ -9,7 +9,7 @@
 
 namespace fvd {
 
-/// Keeps the colour of each pixel's peak: 3 bytes a pixel, with bins 6. Nothing at all for a grey stack.
+/// Keeps the colour of each pixel's peak: 3 bytes per pixel, with bins 6. Nothing at all for a grey stack.
 /// context: rows from many threads, each row from one.
 class ColourTexture {
  public:

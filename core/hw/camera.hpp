@@ -88,7 +88,7 @@ class Camera {
   /// Longest time from the start of an exposure to the arrival of its frame with the settings in force.
   [[nodiscard]] virtual std::chrono::microseconds frame_deadline() const = 0;
 
-  /// Ends a next_frame() that is waiting, now or the next time it is called. context: any thread.
+  /// Ends the wait of next_frame(), now or at its next call; configure() forgets it. context: any thread.
   virtual void interrupt() noexcept = 0;
 
   [[nodiscard]] virtual bool connected() const noexcept = 0;

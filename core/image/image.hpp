@@ -35,7 +35,7 @@ class Plane {
  public:
   Plane() = default;
   Plane(int width, int height, T fill = T{}) : Plane(unset(width, height)) { std::fill_n(data_.data(), size(), fill); }
-  /// Contents unset: for who writes all of it, from several threads.
+  /// Uninitialised; the caller must write every element, e.g. from several threads.
   [[nodiscard]] static Plane unset(int width, int height) {
     Plane plane;
     plane.width_ = width;

@@ -13,7 +13,7 @@ namespace fvd {
 /// PFNC formats fvd takes. Bayer names tell the colours of the first two pixels of row 0.
 enum class SensorFormat {
   kMono8,
-  kMono10,  ///< 16 bit a pixel, values at the lower end
+  kMono10,  ///< 16 bit per pixel, values at the lower end
   kMono12,  ///< likewise
   kMono16,
   kMono10p,       ///< 4 pixels in 5 bytes, least significant bits first
@@ -23,7 +23,7 @@ enum class SensorFormat {
   kBayerGR8,
   kBayerGB8,
   kBayerBG8,
-  kBayerRG12,  ///< 16 bit a pixel, values at the lower end; as the three below
+  kBayerRG12,  ///< 16 bit per pixel, values at the lower end; as the three below
   kBayerGR12,
   kBayerGB12,
   kBayerBG12,

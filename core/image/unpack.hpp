@@ -1,7 +1,7 @@
 #pragma once
 
 /// From a camera's pixel format to a slice's: packed values spread to 16 bit, upper bits brought down, a mosaic made
-/// one value a pixel.
+/// one value per pixel.
 
 #include <cstddef>
 #include <span>

@@ -31,20 +31,20 @@ struct ScanPlan {
   bool downwards = false;       ///< kContinuous: from the last slice to the first, for the calibration of the lag
   std::chrono::microseconds time_offset{0};  ///< kContinuous: of the stage's clock against the camera's, see LagResult
 
-  /// Frames a second that lie one step apart.
+  /// Frames per second at which they lie one step apart.
   [[nodiscard]] double frame_rate_hz() const { return speed_um_per_s / step.value; }
 
   [[nodiscard]] Micrometers target(int index) const { return start + static_cast<double>(index) * step; }
   [[nodiscard]] Micrometers last() const { return target(slices - 1); }
 };
 
-/// Way a continuous scan begins before its first slice: the axis is at constant speed there, the backlash loaded, and
-/// its position known from samples on both sides.
+/// Run-up distance before the first slice of a continuous scan: the axis is at constant speed there, the backlash
+/// loaded, and its position known from samples on both sides.
 [[nodiscard]] Micrometers run_up(const ScanPlan& plan, const StageInfo& stage);
-/// Way it goes on after its last slice, likewise.
+/// Run-out distance after its last slice, likewise.
 [[nodiscard]] Micrometers run_out(const ScanPlan& plan, const StageInfo& stage);
 
-/// How far around a moment positions are looked at to know where a moving axis was.
+/// Half the width of the window of samples from which the position of a moving axis at a moment is taken.
 inline constexpr std::chrono::microseconds kPositionReach{10000};
 
 /// Throws Error kBadRecipe if a continuous scan would blur its slices, is faster than camera or stage, or the stage

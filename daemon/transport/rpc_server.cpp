@@ -19,6 +19,7 @@
 
 #include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "daemon/api/dispatcher.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/transport/foreign_protocol.hpp"
@@ -43,6 +44,10 @@ constexpr std::chrono::seconds kRefusalGrace{1};
 /// Time for the replies that are owed when the server ends.
 constexpr std::chrono::milliseconds kShutdownGrace{500};
 constexpr std::chrono::milliseconds kShutdownPollPeriod{5};
+/// Longest time from one tick of the network thread to the next while nothing comes.
+constexpr std::chrono::seconds kTickInterval{1};
+/// A handler waits for nothing: one that takes this long hangs.
+constexpr std::chrono::seconds kLongestHandler{10};
 
 }  // namespace
 
@@ -62,7 +67,7 @@ struct RpcServer::Impl {
     write_port_file(port_file, config.address, port);
     accept();
     services.machine.on_change([this] { asio::post(context, [this] { resume_all(); }); });
-    thread = start_thread("fvd-rpc", [this](const std::stop_token&) { context.run(); });
+    thread = start_thread("fvd-rpc", [this](const std::stop_token&) { run(); });
   }
 
   ~Impl() {
@@ -91,6 +96,14 @@ struct RpcServer::Impl {
   }
 
   void accept();
+  /// The network thread: ticks between handlers, at least once in a tick interval.
+  void run() {
+    ThreadTicks ticks("fvd-rpc", kLongestHandler);
+    while (!context.stopped()) {
+      ticks.tick(HostClock::now());
+      context.run_for(kTickInterval);
+    }
+  }
   /// Answers what has come by now, then ends the network thread; at the deadline at the latest.
   void shut_down(std::chrono::steady_clock::time_point deadline);
   [[nodiscard]] bool has_room();

@@ -3,11 +3,19 @@
 #include <utility>
 
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 
 namespace fvd {
 
+namespace {
+
+/// A task reads files and rows, or makes a picture.
+constexpr std::chrono::seconds kLongestTask{60};
+
+}  // namespace
+
 Worker::Worker(std::string name)
-    : thread_(start_thread(std::move(name), [this](std::stop_token stop) { run(stop); })) {}
+    : name_(std::move(name)), thread_(start_thread(name_, [this](std::stop_token stop) { run(stop); })) {}
 
 Worker::~Worker() {
   thread_.request_stop();
@@ -23,6 +31,7 @@ void Worker::post(Task task) {
 }
 
 void Worker::run(const std::stop_token& stop) {
+  ThreadTicks ticks(name_, kLongestTask);
   for (;;) {
     Task task;
     {
@@ -35,7 +44,9 @@ void Worker::run(const std::stop_token& stop) {
       task = std::move(tasks_.front());
       tasks_.pop_front();
     }
+    ticks.tick(HostClock::now());
     task();
+    ticks.rest();
   }
 }
 

@@ -30,6 +30,7 @@ class Worker {
  private:
   void run(const std::stop_token& stop);
 
+  const std::string name_;
   Mutex mutex_;
   Condition changed_;
   std::deque<Task> tasks_ FVD_GUARDED_BY(mutex_);

@@ -24,7 +24,7 @@ struct RendererOptions {
 
 /// out(x) = (Gaussian of sigma(x) * texture)(x), sigma = defocus_px_per_um |z - h(x)|, plus readout noise, rounded and
 /// clipped. The blurred textures are precomputed at the nodes of TransferNodes as 16-bit values of 1/64 grey level: two
-/// bytes a pixel and node, about 36 nodes.
+/// bytes per pixel and node, about 36 nodes.
 ///
 /// Noise comes from a table of 2^20 normal values entered at a hashed place for each row of each exposure: rows repeat
 /// a stretch of the table, but no two slices share one at the same pixels more often than chance, which is all that a

@@ -17,12 +17,12 @@ struct Watermark {
   double z_um = 0.0;  ///< true position at the middle of the exposure, to a nanometre
 };
 
-/// Nothing if the checksum over all other pixels or the mark itself is wrong. Images have at least 24 pixels a row.
+/// Nothing if the checksum over all other pixels or the mark itself is wrong. Images have at least 24 pixels per row.
 [[nodiscard]] std::optional<Watermark> read_watermark(const ImageView& image);
 
 /// Marks what another source renders: in the first 20 pixels of row 0 lie index, z in nm, and the CRC-32 of everything
-/// after and of the two, one byte a pixel, in the lower 8 bits of wider ones. Frames that are packed or mosaics on the
-/// wire lose their mark. context: as its source.
+/// after and of the two, one byte per pixel, in the lower 8 bits of wider ones. Frames that are packed or mosaics on
+/// the wire lose their mark. context: as its source.
 class WatermarkedSource final : public FrameSource {
  public:
   /// z_um: true position at a moment; may be called for the past. source outlives this.

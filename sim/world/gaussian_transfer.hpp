@@ -1,7 +1,7 @@
 #pragma once
 
-/// The exact transfer of a Gaussian blur, exp(-t (u^2 + v^2) / 2) with t = sigma^2 and u, v in radians a pixel, and its
-/// interpolation between a few values of t.
+/// The exact transfer of a Gaussian blur, exp(-t (u^2 + v^2) / 2) with t = sigma^2 and u, v in radians per pixel, and
+/// its interpolation between a few values of t.
 ///
 /// Between the nodes the transfer is interpolated by the cubic through the four nearest nodes. With x = (u^2+v^2)/2 the
 /// fourth derivative in t is x^4 exp(-t x): at most (2 pi^2 / 2)^4 near t = 0 and at most (4/t)^4 exp(-4) elsewhere.

@@ -80,7 +80,7 @@ TEST_F(AContinuousScan, MeasuresAsWellAsSteps) {
 
 TEST_F(AContinuousScan, IsRefusedWhereItWouldBlur) {
   json blurred = shipped("chapter_continuous");
-  blurred["camera"]["exposure_us"] = 3000;
+  blurred["acquire"]["camera"]["exposure_us"] = 3000;
   start_with("blurred", blurred);
   const int moves = plant_->drive().moves();
   const json refused = begin(1, "blurred");

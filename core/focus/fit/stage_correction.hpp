@@ -7,7 +7,7 @@
 /// there. Thousands of curves whose peaks cover the range give one linear system for the offsets of all slices. What
 /// grows with z or its square is taken out: a shift and a stretch leave no trace, and curves that lean look like the
 /// rest. After G. Zhukova, C. Artigas, G. Carles, "Computational self-corrected quantitative 3D topographic imaging"
-/// (the idea, for confocal stacks); here with five samples a pixel instead of the stack.
+/// (the idea, for confocal stacks); here with five samples per pixel instead of the stack.
 ///
 /// What curves of another shape leave over follows the fraction of a step and averages out only where peaks lie at all
 /// fractions: so the system is solved only where they do, and used only where the offsets stand out of their error.
@@ -31,7 +31,7 @@ struct StageCorrection {
 };
 
 /// z_um: measured z of the samples, at least one. Tuples: some thousand spread over the image, their indices within
-/// z_um. Where a sixth of them shows already that the stage is not to blame, the figures are from these.
+/// z_um. If a sixth of the curves already shows no gain, the figures use that subset.
 /// context: computes on the pool too.
 [[nodiscard]] StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples,
                                                      const std::vector<double>& z_um, WorkerPool& pool);

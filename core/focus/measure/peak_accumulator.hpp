@@ -27,7 +27,7 @@ struct StateRow {
   BinRow<Texture> bin;
 };
 
-/// 20 bytes a pixel for Mono8, 21 for 16 bit, with bins 24 and 26; rows padded to 16 pixels; never grows.
+/// 20 bytes per pixel for Mono8, 21 for 16 bit, with bins 24 and 26; rows padded to 16 pixels; never grows.
 /// Texture: std::uint8_t for Mono8, else std::uint16_t.
 template <typename Texture>
 class PeakAccumulator {

@@ -16,8 +16,8 @@
 
 namespace fvd {
 
-/// Goes down the image, so that what it has looked at is still in a cache when the fit comes by. context: one thread;
-/// each has one of its own.
+/// Goes down the image just ahead of the fit, so that the rows it reads are still in a cache then. Not thread-safe; one
+/// instance per thread.
 class PeakTiles {
  public:
   /// The condensed curves of row y; good until the next call.
@@ -29,7 +29,7 @@ class PeakTiles {
   [[nodiscard]] int tile_row(int y) const noexcept { return y / reach_px_; }
 
   /// A tenth of the neighbourhood's highest amplitude at each pixel of a row of tiles, in shares. Shape [width].
-  /// Looks at the curves of that row and its neighbours, of those that the last call looked at not again.
+  /// Reads the curves of that row of tiles and of its neighbours; reuses the tile rows that the previous call read.
   void least_amplitude(int tile_row, float* out);
 
  private:

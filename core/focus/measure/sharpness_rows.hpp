@@ -38,7 +38,7 @@ struct WindowReach {
 };
 
 /// Pixel: std::uint8_t or std::uint16_t. All memory is taken by the constructor.
-/// context: one thread; one scanner a thread and slice.
+/// Not thread-safe; one scanner per thread and slice.
 template <typename Pixel>
 class SharpnessRows {
  public:

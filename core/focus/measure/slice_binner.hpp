@@ -14,7 +14,7 @@ namespace fvd {
 /// Summing successive sharpness rows uses every slice of a finely stepped scan without keeping any: the noise of a
 /// sample falls with the root of the bin, and the samples get the distance at which a peak is placed best.
 /// Texture and saturation: the pixel of the bin's middle slice, any saturated window of the bin.
-/// context: one thread; one a thread.
+/// Not thread-safe; one instance per thread.
 template <typename Texture>
 class SliceBinner {
  public:

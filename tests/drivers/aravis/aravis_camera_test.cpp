@@ -85,6 +85,8 @@ TEST_F(AnAravisCamera, ForgetsAnInterruptOfBeforeItWasConfigured) {
   by_line.trigger = TriggerMode::kLine;
   by_line.exposure_us = 100'000.0;  // the frame is waited for long enough to see an interrupt
   camera->configure(by_line);
+  server_->pulse_line();
+  (void)camera->next_frame(HostClock::now() + camera->frame_deadline());
   camera->interrupt();
   camera->configure(by_line);
   server_->pulse_line();
