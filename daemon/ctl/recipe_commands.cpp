@@ -24,7 +24,8 @@ std::string id_of(const RecipeArguments& arguments) {
 }
 
 int list(RpcClient client, const Terminal& terminal) {
-  for (const Json& entry : client.call("recipe.list").at("entries")) {
+  const Json reply = client.call("recipe.list");
+  for (const Json& entry : reply.at("entries")) {
     terminal.out << entry.at("id").get<std::string>() << "  ";
     if (entry.at("version") == 0) {
       terminal.out << "shipped\n";
@@ -72,7 +73,8 @@ int save(const RecipeArguments& arguments, RpcClient client, const Terminal& ter
 }
 
 int versions(const RecipeArguments& arguments, RpcClient client, const Terminal& terminal) {
-  for (const Json& version : client.call("recipe.versions", {{"id", arguments.id}}).at("versions")) {
+  const Json reply = client.call("recipe.versions", {{"id", arguments.id}});
+  for (const Json& version : reply.at("versions")) {
     terminal.out << version.at("version") << "  " << version.at("saved").get<std::string>() << "  "
                  << version.at("author").get<std::string>() << "  " << version.at("comment").get<std::string>() << "\n";
   }
