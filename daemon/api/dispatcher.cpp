@@ -22,14 +22,14 @@ bool has_come(const JobStatus& job, bool until_acquired) {
   return job.state != JobState::kProcessing || (until_acquired && job.acquired);
 }
 
-/// The request's id where it has one that can be used, whatever else is wrong with it.
+/// The request's id if it is valid, whatever else is wrong with the request; otherwise null.
 json usable_id(const json& request) {
   if (!request.is_object()) return nullptr;
   const auto id = request.find("id");
   return id != request.end() && is_valid_id(*id) ? *id : json(nullptr);
 }
 
-/// What is wrong with the form of a request; nothing if it is one.
+/// Describes the first fault in the form of a request; nothing if the form is right.
 std::optional<std::string> fault_of(const json& request) {
   if (!request.is_object()) return "a request is an object";
   if (const auto id = request.find("id"); id != request.end() && !is_valid_id(*id)) {
@@ -46,14 +46,14 @@ std::optional<std::string> fault_of(const json& request) {
   return std::nullopt;
 }
 
-/// The parser quotes what it read, of any length; what stands before the quote is its own.
+/// Shortens the part of the parser's message that quotes the input; the words before the quote are the parser's own.
 std::string shortened_parse_error(const std::string& message) {
   const auto quote = message.find('\'');
   if (quote == std::string::npos) return message;
   return message.substr(0, quote) + shortened_foreign_text(message.substr(quote));
 }
 
-/// Why a batch is not executed; nothing if it is.
+/// The reason why a batch is refused as a whole; nothing if its members are executed.
 std::optional<std::string> fault_of_batch(const json& batch) {
   if (batch.size() > Dispatcher::kMaxBatch) {
     return "a batch may hold " + std::to_string(Dispatcher::kMaxBatch) + " requests";
@@ -65,7 +65,7 @@ std::optional<std::string> fault_of_batch(const json& batch) {
   return std::nullopt;
 }
 
-/// Every member with an id is told by that id, all others that are no notifications by one reply.
+/// One refusal per member with an id, and one with a null id for all other members that are no notifications.
 ordered_json refuse_batch(const json& batch, const std::string& why) {
   ordered_json replies = ordered_json::array();
   bool told_the_nameless = false;
@@ -129,7 +129,7 @@ Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& ca
     replies = refuse_batch(batch, *fault);
   } else {
     for (const json& request : batch) {
-      // What was answered so far came from the snapshot: it can be answered again.
+      // The members before this one were answered from the snapshot: handling the batch again repeats nothing.
       Outcome answer = handle_request(request, caller, {may_block, true});
       if (answer.would_block) return answer;
       if (answer.reply) replies.push_back(std::move(*answer.reply));

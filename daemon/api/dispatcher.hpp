@@ -21,34 +21,34 @@ struct WaitingRequest {
   Deferred until;
 };
 
-/// What became of a line.
+/// The outcome of handling a line.
 struct Handled {
   std::optional<std::string> reply;       ///< one line without terminator; absent = nothing to say
   std::optional<WaitingRequest> waiting;  ///< the answer comes later, through Dispatcher::resume
   bool is_parse_error = false;            ///< the line was no JSON
 };
 
-/// context: thread-safe; it keeps nothing between two calls.
+/// context: thread-safe; keeps no state between calls.
 class Dispatcher {
  public:
   static constexpr std::size_t kMaxLineBytes = 65536;
   static constexpr std::size_t kMaxBatch = 16;
 
-  /// services: where the state of the machine and of jobs that are waited for comes from.
+  /// services: gives the states of the machine and of the jobs that requests wait for.
   Dispatcher(MethodTable methods, const Services& services);
 
   /// One request or batch. Never throws. Replies are ASCII. May block for files and the database.
   [[nodiscard]] Handled handle(std::string_view line, const Caller& caller) const;
-  /// The same for what needs neither file nor database; never blocks. Nothing, and nothing executed, if handle() has to
-  /// take the line.
+  /// Handles a line that needs neither file nor database; never blocks. Returns nothing, and executes nothing, if the
+  /// line has to go to handle().
   [[nodiscard]] std::optional<Handled> try_handle(std::string_view line, const Caller& caller) const;
 
   /// Every method with its description.
   [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
 
-  /// The answer to a waiting request if what it waits for has come, or, with `timed_out`, in any case. May block.
+  /// The answer to a waiting request if its job or command has got so far; with `timed_out` in any case. May block.
   [[nodiscard]] std::optional<std::string> resume(const WaitingRequest& waiting, bool timed_out) const;
-  /// False while the machine's snapshot says that it has not come, and resume() would give nothing. Never blocks.
+  /// False if the machine's snapshot shows that resume() would return nothing. Never blocks.
   [[nodiscard]] bool may_have_come(const WaitingRequest& waiting) const;
 
   /// The reply to a line that is too long to be read.
@@ -57,7 +57,7 @@ class Dispatcher {
   [[nodiscard]] static std::string foreign_protocol();
   /// The reply to the last of too many lines that are no JSON.
   [[nodiscard]] static std::string no_json();
-  /// The reply to a connection too many.
+  /// The reply to a connection above the limit.
   [[nodiscard]] static std::string too_many_connections();
 
  private:
@@ -69,11 +69,11 @@ class Dispatcher {
     bool may_block = false;
     bool in_batch = false;
   };
-  /// What became of one request.
+  /// The outcome of handling one request.
   struct Outcome {
     std::optional<OrderedJson> reply{};
     std::optional<WaitingRequest> waiting{};
-    bool would_block = false;  ///< nothing was done
+    bool would_block = false;  ///< nothing was executed: handle() has to take the line
   };
 
   [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;

@@ -34,7 +34,7 @@ json by_name(const std::string& method, const DescribeFields& describe, const js
   return params;
 }
 
-/// The first of them, in the words of the API.
+/// "job.start: 'seq': 0 is not accepted; expected ..."
 std::string problem_text(const std::string& method, const Problem& problem) {
   const std::string name = problem.pointer.substr(std::min(problem.pointer.size(), std::string(kPointer).size() + 1));
   return method + ": " + quoted(name) + ": " + problem.message;

@@ -8,7 +8,7 @@ namespace fvd {
 
 namespace {
 
-constexpr int kBusyTimeoutMs = 1000;  // a predecessor that was just killed
+constexpr int kBusyTimeout_ms = 1000;  // until a killed predecessor's lock is gone
 
 bool means_disk_full(int code, int system_errno) {
   if (code == SQLITE_FULL) return true;
@@ -41,7 +41,7 @@ Database::Database(const std::filesystem::path& file) : file_(file) {
   if (handle == nullptr) throw Error(ErrorCode::kDatabase, "no memory to open the database " + file.string());
   if (code != SQLITE_OK) fail("opening");
   sqlite3_extended_result_codes(handle, 0);
-  sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+  sqlite3_busy_timeout(handle, kBusyTimeout_ms);
   execute(
       "PRAGMA locking_mode=EXCLUSIVE;"
       "PRAGMA journal_mode=WAL;"

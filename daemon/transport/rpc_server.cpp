@@ -35,11 +35,12 @@ using ErrorCodeOf = boost::system::error_code;
 
 namespace {
 
-/// A client that lets this much pile up does not read; it is dropped rather than the memory filled.
+/// Limit of the replies that a client has not read; beyond it the connection is closed.
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
-/// Whoever sends so many lines that are no JSON speaks another language; what it sends next may be JSON by accident.
+/// Limit of consecutive lines that are no JSON; such a client speaks another protocol, and its next line may look like
+/// JSON by accident.
 constexpr int kMaxParseErrorsInARow = 3;
-/// Time that a refused client has to read why.
+/// Time for a refused client to read the reason.
 constexpr std::chrono::seconds kRefusalGrace{1};
 /// Time for the replies that are owed when the server ends.
 constexpr std::chrono::milliseconds kShutdownGrace{500};
@@ -146,13 +147,13 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     read();
   }
 
-  /// A job changed, or the waiting time is over: what waits for it may go on.
+  /// Checks the waiting request again: a job changed, or the waiting time is over.
   void resume(bool timed_out) {
     check_wait(timed_out);
     process();
   }
 
-  /// Nothing is owed to the client.
+  /// True if every request was answered and every reply was sent.
   [[nodiscard]] bool is_answered() const noexcept { return !has_request() && unsent_.empty(); }
 
   [[nodiscard]] bool is_half_closed() const noexcept { return half_closed_; }
@@ -169,11 +170,11 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   }
 
  private:
-  /// Starts the time of silence anew; a line without its end is silence too.
+  /// Restarts the idle timeout; an unfinished line does not restart it.
   void watch_idle() {
     idle_.expires_after(std::chrono::seconds(server_.config.idle_timeout_s));
     idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
-      // A request that is not answered yet is no silence; its own timeout ends it.
+      // A connection with an open request is not idle; the request has a timeout of its own.
       if (!error && !self->has_request()) self->close();
     });
   }
@@ -182,7 +183,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     socket_.async_read_some(asio::buffer(chunk_), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
       if (error == asio::error::eof && !self->refused_) return self->half_close();
       if (error) return self->close();
-      // What comes after a refusal is read and dropped: closing with unread input would take the refusal with it.
+      // Input after a refusal is read and dropped: closing with unread input would discard the refusal.
       if (!self->refused_) {
         self->input_.append(self->chunk_.data(), count);
         self->process();
@@ -191,7 +192,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     });
   }
 
-  /// The client sends no more; what it asked for is still answered.
+  /// The client closed its sending side; its open requests are still answered.
   void half_close() {
     half_closed_ = true;
     close_if_all_is_said();
@@ -201,17 +202,17 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     if (half_closed_ && !refused_ && !has_request() && unsent_.empty()) close();
   }
 
-  /// True while a request is not answered: on the worker, or waiting for a job or the devices.
+  /// True while a request is open: on the worker, or waiting for a job or the devices.
   [[nodiscard]] bool has_request() const noexcept { return at_work_ || waiting_.has_value(); }
 
-  /// Has the worker do something that may block, and `then`, a member, take what it gives, on the network thread.
+  /// Runs `what`, which may block, on the worker, then the member `then` with its result on the network thread.
   template <typename Result>
   void work(std::function<Result(const Dispatcher&)> what, void (Session::*then)(Result)) {
     at_work_ = true;
     server_.worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
       Result result = what(self->server_.dispatcher);
       asio::io_context& context = self->server_.context;
-      // The session moves along: it ends on the network thread.
+      // The session is moved back: its destructor must run on the network thread.
       asio::post(context, [self = std::move(self), result = std::move(result), then]() mutable {
         self->at_work_ = false;
         if (!self->refused_) (self.get()->*then)(std::move(result));
@@ -241,7 +242,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     }
     if (refused_) return;
     input_.erase(0, begin);
-    // Also bounds what piles up behind a request that waits.
+    // Also limits the input that collects behind an open request.
     if (input_.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
     close_if_all_is_said();
   }
@@ -264,22 +265,22 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     wait_.expires_after(waiting.until.timeout);
     waiting_ = std::move(waiting);
     wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
-      // An expiry that was on its way when the wait ended must not end the next one.
+      // An expiry that was already queued when the wait ended must not end the next wait.
       if (!error && self->wait_.expiry() <= std::chrono::steady_clock::now()) self->resume(true);
     });
     check_wait(false);
   }
 
-  /// Has the worker look whether what is waited for has come; a look that is under way is followed by another.
+  /// Checks on the worker whether the waiting request can be answered; a check during a check is made after it.
   void check_wait(bool timed_out) {
     if (!waiting_) return;
     timed_out_ = timed_out_ || timed_out;
     if (at_work_) {
-      look_again_ = true;
+      check_again_ = true;
       return;
     }
     if (!timed_out_ && !server_.dispatcher.may_have_come(*waiting_)) return;
-    look_again_ = false;
+    check_again_ = false;
     work<std::optional<std::string>>([waiting = *waiting_, late = timed_out_](
                                          const Dispatcher& dispatcher) { return dispatcher.resume(waiting, late); },
                                      &Session::end_wait);
@@ -287,7 +288,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
 
   void end_wait(std::optional<std::string> reply) {
     if (!reply) {
-      if (look_again_) check_wait(false);
+      if (check_again_) check_wait(false);
       return;
     }
     waiting_.reset();
@@ -297,7 +298,7 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
     process();
   }
 
-  /// Says why and ends the connection once that is said.
+  /// Sends the reason and closes the connection after it.
   void refuse_with(std::string line) {
     refused_ = true;
     input_.clear();
@@ -339,9 +340,9 @@ class RpcServer::Impl::Session : public std::enable_shared_from_this<Session> {
   std::deque<std::string> unsent_;
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;
-  bool at_work_ = false;     // the worker has something of this session, one thing at a time
-  bool timed_out_ = false;   // of waiting_
-  bool look_again_ = false;  // something changed while the worker looked
+  bool at_work_ = false;      // the worker runs a task of this session, one at a time
+  bool timed_out_ = false;    // of waiting_
+  bool check_again_ = false;  // a check was asked for during a check
   bool half_closed_ = false;
   bool refused_ = false;
   int parse_errors_in_a_row_ = 0;
@@ -351,7 +352,7 @@ void RpcServer::Impl::accept() {
   acceptor.async_accept([this](ErrorCodeOf error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     if (error) {
-      // Out of file descriptors, most likely: trying again at once would only burn time.
+      // Most likely no file descriptor is free: an immediate retry would only use CPU time.
       spdlog::warn("a connection could not be accepted: {}", error.message());
       accept_pause.expires_after(std::chrono::milliseconds(100));
       accept_pause.async_wait([this](ErrorCodeOf stopped) {
@@ -373,7 +374,7 @@ void RpcServer::Impl::accept() {
 
 bool RpcServer::Impl::has_room() {
   if (sessions.size() < static_cast<std::size_t>(config.max_connections)) return true;
-  // A client that went away in the middle of a wait looks half-closed; it must not keep itself from coming back.
+  // A client that went away during a wait looks half-closed; its old connection must not keep it from reconnecting.
   const auto leaving = std::find_if(sessions.begin(), sessions.end(),
                                     [](const std::shared_ptr<Session>& session) { return session->is_half_closed(); });
   if (leaving == sessions.end()) return false;

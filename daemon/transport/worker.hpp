@@ -19,12 +19,12 @@ class Worker {
 
   /// name: the thread's.
   explicit Worker(std::string name);
-  /// Waits for the task that runs; those that have not begun are dropped.
+  /// Waits for the running task; tasks that have not begun are dropped.
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// The queue has no limit of its own: whoever posts has one task there at a time.
+  /// The queue has no limit: each caller keeps at most one task in it.
   void post(Task task);
 
  private:

@@ -1,8 +1,10 @@
 /// What must never happen, counted: the axis moves while a client is told that the part is free; the machine is ready
-/// between a device's loss and the error. And how long a heartbeat takes beside a slow disk. Beside each zero stands
+/// between a device's loss and the error; a job takes the sequence number of another client; a scan is completed with
+/// more slices lost than its recipe allows. And how long a heartbeat takes beside a slow disk. Beside each zero stands
 /// how often it could have happened.
 ///
-/// bench_structure FVD [KILLS] [LOSSES]: the program to be looked at, e.g. build/daemon/fvd.
+/// bench_structure FVD [KILLS] [LOSSES]: the program to be looked at, e.g. build/daemon/fvd, with its fvdctl in ctl/
+/// beside it. bench_structure FVD jobs: the last two figures alone.
 
 #include <algorithm>
 #include <array>
@@ -19,6 +21,7 @@
 #include "tests/bench/motion_watch.hpp"
 #include "tests/bench/ping_load.hpp"
 #include "tests/bench/watched_daemon.hpp"
+#include "tests/support/child_process.hpp"
 #include "tests/support/line_client.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -48,11 +51,16 @@ class Bench {
     return daemon;
   }
 
-  json ask(const std::string& method, const json& params) const {
+  /// The whole answer, an error too.
+  json answer(const std::string& method, const json& params) const {
     LineClient client(port_);
-    const json answer = json::parse(
-        client.ask(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump()), nullptr, false);
-    return answer.is_object() && answer.contains("result") ? answer["result"] : json::object();
+    return json::parse(client.ask(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump()),
+                       nullptr, false);
+  }
+
+  json ask(const std::string& method, const json& params) const {
+    const json whole = answer(method, params);
+    return whole.is_object() && whole.contains("result") ? whole["result"] : json::object();
   }
 
   /// Asks for the job until the machine takes it; false if it never does.
@@ -225,17 +233,91 @@ json stop_race() {
   return figures;
 }
 
+/// Starts jobs as a PLC does, which counts its numbers itself, and as a person with fvdctl does in between, who leaves
+/// the number to fvdctl. A number that the PLC finds taken, or under which it finds another's part, is a collision.
+json seq_collisions(const std::filesystem::path& program, int jobs) {
+  constexpr const char* kRecipe = "chapter_continuous";
+  Bench bench(program, microscope());
+  auto daemon = bench.start();
+  const std::string fvdctl = (program.parent_path() / "ctl" / "fvdctl").string();
+  const std::string address = "127.0.0.1:" + std::to_string(bench.port());
+  int collisions = 0;
+  int started = 0;
+  const auto end_job = [&] {
+    const std::string id = bench.ask("system.state", json::object()).value("job_id", "");
+    (void)bench.ask("job.abort", {{"job_id", id}});
+    (void)bench.ask("job.wait", {{"job_id", id}, {"timeout_ms", 20000}});
+  };
+  for (int seq = 1; started < jobs && bench.await_ready(); ++seq) {
+    const std::string part = "plc-" + std::to_string(seq);
+    const json reply = bench.answer("job.start", {{"seq", seq}, {"part_id", part}, {"recipe", kRecipe}});
+    const bool accepted = reply.contains("result");
+    const bool own = bench.ask("job.status", {{"seq", seq}}).value("part_id", "") == part;
+    if (accepted) ++started;
+    if (!own) ++collisions;
+    end_job();
+    if (!bench.await_ready()) break;
+    test::ChildProcess person(
+        {fvdctl, "--address", address, "start", "--part", "person-" + std::to_string(seq), "--recipe", kRecipe});
+    (void)person.rest();
+    if (person.wait() == 0) ++started;
+    end_job();
+  }
+  daemon->kill();
+  return {{"seq_collisions", collisions}, {"seq_jobs", started}};
+}
+
+/// Continuous scans in which the camera stands still for a while and goes on without a gap in its frame ids.
+json completed_with_lost_slices(const std::filesystem::path& program, int scans) {
+  constexpr int kPlanned = 101;  // chapter_continuous: 2 um apart at 450 um/s, 3 may be lost
+  constexpr int kAllowedLost = 3;
+  constexpr milliseconds kPause{60};  // 13 slices
+  Bench bench(program, microscope());
+  auto daemon = bench.start();
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> frame(25, 80);
+  int starved = 0;
+  int completed = 0;
+  int done = 0;
+  for (; done < scans && bench.await_ready(); ++done) {
+    bench.plant().camera().faults().add({.fault = sim::CameraFault::kHang, .after = frame(random), .delay = kPause});
+    if (!bench.begin("chapter_continuous")) break;
+    const json job = bench.ask("job.wait", {{"seq", bench.seq()}});
+    const json slices =
+        bench.ask("result.get", {{"seq", bench.seq()}, {"format", "full"}}).value("slices", json::object());
+    const bool is_completed = job.value("state", "") == "completed";
+    const bool lost_too_many = slices.value("measured", kPlanned) < kPlanned - kAllowedLost;
+    if (is_completed && lost_too_many) ++completed;
+    if ((is_completed && lost_too_many) || job.value("error", "") == "slice_lost") ++starved;
+  }
+  daemon->kill();
+  return {{"completed_with_lost_slices", completed}, {"starved_beyond_limit", starved}, {"starved_scans", done}};
+}
+
+json job_figures(const std::filesystem::path& program) {
+  json figures = seq_collisions(program, 200);
+  std::cerr << figures.dump() << '\n';
+  figures.update(completed_with_lost_slices(program, 20));
+  std::cerr << figures.dump() << '\n';
+  return figures;
+}
+
 int run(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: bench_structure FVD [KILLS] [LOSSES]\n";
+    std::cerr << "usage: bench_structure FVD [KILLS] [LOSSES] | FVD jobs\n";
     return 64;
   }
   const std::filesystem::path program = argv[1];
+  if (argc > 2 && std::string(argv[2]) == "jobs") {
+    std::cout << job_figures(program).dump() << std::endl;
+    return 0;
+  }
   json figures = moving_while_released(program, argc > 2 ? std::atoi(argv[2]) : 20);
   std::cerr << figures.dump() << '\n';
   figures.update(ready_before_error(program, argc > 3 ? std::atoi(argv[3]) : 50));
   std::cerr << figures.dump() << '\n';
   figures.update(stop_race());
+  figures.update(job_figures(program));
   figures.update(ping_beside_a_slow_disk(program));
   std::cout << figures.dump() << std::endl;
   return 0;
