@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/pipeline/result.hpp"
 #include "daemon/recipes/recipe.hpp"
+#include "daemon/result/result.hpp"
 #include "drivers/replay/slice_heights.hpp"
 
 namespace fvd::ctl {

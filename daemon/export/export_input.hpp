@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/surface/statistics.hpp"
-#include "daemon/pipeline/result_data.hpp"
+#include "daemon/result/result_data.hpp"
 
 namespace fvd {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/pipeline/result.hpp"
+#include "daemon/result/result.hpp"
 
 namespace fvd {
 

@@ -13,7 +13,7 @@
 #include "core/base/mutex.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/export/result_json.hpp"
-#include "daemon/pipeline/evaluate.hpp"
+#include "daemon/result/evaluate.hpp"
 
 namespace fvd {
 

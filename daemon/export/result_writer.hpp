@@ -7,8 +7,8 @@
 
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/exporter_table.hpp"
-#include "daemon/pipeline/result.hpp"
-#include "daemon/pipeline/result_data.hpp"
+#include "daemon/result/result.hpp"
+#include "daemon/result/result_data.hpp"
 
 namespace fvd {
 

@@ -2,7 +2,7 @@
 
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/result_writer.hpp"
-#include "daemon/pipeline/evaluate.hpp"
+#include "daemon/result/evaluate.hpp"
 
 namespace fvd {
 

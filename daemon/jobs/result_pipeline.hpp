@@ -8,7 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
-#include "daemon/pipeline/result_data.hpp"
+#include "daemon/result/result_data.hpp"
 
 namespace fvd {
 

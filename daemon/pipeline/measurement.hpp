@@ -15,8 +15,8 @@
 #include "core/scan/focus_worker.hpp"
 #include "core/scan/scan_plan.hpp"
 #include "core/scan/scan_runner.hpp"
-#include "daemon/pipeline/result_data.hpp"
 #include "daemon/recipes/recipe.hpp"
+#include "daemon/result/result_data.hpp"
 
 namespace fvd {
 

@@ -3,8 +3,8 @@
 /// From the slices that a stack has seen to the surfaces of a recipe: the same for a live scan and for recorded slices.
 
 #include "core/focus/streaming_focus_stack.hpp"
-#include "daemon/pipeline/result_data.hpp"
 #include "daemon/recipes/recipe.hpp"
+#include "daemon/result/result_data.hpp"
 
 namespace fvd {
 

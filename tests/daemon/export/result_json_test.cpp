@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/pipeline/evaluate.hpp"
+#include "daemon/result/evaluate.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 #include "tests/support/expect_error.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/step_csv.hpp"
-#include "daemon/pipeline/evaluate.hpp"
+#include "daemon/result/evaluate.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"

@@ -8,7 +8,7 @@
 #include "core/base/units.hpp"
 #include "core/surface/mask_reason.hpp"
 #include "core/surface/statistics.hpp"
-#include "daemon/pipeline/result_data.hpp"
+#include "daemon/result/result_data.hpp"
 
 namespace fvd::test {
 

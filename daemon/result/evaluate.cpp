@@ -1,4 +1,4 @@
-#include "daemon/pipeline/evaluate.hpp"
+#include "daemon/result/evaluate.hpp"
 
 #include <sstream>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "daemon/pipeline/result.hpp"
+#include "daemon/result/result.hpp"
 
 #include <algorithm>
 

@@ -7,8 +7,8 @@
 
 #include "core/base/error.hpp"
 #include "core/surface/statistics.hpp"
-#include "daemon/pipeline/result.hpp"
-#include "daemon/pipeline/result_data.hpp"
+#include "daemon/result/result.hpp"
+#include "daemon/result/result_data.hpp"
 
 namespace fvd {
 
