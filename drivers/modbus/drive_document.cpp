@@ -9,7 +9,7 @@ namespace {
 constexpr IntegerRange kRegisterValue{0, 2147483647};
 constexpr IntegerRange kAddress{0, 65535, true};
 constexpr IntegerRange kBits{0, UINT32_MAX, true};
-constexpr IntegerRange kTime_ms{0, 600000};
+constexpr IntegerRange kTime_ms{0, 600000, true};
 constexpr std::int64_t kMaxFrameRegisters = 123;
 constexpr std::int64_t kMaxSteps = 1000;
 constexpr std::size_t kMaxNameLength = 64;

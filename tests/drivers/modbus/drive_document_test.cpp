@@ -83,6 +83,7 @@ TEST(DriveDocument, NamesMistakesDeepInside) {
               AllOf(HasSubstr("/status/homed"), HasSubstr("\"remembered\"")));
   EXPECT_THAT(refusal("replace", "/status/homed", "remembered"), HasSubstr("/target_register: is missing"));
   EXPECT_THAT(refusal("add", "/status/moving/differs", 0), "");
+  EXPECT_THAT(refusal("add", "/sequences/stop/-", {{"delay_ms", "0x1F"}}), "") << "times too";
   EXPECT_THAT(refusal("add", "/status/moving", {{"register", "status"}, {"equals", 1}, {"differs", 1}}),
               HasSubstr("/status/moving: has equals and differs"));
   EXPECT_THAT(refusal("add", "/registers/status/write_function", 7), HasSubstr("5 or 15 for coils"));
