@@ -48,10 +48,8 @@ constexpr std::chrono::seconds kFarewell{1};
 /// Replies that are owed when the server ends are sent within this.
 constexpr std::chrono::milliseconds kLastReplies{500};
 constexpr std::chrono::milliseconds kLeavePoll{5};
-/// Longest time from one tick of the network thread to the next while nothing comes.
-constexpr std::chrono::seconds kTickInterval{1};
-/// A handler waits for nothing: one that takes this long hangs.
-constexpr std::chrono::seconds kLongestHandler{10};
+constexpr std::chrono::seconds kTickInterval{1};     // of the network thread
+constexpr std::chrono::seconds kLongestHandler{10};  // handlers wait for nothing: one that takes this long hangs
 
 }  // namespace
 
@@ -100,13 +98,9 @@ struct RpcServer::Impl {
   }
 
   void accept();
-  /// The network thread: ticks between handlers, at least once in a tick interval.
   void run() {
     ThreadTicks ticks("fvd-rpc", kLongestHandler);
-    while (!context.stopped()) {
-      ticks.tick(HostClock::now());
-      context.run_for(kTickInterval);
-    }
+    for (; !context.stopped(); context.run_for(kTickInterval)) ticks.tick(HostClock::now());
   }
   /// Answers what has come by now, then ends the network thread; at the deadline at the latest.
   void take_leave(std::chrono::steady_clock::time_point deadline);
