@@ -206,7 +206,8 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_process_options(*sub, a.process);
 
   add_stage_commands(app, a.stage, terminal, chosen);
-  add_recipe_commands(app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
+  add_recipe_commands(
+      app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
 
   command("suggest", "suggest a recipe's focus settings from one sharp image of a surface",
           [&] { return run_suggest(a.image, terminal); })

@@ -37,18 +37,13 @@ namespace {
 
 /// Limit of the replies that a client has not read; beyond it the connection is closed.
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
-/// Limit of consecutive lines that are no JSON; such a client speaks another protocol, and its next line may look like
-/// JSON by accident.
+/// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
-/// Time for a refused client to read the reason.
-constexpr std::chrono::seconds kRefusalGrace{1};
-/// Time for the replies that are owed when the server ends.
-constexpr std::chrono::milliseconds kShutdownGrace{500};
+constexpr std::chrono::seconds kRefusalGrace{1};          // for a refused client to read the reason
+constexpr std::chrono::milliseconds kShutdownGrace{500};  // for the replies that are owed when the server ends
 constexpr std::chrono::milliseconds kShutdownPollPeriod{5};
-/// Longest time from one tick of the network thread to the next while nothing comes.
-constexpr std::chrono::seconds kTickInterval{1};
-/// A handler waits for nothing: one that takes this long hangs.
-constexpr std::chrono::seconds kLongestHandler{10};
+constexpr std::chrono::seconds kTickInterval{1};     // of the network thread
+constexpr std::chrono::seconds kLongestHandler{10};  // handlers wait for nothing: one that takes this long hangs
 
 }  // namespace
 
@@ -97,13 +92,9 @@ struct RpcServer::Impl {
   }
 
   void accept();
-  /// The network thread: ticks between handlers, at least once in a tick interval.
   void run() {
     ThreadTicks ticks("fvd-rpc", kLongestHandler);
-    while (!context.stopped()) {
-      ticks.tick(HostClock::now());
-      context.run_for(kTickInterval);
-    }
+    for (; !context.stopped(); context.run_for(kTickInterval)) ticks.tick(HostClock::now());
   }
   /// Answers what has come by now, then ends the network thread; at the deadline at the latest.
   void shut_down(std::chrono::steady_clock::time_point deadline);

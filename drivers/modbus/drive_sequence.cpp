@@ -12,7 +12,7 @@ namespace {
 using std::chrono::milliseconds;
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr int kRepeats = 3;            // of a write that does no harm twice
+constexpr int kRepeats = 3;                 // of a write that does no harm twice
 constexpr milliseconds kWaitPollPeriod{2};  // between two readings of a wait's condition
 
 /// False when the wait was ended by a stop request.

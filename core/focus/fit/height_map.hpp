@@ -12,10 +12,10 @@ namespace fvd {
 
 /// All planes have shape [height][width] of the slices.
 struct HeightMap {
-  Plane<float> height_m;     ///< metres, NaN exactly where mask != 0
-  Plane<MaskReasons> mask;   ///< 0 valid, else mask_reason bits
-  Plane<float> sigma_m;      ///< expected standard error of the height, metres; NaN where mask != 0
-  Plane<float> prominence;   ///< 0..1
+  Plane<float> height_m;    ///< metres, NaN exactly where mask != 0
+  Plane<MaskReasons> mask;  ///< 0 valid, else mask_reason bits
+  Plane<float> sigma_m;     ///< expected standard error of the height, metres; NaN where mask != 0
+  Plane<float> prominence;  ///< 0..1
   PixelFormat texture_format = PixelFormat::kMono8;
   Plane<std::uint16_t> texture;  ///< all-in-focus: grey level at the peak slice, 0..max_grey_level(texture_format)
   Plane<std::uint8_t> colour;  ///< shape [height][3 * width]: blue, green, red at the peak slice; empty for grey slices
