@@ -229,13 +229,23 @@ void CameraFeatures::set_trigger(const CameraSettings& settings) const {
     return;
   }
   const std::string source = settings.trigger == TriggerMode::kSoftware ? "Software" : settings.trigger_line;
-  arv_camera_set_trigger(camera_, source.c_str(), error.out());
-  error.check("the camera at " + where_ + " refuses TriggerSource = " + source);
   const auto read = [&](const char* feature) -> std::string {
     const char* text = arv_camera_get_string(camera_, feature, error.out());
     error.check("the camera at " + where_ + " does not tell " + feature);
     return text == nullptr ? "" : text;
   };
+  // arv_camera_set_trigger() turns every trigger off in between: a camera that acquires then exposes once by itself,
+  // and takes no trigger until that is over.
+  bool taken = false;
+  if (available("TriggerMode") && read("TriggerMode") == "On") {
+    GErrorSlot refused;
+    if (read("TriggerSource") != source) arv_camera_set_string(camera_, "TriggerSource", source.c_str(), refused.out());
+    taken = !refused.failed();
+  }
+  if (!taken) {
+    arv_camera_set_trigger(camera_, source.c_str(), error.out());
+    error.check("the camera at " + where_ + " refuses TriggerSource = " + source);
+  }
   const std::string mode = read("TriggerMode");
   const std::string got = read("TriggerSource");
   if (mode != "On") refuse("TriggerMode = On was asked for and reads back " + mode);

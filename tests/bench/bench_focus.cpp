@@ -31,9 +31,6 @@ constexpr int kHeight = 2048;
 constexpr int kSlices = 24;
 constexpr double kMegapixels = 1e-6 * kWidth * kHeight;
 
-template <typename Pixel>
-constexpr PixelFormat kFormat = sizeof(Pixel) == 1 ? PixelFormat::kMono8 : PixelFormat::kMono16;
-
 /// A scan of a tilted surface: grain whose contrast rises and falls at its own slice in every column, and noise.
 template <typename Pixel>
 std::vector<Plane<Pixel>> make_scan(int bits) {

@@ -12,6 +12,7 @@
 
 #include "core/base/error.hpp"
 #include "core/scan/continuous_scan.hpp"
+#include "gtest/gtest.h"
 
 namespace fvd::test {
 

@@ -78,10 +78,10 @@ TEST(StageReportFiles, WritesThreeFilesAndNothingElse) {
 
 TEST(StageReportFiles, RefusesAReportOfOtherPoints) {
   const ScratchDir scratch;
-  auto [points, report] = reported(FeedbackSource::kLinearScale);
-  points.pop_back();
+  auto measured = reported(FeedbackSource::kLinearScale);
+  measured.points.pop_back();
   test::expect_error(ErrorCode::kBadInput, {"366", "365"},
-                     [&] { write_stage_report(scratch / "check", points, report, kHeader); });
+                     [&] { write_stage_report(scratch / "check", measured.points, measured.report, kHeader); });
   EXPECT_THAT(scratch.entries(), testing::IsEmpty());
 }
 

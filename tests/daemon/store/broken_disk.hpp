@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <initializer_list>
 
 #include <sqlite3.h>
 #include <sys/types.h>

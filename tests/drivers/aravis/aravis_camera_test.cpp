@@ -77,6 +77,25 @@ TEST_F(AnAravisCamera, EndsAWaitWhenInterrupted) {
   EXPECT_FALSE(camera->next_frame(HostClock::now() + std::chrono::hours(1)).has_value());
 }
 
+TEST_F(AnAravisCamera, LosesNoFrameToALongerExposure) {
+  serve();
+  const auto camera = open();
+  for (const TriggerMode trigger : {TriggerMode::kSoftware, TriggerMode::kLine}) {
+    for (const double exposure_us : {1'000.0, 30'000.0, 2'000.0, 100'000.0}) {
+      CameraSettings changed = settings();
+      changed.trigger = trigger;
+      changed.exposure_us = exposure_us;
+      camera->configure(changed);
+      for (int i = 0; i < 2; ++i) {
+        trigger == TriggerMode::kLine ? server_->pulse_line() : camera->trigger();
+        const auto frame = camera->next_frame(HostClock::now() + camera->frame_deadline());
+        ASSERT_TRUE(frame.has_value()) << exposure_us << " us, frame " << i;
+        EXPECT_EQ(frame->status, FrameStatus::kOk) << exposure_us << " us, frame " << i;
+      }
+    }
+  }
+}
+
 /// A job that was stopped after its last frame must not cost the next one its first.
 TEST_F(AnAravisCamera, ForgetsAnInterruptOfBeforeItWasConfigured) {
   serve();
