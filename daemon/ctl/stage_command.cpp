@@ -1,5 +1,6 @@
 #include "daemon/ctl/stage_command.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <ctime>
 #include <iomanip>
@@ -47,8 +48,17 @@ void resolve_endpoint(StageArguments& arguments) {
 
 const char* yes_no(const std::optional<bool>& holds) { return !holds ? "unknown" : *holds ? "yes" : "no"; }
 
+/// "unknown" where the drive did not tell whether it has one.
+std::string alarm_text(const DriveCheck& check) {
+  if (!check.alarm.empty()) return check.alarm;
+  const auto told = std::find_if(check.status.begin(), check.status.end(),
+                                 [](const DriveCheck::Statement& statement) { return statement.name == "alarm"; });
+  return told != check.status.end() && !told->holds ? "unknown" : "none";
+}
+
 Json json_of(const DriveCheck& check, const DriveProfile& profile, const std::string& line) {
-  Json json{{"profile", profile.name}, {"line", line}, {"position_um", check.position_um}};
+  Json json{{"profile", profile.name}, {"line", line}};
+  json["position_um"] = check.position_um ? Json(*check.position_um) : Json();
   for (const auto& statement : check.identity) json["identity"][statement.name] = yes_no(statement.holds);
   for (const auto& statement : check.status) json["status"][statement.name] = yes_no(statement.holds);
   json["alarm"] = check.alarm.empty() ? Json() : Json(check.alarm);
@@ -74,10 +84,15 @@ std::string text_of(const DriveCheck& check, const DriveProfile& profile, const 
   text << "drive     " << profile.name << " at " << line << "\n";
   for (const auto& statement : check.identity)
     text << "identity  " << statement.name << ": " << yes_no(statement.holds) << "\n";
-  text << "position  " << check.position_um << " um\nstatus   ";
+  text << "position  ";
+  if (check.position_um) {
+    text << *check.position_um << " um\nstatus   ";
+  } else {
+    text << "unknown\nstatus   ";
+  }
   for (const auto& statement : check.status) text << ' ' << statement.name << ' ' << yes_no(statement.holds) << ',';
   text.seekp(-1, std::ios_base::end);
-  text << "\nalarm     " << (check.alarm.empty() ? "none" : check.alarm) << "\n" << std::setprecision(1);
+  text << "\nalarm     " << alarm_text(check) << "\n" << std::setprecision(1);
   for (const auto& temperature : check.temperatures) {
     text << "temperature of " << temperature.name << " " << temperature.celsius << " degC\n";
   }

@@ -21,9 +21,9 @@ std::optional<DeviceFailure> DeviceHub::open() {
   std::optional<DeviceFailure> failure;
   for (const Row& row : rows_) {
     if (!row.slot.ensure()) {
-      failure = row.slot.failure();
+      if (!failure) failure = row.slot.failure();  // the first row's is told: the axis before the camera
     } else if (row.check) {
-      if (auto found = row.check()) failure = std::move(found);
+      if (auto found = row.check(); found && !failure) failure = std::move(found);
     }
   }
   return failure;

@@ -16,8 +16,9 @@ constexpr std::chrono::milliseconds kLookPeriod{20};
 /// Positions of two looks that differ by no more are the same.
 constexpr double kStandstillWindow_um = 1.0;
 
+/// As the driver has it: a drive without torque may report that it is not in position, which is no motion.
 bool moves(const StageStatus& status) {
-  return status.moving || status.state == AxisState::kMoving || status.state == AxisState::kHoming;
+  return (status.moving && status.enabled) || status.state == AxisState::kMoving || status.state == AxisState::kHoming;
 }
 
 }  // namespace

@@ -179,9 +179,9 @@ class Checker {
 
   /// A position read with the wrong word order jumps by 65536 counts for one, or is far beyond any stage.
   void judge_position() {
-    if (std::abs(check_.position_um) <= 1e6) return;
+    if (!check_.position_um || std::abs(*check_.position_um) <= 1e6) return;
     std::ostringstream text;
-    text << "a position of " << check_.position_um << " um: is /word_order right?";
+    text << "a position of " << *check_.position_um << " um: is /word_order right?";
     const DriveRegister& reg = profile_.position;
     DriveRegister other = reg;
     other.order = reg.order == WordOrder::kHighFirst ? WordOrder::kLowFirst : WordOrder::kHighFirst;

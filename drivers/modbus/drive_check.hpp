@@ -26,8 +26,8 @@ struct DriveCheck {
   std::vector<Register> registers;  ///< all that can be read
   std::vector<Statement> identity;
   std::vector<Statement> status;
-  double position_um = 0.0;
-  std::string alarm;  ///< empty without one
+  std::optional<double> position_um;  ///< nothing where its register could not be read
+  std::string alarm;  ///< empty without one; whether there is one, the statement "alarm" of status tells
   std::vector<StageTemperature> temperatures;
   std::vector<std::string> disagreements;  ///< what the drive says otherwise than the profile; empty = it fits
   ModbusLinkStats link;

@@ -37,7 +37,8 @@ class ModbusPort final : public AxisPort {
   }
 
   ~ModbusPort() override {
-    if (watchdog_armed_ && answers_) (void)write_watchdog(profile_.watchdog->disarmed);
+    // A drive that still moves keeps its watchdog: nobody else stops it from here on.
+    if (watchdog_armed_ && answers_ && rests_) (void)write_watchdog(profile_.watchdog->disarmed);
     const ModbusLinkStats stats = link_.stats();
     spdlog::info(
         "stage link closed: {} transactions, {} retries, {} unknown, {} reconnects, {} bytes discarded, latency p50 "
@@ -72,6 +73,7 @@ class ModbusPort final : public AxisPort {
     sample.enabled = holds(profile_.enabled);
     sample.homed = holds_if(profile_.homed);
     sample.moving = holds(profile_.moving);
+    rests_ = !sample.moving || !sample.enabled;
     sample.in_position = holds(profile_.in_position);
     sample.alarm = holds(profile_.alarm);
     if (profile_.target) sample.target = image.value(*profile_.target);
@@ -211,6 +213,7 @@ class ModbusPort final : public AxisPort {
   ModbusLink link_;
   AxisTraits traits_;
   std::atomic<bool> answers_{true};
+  std::atomic<bool> rests_{false};   // as of the last sample
   bool watchdog_armed_ = false;      // the mover's thread only, as the two below
   DriveValues move_;                 // the last that was sent
   std::size_t unanswered_step_ = 0;  // of it

@@ -288,7 +288,7 @@ json completed_with_lost_slices(const std::filesystem::path& program, int scans)
     const bool is_completed = job.value("state", "") == "completed";
     const bool lost_too_many = slices.value("measured", kPlanned) < kPlanned - kAllowedLost;
     if (is_completed && lost_too_many) ++completed;
-    if ((is_completed && lost_too_many) || job.value("error", "") == "slice_lost") ++starved;
+    if ((is_completed && lost_too_many) || job.value("error", "") == "camera_frames_lost") ++starved;
   }
   daemon->kill();
   return {{"completed_with_lost_slices", completed}, {"starved_beyond_limit", starved}, {"starved_scans", done}};

@@ -76,6 +76,8 @@ TEST(StageCheckOf, ADriveWithAnotherMapNamesWhatDisagrees) {
   EXPECT_EQ(run.code, kExitBadData);
   EXPECT_NE(run.out.find("register 'status' at 4099 (0x1003) cannot be read: Illegal data address"), std::string::npos)
       << run.out;
+  EXPECT_NE(run.out.find("position  unknown"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("alarm     unknown"), std::string::npos) << run.out;
 }
 
 TEST(StageCheckOf, ADriveInAlarmSaysWhich) {

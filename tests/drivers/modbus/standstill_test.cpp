@@ -92,7 +92,7 @@ TEST_F(AMotion, OnALineThatFallsSilentSaysThatStandstillWasNotConfirmed) {
 }
 
 TEST_F(AMotion, WhoseStopsAreAllRefusedSaysThatStandstillWasNotConfirmed) {
-  const auto stage = open_slow();
+  auto stage = open_slow();
   plant_.faults().add({.on = sim::FaultOn::kWrite,
                        .address = kAzStopRegister,
                        .count = 3,
@@ -102,6 +102,9 @@ TEST_F(AMotion, WhoseStopsAreAllRefusedSaysThatStandstillWasNotConfirmed) {
   expect_error(ErrorCode::kStagePosition, {"did not settle", "standstill was not confirmed"},
                [&] { stage->move_to(Micrometers{1450}, criterion_, {}); });
   EXPECT_EQ(plant_.faults().unconsumed(), 0U) << "the stop is sent three times";
+  ASSERT_TRUE(moves());
+  stage.reset();
+  EXPECT_FALSE(moves()) << "an axis is not left moving by who closes it";
 }
 
 TEST_F(AMotion, ThatEndsByItselfAlthoughItsStopsAreRefusedIsMeasuredToRest) {
