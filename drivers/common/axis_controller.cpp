@@ -49,17 +49,7 @@ class AxisController final : public Axis {
   }
 
   /// An axis is not left moving when nobody watches it any more.
-  ~AxisController() override {
-    try {
-      if (!poller_.connected()) return;
-      const AxisSample sample = poller_.latest();
-      if (!sample.moving || !sample.enabled) return;
-      spdlog::warn("the stage at {} is closed while it moves; it is stopped", traits_.address);
-      if (const std::string why = stopper_.halt(); !why.empty()) spdlog::error("stage closed: {}", why);
-    } catch (const std::exception& error) {
-      spdlog::error("stage closed: whether it rests is not known: {}", error.what());
-    }
-  }
+  ~AxisController() override { stopper_.halt_if_moving(); }
   AxisController(const AxisController&) = delete;
   AxisController& operator=(const AxisController&) = delete;
 

@@ -89,6 +89,16 @@ std::string AxisStopper::halt() noexcept {
   }
 }
 
+void AxisStopper::halt_if_moving() noexcept {
+  try {
+    if (!poller_.connected() || reports_rest(poller_.latest())) return;
+    spdlog::warn("the stage at {} is closed while it moves; it is stopped", port_.traits().address);
+    if (const std::string why = halt(); !why.empty()) spdlog::error("stage closed: {}", why);
+  } catch (const std::exception& error) {
+    spdlog::error("stage closed: whether it rests is not known: {}", error.what());
+  }
+}
+
 bool AxisStopper::rests() {
   return wait_for_standstill(HostClock::now() + kStandstillTimeout + port_.traits().sample_timeout, false);
 }

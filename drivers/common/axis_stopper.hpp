@@ -24,6 +24,9 @@ class AxisStopper {
   /// standstill was measured; else a sentence "standstill was not confirmed: ...".
   std::string halt() noexcept;
 
+  /// halt(), if the axis moved in the last sample; the log tells what came of it.
+  void halt_if_moving() noexcept;
+
   /// False at the first sample that shows motion. Throws Error kStageDisconnected.
   [[nodiscard]] bool rests();
 
