@@ -20,14 +20,12 @@ constexpr Micrometers kStandstillWindow{1.0};
 constexpr milliseconds kStandstillTimeout{2000};  ///< beyond the braking time
 constexpr milliseconds kSampleGrace{200};         ///< for a sample that is due when the time is over
 
-bool reports_rest(const AxisSample& sample) { return !sample.moving || !sample.enabled; }
-
 /// The samples since the axis was last seen moving.
 class RestingSamples {
  public:
   /// True once they are a standstill.
   bool add(const AxisSample& sample) {
-    if (!reports_rest(sample)) {
+    if (!sample.reports_rest()) {
       count_ = 0;
       return false;
     }
@@ -91,7 +89,7 @@ std::string AxisStopper::halt() noexcept {
 
 void AxisStopper::halt_if_moving() noexcept {
   try {
-    if (!poller_.connected() || reports_rest(poller_.latest())) return;
+    if (!poller_.connected() || poller_.latest().reports_rest()) return;
     spdlog::warn("the stage at {} is closed while it moves; it is stopped", port_.traits().address);
     if (const std::string why = halt(); !why.empty()) spdlog::error("stage closed: {}", why);
   } catch (const std::exception& error) {

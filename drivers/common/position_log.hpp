@@ -27,6 +27,9 @@ struct AxisSample {
   bool limit_negative = false;
   bool emergency_stop = false;
   std::optional<std::int64_t> target{};  ///< steps, as the drive reads it back, where that is polled
+
+  /// As the drive reports it. One without torque may report for ever that it is not in position, which is no motion.
+  [[nodiscard]] bool reports_rest() const noexcept { return !moving || !enabled; }
 };
 
 /// A ring of fixed size, times increasing. context: one thread at a time.

@@ -73,7 +73,7 @@ class ModbusPort final : public AxisPort {
     sample.enabled = holds(profile_.enabled);
     sample.homed = holds_if(profile_.homed);
     sample.moving = holds(profile_.moving);
-    rests_ = !sample.moving || !sample.enabled;
+    rests_ = sample.reports_rest();
     sample.in_position = holds(profile_.in_position);
     sample.alarm = holds(profile_.alarm);
     if (profile_.target) sample.target = image.value(*profile_.target);

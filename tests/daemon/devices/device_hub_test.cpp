@@ -100,6 +100,15 @@ TEST_F(ADeviceHub, IsNotUsableWhileTheAxisMovesOn) {
   EXPECT_EQ(rest_, std::vector<bool>{true});
 }
 
+TEST_F(ADeviceHub, NamesTheAxisThatMovesBeforeTheCameraThatIsMissing) {
+  cables_.axis_moves = true;
+  cables_.axis_stops = false;
+  cables_.camera = false;
+  const auto failure = hub_.open();
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->code, ErrorCode::kNotReady) << failure->message;
+}
+
 TEST_F(ADeviceHub, NamesTheDeviceThatWasLostAndOpensItAnew) {
   ASSERT_EQ(hub_.open(), std::nullopt);
   EXPECT_EQ(hub_.lost(), std::nullopt);

@@ -13,6 +13,7 @@ namespace {
 struct Look {
   bool moving = false;
   double z_um = 0.0;
+  bool enabled = true;
 };
 
 /// Shows its looks one after the other, the last one again and again.
@@ -23,6 +24,7 @@ class LookedAtAxis final : public sim::FakeAxis {
     if (looks_.empty()) throw Error(ErrorCode::kStageDisconnected, "gone");
     StageStatus status = FakeAxis::status();
     status.moving = looks_.front().moving;
+    status.enabled = looks_.front().enabled;
     status.position = Micrometers{looks_.front().z_um};
     if (looks_.size() > 1) looks_.pop_front();
     return status;
@@ -57,6 +59,21 @@ TEST(Standstill, IsNotReportedOfAnAxisThatCreepsThoughItReportsRest) {
   LookedAtAxis axis(clock, looks);
   EXPECT_FALSE(bring_to_rest(axis, clock, [] { ++ignore_motion; }));
   EXPECT_EQ(axis.stops, 1) << "it is told to stop all the same";
+}
+
+TEST(Standstill, IsSeenOfADriveWithoutTorqueThatReportsMotion) {
+  sim::FakeClock clock;
+  LookedAtAxis axis(clock, {{true, 3.0, false}, {true, 3.0, false}});
+  EXPECT_TRUE(bring_to_rest(axis, clock, [] { ++ignore_motion; }));
+  EXPECT_EQ(axis.stops, 0);
+}
+
+TEST(Standstill, IsNotReportedOfADriveWithoutTorqueThatCoasts) {
+  sim::FakeClock clock;
+  std::deque<Look> looks;
+  for (int i = 0; i < 1000; ++i) looks.push_back({true, 2.0 * i, false});
+  LookedAtAxis axis(clock, looks);
+  EXPECT_FALSE(bring_to_rest(axis, clock, [] { ++ignore_motion; }));
 }
 
 TEST(Standstill, EndsItsWaitForAnAxisThatNeverStops) {

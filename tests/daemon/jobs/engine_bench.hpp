@@ -124,6 +124,15 @@ class AnEngine : public testing::Test {
     store_ = std::make_unique<JobStore>(folder_.path() / "fvd.sqlite");
   }
 
+  /// The next opening of the camera says that it began and goes on until it is let go.
+  void hold_camera_opening(std::promise<void>& opening, std::promise<void>& go) {
+    const std::lock_guard lock(bench_.mutex);
+    bench_.on_camera_opening = [&] {
+      opening.set_value();
+      go.get_future().wait_for(std::chrono::seconds(10));
+    };
+  }
+
   void open(ResultPipeline make_result = store_result) {
     const auto open_camera = [this]() -> std::unique_ptr<Camera> {
       const std::lock_guard lock(bench_.mutex);

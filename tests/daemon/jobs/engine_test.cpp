@@ -152,13 +152,7 @@ TEST_F(AnEngine, AnswersACommandThatWasPendingAtShutdown) {
   std::promise<void> go;
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
-  {
-    const std::lock_guard lock(bench_.mutex);
-    bench_.on_camera_opening = [&] {
-      opening.set_value();
-      go.get_future().wait_for(seconds(10));
-    };
-  }
+  hold_camera_opening(opening, go);
   jobs().start({1, "a", "part"});
   opening.get_future().wait();
   ASSERT_TRUE(await_end_of(1));
@@ -197,13 +191,7 @@ TEST_F(AnEngine, TellsTheEndOfAJobBeforeItOpensTheCameraAnew) {
   std::promise<void> go;
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
-  {
-    const std::lock_guard lock(bench_.mutex);
-    bench_.on_camera_opening = [&] {
-      opening.set_value();
-      go.get_future().wait_for(seconds(10));
-    };
-  }
+  hold_camera_opening(opening, go);
   jobs().start({1, "a", "part"});
   opening.get_future().wait();
   const auto now = machine().snapshot();
