@@ -3,23 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <stop_token>
 #include <thread>
 
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
-#include <sys/ioctl.h>
-#include <termios.h>
 
 #include "core/base/clock.hpp"
 #include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "sim/base/file_descriptor.hpp"
+#include "sim/base/pseudo_terminal.hpp"
 #include "sim/modbus/scripted_responder.hpp"
 
 namespace fvd::sim {
@@ -32,71 +27,13 @@ constexpr std::size_t kSmallestFrame = 4;  // unit, function, checksum
 constexpr std::size_t kLargestFrame = 256;
 constexpr int kBitsPerCharacter = 11;
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorCode::kBadConfig, "the simulated serial line: " + what + ": " + std::strerror(errno));
-}
-
-int open_master() {
-  const int fd = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (fd < 0) refuse("no pseudo-terminal");
-  if (::grantpt(fd) == 0 && ::unlockpt(fd) == 0) return fd;
-  const int reason = errno;
-  ::close(fd);
-  errno = reason;
-  refuse("no access to the pseudo-terminal");
-}
-
-std::filesystem::path slave_of(int master) {
-  std::array<char, 128> name{};
-  if (::ptsname_r(master, name.data(), name.size()) != 0) refuse("the pseudo-terminal has no name");
-  return name.data();
-}
-
-/// Raw, as a serial port without a line discipline.
-int open_slave(const std::filesystem::path& path) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (fd < 0) refuse("cannot open " + path.string());
-  termios settings{};
-  ::tcgetattr(fd, &settings);
-  ::cfmakeraw(&settings);
-  ::tcsetattr(fd, TCSANOW, &settings);
-  return fd;
-}
-
-/// The link, made and taken away with its owner.
-class SymbolicLink {
- public:
-  SymbolicLink(const std::filesystem::path& path, const std::filesystem::path& target) : path_(path) {
-    if (path_.empty()) return;
-    std::error_code error;
-    if (std::filesystem::is_symlink(path_, error)) std::filesystem::remove(path_, error);
-    std::filesystem::create_symlink(target, path_, error);
-    if (!error) return;
-    errno = error.value();
-    refuse("cannot make the link " + path_.string());
-  }
-  ~SymbolicLink() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove(path_, ignored);
-  }
-  SymbolicLink(const SymbolicLink&) = delete;
-  SymbolicLink& operator=(const SymbolicLink&) = delete;
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace
 
 struct ModbusRtuServer::Impl {
   Impl(RegisterBank& bank, const ModbusRtuOptions& o)
       : options(checked(o)),
         responder(bank, o.faults, o.drive),
-        master(open_master()),
-        slave_path(slave_of(master.get())),
-        slave(open_slave(slave_path)),
-        link(o.link, slave_path),
-        path(o.link.empty() ? slave_path : o.link),
+        terminal(o.link),
         wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         thread(start_thread("sim-modbus-rtu", [this](std::stop_token stop) { serve(stop); })) {}
 
@@ -126,8 +63,7 @@ struct ModbusRtuServer::Impl {
     while (!stop.stop_requested()) {
       const bool waits_for_more = !input.empty() || astray;
       const bool readable = wait_readable(waits_for_more ? frame_silence() : idle_period());
-      // Clients ask for exclusive use of the port; it would outlive them, because the server keeps the slave open.
-      ::ioctl(slave.get(), TIOCNXCL);
+      terminal.end_exclusive_use();
       responder.idle();
       if (readable) {
         take_input(stop);
@@ -141,7 +77,7 @@ struct ModbusRtuServer::Impl {
 
   /// False when nothing came, or the server is to end.
   bool wait_readable(nanoseconds timeout) {
-    std::array<pollfd, 2> waiting{{{wake.get(), POLLIN, 0}, {master.get(), POLLIN, 0}}};
+    std::array<pollfd, 2> waiting{{{wake.get(), POLLIN, 0}, {terminal.master(), POLLIN, 0}}};
     const timespec time{timeout.count() / 1'000'000'000, timeout.count() % 1'000'000'000};
     return ::ppoll(waiting.data(), waiting.size(), &time, nullptr) > 0 && (waiting[1].revents & POLLIN) != 0;
   }
@@ -159,7 +95,7 @@ struct ModbusRtuServer::Impl {
   void take_input(const std::stop_token& stop) {
     const HostTime now = HostClock::now();
     std::array<std::uint8_t, kLargestFrame> chunk{};
-    const auto count = ::read(master.get(), chunk.data(), chunk.size());
+    const auto count = ::read(terminal.master(), chunk.data(), chunk.size());
     if (count <= 0 || astray) return;
     if (input.empty()) arrival = now;
     input.insert(input.end(), chunk.begin(), chunk.begin() + count);
@@ -224,7 +160,7 @@ struct ModbusRtuServer::Impl {
     if (answer.truncated) message.resize(message.size() / 2);
     bus_free += options.timing.turnaround + answer.late + characters(static_cast<double>(message.size()));
     wait_until(handed_over(bus_free), stop);
-    [[maybe_unused]] const auto written = ::write(master.get(), message.data(), message.size());
+    [[maybe_unused]] const auto written = ::write(terminal.master(), message.data(), message.size());
   }
 
   /// The adapter's timer ticks freely: bytes wait for its next tick.
@@ -241,17 +177,13 @@ struct ModbusRtuServer::Impl {
     input.clear();
     while (wait_readable(nanoseconds(0)) && !stop.stop_requested()) {
       std::array<std::uint8_t, kLargestFrame> chunk{};
-      if (::read(master.get(), chunk.data(), chunk.size()) <= 0) return;
+      if (::read(terminal.master(), chunk.data(), chunk.size()) <= 0) return;
     }
   }
 
   const ModbusRtuOptions options;
   ScriptedResponder responder;  // server thread only
-  FileDescriptor master;
-  std::filesystem::path slave_path;
-  FileDescriptor slave;  // kept open: the master would see a hang-up whenever the last client closes
-  SymbolicLink link;
-  std::filesystem::path path;
+  PseudoTerminal terminal;
   FileDescriptor wake;
   const HostTime born = HostClock::now();
   ModbusBytes input;    // server thread only, as the next three
@@ -267,7 +199,7 @@ ModbusRtuServer::ModbusRtuServer(RegisterBank& bank, const ModbusRtuOptions& opt
     : impl_(std::make_unique<Impl>(bank, options)) {}
 ModbusRtuServer::~ModbusRtuServer() = default;
 
-const std::filesystem::path& ModbusRtuServer::path() const noexcept { return impl_->path; }
+const std::filesystem::path& ModbusRtuServer::path() const noexcept { return impl_->terminal.path(); }
 std::uint64_t ModbusRtuServer::requests() const noexcept { return impl_->requests; }
 void ModbusRtuServer::set_mute(bool mute) { impl_->mute = mute; }
 
