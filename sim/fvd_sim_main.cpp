@@ -64,10 +64,22 @@ LineTiming line_timing_of(const Arguments& arguments) {
   return timing;
 }
 
+constexpr const char* kGcs = "gcs";
+
+/// All that the stage may be: drives on Modbus, a controller on GCS.
+std::vector<std::string> stage_names() {
+  std::vector<std::string> names = drive_names();
+  names.emplace_back(kGcs);
+  return names;
+}
+
 /// Where the stage is, in words.
 std::string stage_of(const Plant& plant, const Arguments& arguments) {
-  if (!arguments.stage_pty.empty()) return arguments.stage_pty.string() + " unit 1 (Modbus RTU)";
-  return arguments.stage_address + ':' + std::to_string(plant.stage_port()) + " unit 1 (Modbus TCP)";
+  const bool serial = !arguments.stage_pty.empty();
+  const std::string line =
+      serial ? arguments.stage_pty.string() : arguments.stage_address + ':' + std::to_string(plant.stage_port());
+  if (arguments.drive == kGcs) return line + " axis 1 (GCS)";
+  return line + (serial ? " unit 1 (Modbus RTU)" : " unit 1 (Modbus TCP)");
 }
 
 void write_ready_file(const std::filesystem::path& file, const Plant& plant, const Arguments& arguments) {
@@ -93,12 +105,17 @@ int run(const Arguments& arguments) {
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
   sigprocmask(SIG_BLOCK, &signals, nullptr);
+  const bool gcs = arguments.drive == kGcs;
+  if (gcs && !(arguments.faults.empty() && arguments.line_timing.empty())) {
+    throw Error(ErrorCode::kBadConfig, "--faults and --line-timing are of Modbus; they do not go with --drive gcs");
+  }
   Plant plant({.world = world_of(arguments),
                .axis = plant_of(arguments),
                .camera_address = arguments.camera_address,
                .stage_address = arguments.stage_address,
                .stage_port = arguments.stage_port,
-               .drive = drive_kind(arguments.drive),
+               .drive = gcs ? DriveKind::kAz : drive_kind(arguments.drive),
+               .gcs = gcs,
                .stage_pty = arguments.stage_pty,
                .line_timing = line_timing_of(arguments),
                .faults = arguments.faults.empty() ? std::vector<FaultStep>{} : load_fault_steps(arguments.faults),
@@ -112,8 +129,8 @@ int run(const Arguments& arguments) {
   int received = 0;
   sigwait(&signals, &received);
   std::cout << "frames sent " << plant.camera().frames() << ", packets lost " << plant.camera().packets_lost()
-            << ", packets resent " << plant.camera().packets_resent() << ", Modbus requests " << plant.stage_requests()
-            << std::endl;
+            << ", packets resent " << plant.camera().packets_resent() << ", requests to the stage "
+            << plant.stage_requests() << std::endl;
   if (plant.faults().unconsumed() + plant.camera().faults().unconsumed() == 0) return 0;
   std::cout << "faults that did not happen:\n";
   for (const std::string& steps :
@@ -137,16 +154,16 @@ int main_of(int argc, char** argv) {
   running->add_option("--plant", arguments.plant, "axis file; default: nearly perfect")->check(CLI::ExistingFile);
   running->add_option("--camera-address", arguments.camera_address, "loopback address, or auto for a free one")
       ->capture_default_str();
-  running->add_option("--stage-address", arguments.stage_address, "address of the Modbus server")
+  running->add_option("--stage-address", arguments.stage_address, "address that the stage is served at")
       ->capture_default_str();
   auto* port = running->add_option("--stage-port", arguments.stage_port, "its port, 0 = any free one")
                    ->check(CLI::Range(0, 65535))
                    ->capture_default_str();
-  running->add_option("--drive", arguments.drive, "whose registers the stage has")
-      ->check(CLI::IsMember(drive_names()))
+  running->add_option("--drive", arguments.drive, "what the stage is: a drive on Modbus, or gcs")
+      ->check(CLI::IsMember(stage_names()))
       ->capture_default_str();
   auto* pty = running->add_option("--stage-pty", arguments.stage_pty,
-                                  "serve Modbus RTU on a pseudo-terminal linked here instead of TCP");
+                                  "serve the stage on a pseudo-terminal linked here instead of TCP");
   pty->excludes(port);
   running
       ->add_option("--line-timing", arguments.line_timing,

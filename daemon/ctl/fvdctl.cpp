@@ -122,8 +122,9 @@ std::string check_seq(const std::string& text) {
 
 using Command = std::function<int()>;
 
-void add_line_options(CLI::App& sub, StageArguments& a) {
-  sub.add_option("profile", a.stage.profile, "drive profile, a JSON file")->required()->check(CLI::ExistingFile);
+CLI::Option* add_line_options(CLI::App& sub, StageArguments& a) {
+  CLI::Option* profile =
+      sub.add_option("profile", a.stage.profile, "drive profile, a JSON file")->check(CLI::ExistingFile);
   CLI::Option* tcp = sub.add_option("--tcp", a.tcp, "HOST or HOST:PORT of the drive");
   sub.add_option("--serial", a.stage.serial_device, "serial port, best by its name in /dev/serial/by-id")
       ->excludes(tcp);
@@ -135,6 +136,7 @@ void add_line_options(CLI::App& sub, StageArguments& a) {
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
   sub.add_option("--unit", a.stage.unit, "Modbus unit id")->check(CLI::Range(1, 247))->capture_default_str();
+  return profile;
 }
 
 /// A length in um as an option.
@@ -146,12 +148,14 @@ void add_stage_commands(CLI::App& app, StageArguments& a, const Terminal& termin
   CLI::App* stage = app.add_subcommand("stage", "look at a drive, or measure it, without the daemon");
   stage->require_subcommand(1);
   CLI::App* check = stage->add_subcommand("check", "compare a drive with its profile; reads only, nothing moves");
-  add_line_options(*check, a);
+  add_line_options(*check, a)->required();
   check->add_flag("--json", a.json, "print JSON");
   check->callback([&] { chosen = [&] { return run_stage_check(a, terminal); }; });
 
   CLI::App* accuracy = stage->add_subcommand("accuracy", "measure the stage's steps; MOVES the axis");
-  add_line_options(*accuracy, a);
+  CLI::Option* profile = add_line_options(*accuracy, a);
+  accuracy->add_option("--gcs-axis", a.gcs_axis, "in place of a profile: this axis of a Physik Instrumente controller")
+      ->excludes(profile);
   accuracy->add_option("--from-um", a.plan.from.value, "lowest position")->required();
   accuracy->add_option("--to-um", a.plan.to.value, "highest position")->required();
   accuracy->add_option("--steps", a.plan.steps, "between them")->check(CLI::Range(1, 100000))->capture_default_str();

@@ -18,6 +18,7 @@
 #include "daemon/export/stage_report_files.hpp"
 #include "drivers/modbus/drive_check.hpp"
 #include "drivers/modbus/modbus_axis.hpp"
+#include "drivers/registry/driver_table.hpp"
 
 namespace fvd::ctl {
 
@@ -27,11 +28,17 @@ using Json = nlohmann::ordered_json;
 
 void resolve_endpoint(StageArguments& arguments) {
   StageConfig& stage = arguments.stage;
+  const bool is_gcs = !arguments.gcs_axis.empty();
+  if (!is_gcs && stage.profile.empty()) throw UsageError("give the drive's profile, or --gcs-axis");
+  if (is_gcs) {
+    stage.driver = "gcs";
+    stage.gcs_axis = arguments.gcs_axis;
+  }
   if (arguments.tcp.empty() == stage.serial_device.empty()) {
     throw UsageError("give the drive's line: --tcp HOST[:PORT] or --serial DEVICE");
   }
   if (arguments.tcp.empty()) {
-    stage.transport = "rtu";
+    stage.transport = is_gcs ? "serial" : "rtu";
     return;
   }
   stage.transport = "tcp";
@@ -167,7 +174,7 @@ int run_stage_accuracy(StageArguments arguments, const Terminal& terminal) {
                 arguments.out.string() + " exists already: give another name, or move it away");
   }
   const StopOnSignal signal;
-  const auto stage = open_modbus_stage(arguments.stage);
+  const auto stage = open_stage(arguments.stage);
   if (!stage->status().homed) {
     if (!arguments.home) throw Error(ErrorCode::kStageNotHomed, "the stage has no reference; --home finds it first");
     stage->home(signal.token());

@@ -13,7 +13,8 @@ namespace fvd::ctl {
 
 struct StageArguments {
   StageConfig stage;
-  std::string tcp;  ///< HOST or HOST:PORT; empty = the serial port of `stage`
+  std::string gcs_axis;  ///< empty = a Modbus drive by its profile
+  std::string tcp;       ///< HOST or HOST:PORT; empty = the serial port of `stage`
   bool json = false;
   bool home = false;
   StageRunPlan plan;

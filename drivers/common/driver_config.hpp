@@ -25,10 +25,10 @@ struct CameraConfig {
 };
 
 struct StageConfig {
-  std::string driver = "modbus";      ///< "modbus" or "replay"
+  std::string driver = "modbus";      ///< "modbus", "gcs" or "replay"
   std::filesystem::path profile;      ///< drive profile, JSON
-  std::string transport = "tcp";      ///< "tcp" or "rtu"
-  std::string address = "127.0.0.1";  ///< Modbus TCP host
+  std::string transport = "tcp";      ///< "tcp"; serial lines: "rtu" for modbus, "serial" for gcs
+  std::string address = "127.0.0.1";  ///< of tcp: host
   int port = 502;
   std::string serial_device;  ///< RTU: best a name below /dev/serial/by-id
   int serial_baud = 115200;
@@ -37,6 +37,8 @@ struct StageConfig {
   std::chrono::milliseconds quiet{250};  ///< RTU: silence that must follow a doubtful answer; the slowest reply or more
   int unit = 1;                          ///< Modbus unit id, 1..247
   std::chrono::milliseconds response_timeout{200};
+  std::string gcs_axis = "1";                  ///< driver "gcs": the axis as the controller calls it
+  std::string gcs_feedback = "motor_encoder";  ///< driver "gcs": or "linear_scale"
   Micrometers min{-1000.0};  ///< software limits, take-up included
   Micrometers max{1000.0};
   Micrometers take_up{20.0};  ///< overshoot below the first slice, >= 3x backlash

@@ -1,19 +1,52 @@
 #pragma once
 
-/// The drivers by name: the only place that knows them all.
+/// The drivers by name, one row each: what the configuration says to them, what is checked before, how they are opened.
 
+#include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "config/fields.hpp"
+#include "config/problem.hpp"
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
 #include "drivers/common/driver_config.hpp"
 
 namespace fvd {
 
+/// Lights have no rows yet.
+enum class DeviceKind { kCamera, kAxis, kLight };
+
+template <typename Config, typename Device>
+struct DriverRow {
+  DeviceKind kind;
+  const char* name;     ///< in the key "driver"
+  const char* meaning;  ///< one line
+  /// The keys that only this driver reads. Files that hold another driver's keys are read all the same.
+  void (*describe)(Config&, Fields&);
+  /// What the range of a single key cannot say. Throws nothing, touches no device.
+  void (*check)(const Config&, Problems&);
+  /// Throws as the driver says.
+  std::unique_ptr<Device> (*open)(const Config&);
+};
+
+using CameraDriver = DriverRow<CameraConfig, Camera>;
+using AxisDriver = DriverRow<StageConfig, Axis>;
+[[nodiscard]] const std::vector<CameraDriver>& camera_drivers();
+[[nodiscard]] const std::vector<AxisDriver>& axis_drivers();
+
+/// The blocks `camera` and `stage` of the configuration: the driver, the keys that all share, and each driver's own.
+void describe(CameraConfig& config, Fields& fields);
+void describe(StageConfig& config, Fields& fields);
+
+/// What the chosen driver asks for beyond ranges, with pointers that begin at the root of the configuration.
+void check_driver(const CameraConfig& config, Problems& problems);
+void check_driver(const StageConfig& config, Problems& problems);
+
 /// Opens the camera. Throws Error kBadConfig for an unknown driver (the message lists the known ones), else what the
 /// driver throws.
 [[nodiscard]] std::unique_ptr<Camera> open_camera(const CameraConfig& config);
-
 /// Connects the stage. Throws likewise.
 [[nodiscard]] std::unique_ptr<Axis> open_stage(const StageConfig& config);
 

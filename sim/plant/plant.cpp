@@ -6,7 +6,8 @@ Plant::Plant(const PlantOptions& options)
     : options_(options),
       axis_(options.axis),
       world_(options.world, axis_),
-      drive_(make_drive(options.drive, axis_)),
+      drive_(options.gcs ? nullptr : make_drive(options.drive, axis_)),
+      gcs_controller_(options.gcs ? std::make_unique<GcsController>(axis_) : nullptr),
       faults_(options.faults),
       camera_address_(options.camera_address == "auto" ? free_camera_address() : options.camera_address),
       stage_port_(options.stage_port) {
@@ -27,6 +28,13 @@ void Plant::unplug_camera() {
 }
 
 void Plant::plug_stage() {
+  if (gcs_controller_) {
+    GcsServerOptions line{.address = options_.stage_address, .port = stage_port_};
+    if (!options_.stage_pty.empty()) line.terminal_link = options_.stage_pty;
+    gcs_stage_ = std::make_unique<GcsServer>(*gcs_controller_, line);
+    if (!line.terminal_link) stage_port_ = gcs_stage_->port();
+    return;
+  }
   if (!options_.stage_pty.empty()) {
     serial_stage_ = std::make_unique<ModbusRtuServer>(
         *drive_,
@@ -43,9 +51,11 @@ void Plant::plug_stage() {
 void Plant::unplug_stage() {
   stage_.reset();
   serial_stage_.reset();
+  gcs_stage_.reset();
 }
 
 std::uint64_t Plant::stage_requests() const {
+  if (gcs_stage_) return gcs_stage_->requests();
   if (stage_) return stage_->requests();
   return serial_stage_ ? serial_stage_->requests() : 0;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The whole simulated microscope: one world, its camera on GigE Vision, its stage on Modbus TCP or RTU.
+/// The whole simulated microscope: one world, its camera on GigE Vision, its stage on Modbus TCP or RTU, or on GCS.
 
 #include <filesystem>
 #include <memory>
@@ -11,6 +11,7 @@
 #include "sim/camera/gige_camera_server.hpp"
 #include "sim/camera/line_trigger.hpp"
 #include "sim/drives/drive_kinds.hpp"
+#include "sim/gcs/gcs_server.hpp"
 #include "sim/modbus/fault_script.hpp"
 #include "sim/modbus/modbus_rtu_server.hpp"
 #include "sim/modbus/modbus_tcp_server.hpp"
@@ -26,9 +27,10 @@ struct PlantOptions {
   std::string stage_address = "127.0.0.1";
   int stage_port = 0;  ///< 0 = any free port
   DriveKind drive = DriveKind::kAz;
-  std::filesystem::path stage_pty{};  ///< if given, RTU on a pseudo-terminal linked here instead of TCP
-  LineTiming line_timing{};           ///< of that
-  std::vector<FaultStep> faults{};    ///< what befalls line and drive of the stage
+  bool gcs = false;                   ///< a controller that speaks GCS in place of a drive; no faults, no line timing
+  std::filesystem::path stage_pty{};  ///< if given, a serial line on a pseudo-terminal linked here instead of TCP
+  LineTiming line_timing{};           ///< of that, Modbus RTU
+  std::vector<FaultStep> faults{};    ///< what befalls line and drive of the stage, Modbus
   std::vector<CameraFaultStep> camera_faults{};
 };
 
@@ -42,10 +44,10 @@ class Plant {
   [[nodiscard]] const std::string& camera_address() const { return camera_address_; }
   [[nodiscard]] int stage_port() const { return stage_port_; }  ///< as asked for if the stage is on RTU
   [[nodiscard]] GigeCameraServer& camera() { return *camera_; }
-  [[nodiscard]] ModbusTcpServer& stage() { return *stage_; }                ///< only without stage_pty
-  [[nodiscard]] ModbusRtuServer& serial_stage() { return *serial_stage_; }  ///< only with stage_pty
+  [[nodiscard]] ModbusTcpServer& stage() { return *stage_; }                ///< only without stage_pty and gcs
+  [[nodiscard]] ModbusRtuServer& serial_stage() { return *serial_stage_; }  ///< only with stage_pty, without gcs
   [[nodiscard]] std::uint64_t stage_requests() const;                       ///< of the stage now plugged
-  [[nodiscard]] SimDrive& drive() { return *drive_; }
+  [[nodiscard]] SimDrive& drive() { return *drive_; }                       ///< only without gcs
   [[nodiscard]] FaultScript& faults() { return faults_; }
   [[nodiscard]] const SimWorld& world() const { return world_; }
   [[nodiscard]] AxisModel& axis() { return axis_; }
@@ -59,7 +61,8 @@ class Plant {
   PlantOptions options_;
   AxisModel axis_;
   SimWorld world_;
-  std::unique_ptr<SimDrive> drive_;
+  std::unique_ptr<SimDrive> drive_;                // or
+  std::unique_ptr<GcsController> gcs_controller_;  // this
   FaultScript faults_;
   std::string camera_address_;
   int stage_port_;
@@ -67,6 +70,7 @@ class Plant {
   std::unique_ptr<LineTrigger> wire_;  // from the drive to the camera
   std::unique_ptr<ModbusTcpServer> stage_;
   std::unique_ptr<ModbusRtuServer> serial_stage_;
+  std::unique_ptr<GcsServer> gcs_stage_;
 };
 
 }  // namespace fvd::sim

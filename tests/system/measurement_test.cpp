@@ -58,6 +58,16 @@ TEST_F(AMicroscope, MeasuresTheChaptersSurface) {
   EXPECT_LE(record["steps"]["error_max_um"].get<double>(), 0.2);
 }
 
+TEST_F(AMicroscope, MeasuresAsWellWithAControllerThatSpeaksGcs) {
+  sim::PlantOptions with_gcs = options();
+  with_gcs.gcs = true;
+  start(with_gcs);
+  begin(1);
+  const json ended = await_end(1);
+  ASSERT_EQ(ended["state"], "completed") << ended.dump();
+  expect_chapter_figures(figures_of(result_dir(1)));
+}
+
 TEST_F(AMicroscope, AnswersARepeatedTriggerWithTheSameJobAndNoSecondMotion) {
   start();
   const json first = begin(7);

@@ -30,7 +30,8 @@ class AMicroscope : public testing::Test {
     const LoadedConfig loaded =
         load_config(FVD_SOURCE_DIR "/config/fvd-sim.json",
                     {"camera.address=" + plant_->camera_address(), "stage.port=" + std::to_string(plant_->stage_port()),
-                     "rpc.port=0", "log.level=warn", "paths.state_dir=" + (folder_.path() / "state").string(),
+                     std::string("stage.driver=") + (with.gcs ? "gcs" : "modbus"), "rpc.port=0", "log.level=warn",
+                     "paths.state_dir=" + (folder_.path() / "state").string(),
                      "paths.runtime_dir=" + (folder_.path() / "run").string()});
     ASSERT_TRUE(loaded.problems.empty()) << to_text(loaded.problems, "fvd-sim.json");
     config_ = loaded.config;
