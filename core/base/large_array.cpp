@@ -4,11 +4,8 @@
 #include <cstdint>
 #include <iterator>
 #include <new>
-#include <vector>
 
 #include <sys/mman.h>
-
-#include "core/base/mutex.hpp"
 
 namespace fvd {
 
@@ -37,80 +34,70 @@ std::size_t whole_pages(std::size_t bytes) {
   return (bytes + kPage - 1) / kPage * kPage;
 }
 
-/// Released memory, for whoever asks for as much again.
-class KeptMemory {
- public:
-  /// nullptr if there is none of that size.
-  void* take(std::size_t bytes) {
-    const MutexLock lock(mutex_);
-    const auto same = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const Block& b) { return b.bytes == bytes; });
-    if (same == blocks_.rend()) return nullptr;
-    void* const memory = same->memory;
-    kept_bytes_ -= bytes;
-    blocks_.erase(std::next(same).base());
-    return memory;
-  }
-
-  void keep(void* memory, std::size_t bytes) noexcept {
-    ::madvise(memory, bytes, MADV_FREE);  // without it the memory is kept under pressure too, as long as it is here
-    const MutexLock lock(mutex_);
-    blocks_.push_back({memory, bytes});
-    kept_bytes_ += bytes;
-    while (kept_bytes_ > kMostKeptBytes || blocks_.size() == blocks_.capacity()) release_oldest();
-  }
-
-  void release_all() noexcept {
-    const MutexLock lock(mutex_);
-    while (!blocks_.empty()) release_oldest();
-  }
-
- private:
-  static constexpr std::size_t kMostBlocks = 64;
-  struct Block {
-    void* memory;
-    std::size_t bytes;
-  };
-  void release_oldest() noexcept FVD_REQUIRES(mutex_) {
-    ::munmap(blocks_.front().memory, blocks_.front().bytes);
-    kept_bytes_ -= blocks_.front().bytes;
-    blocks_.erase(blocks_.begin());
-  }
-  static std::vector<Block> no_blocks() {
-    std::vector<Block> blocks;
-    blocks.reserve(kMostBlocks);  // keep() may not throw
-    return blocks;
-  }
-
-  Mutex mutex_;
-  std::vector<Block> blocks_ FVD_GUARDED_BY(mutex_) = no_blocks();  // oldest first
-  std::size_t kept_bytes_ FVD_GUARDED_BY(mutex_) = 0;
-};
-
-/// Never destroyed: arrays with static storage may outlive what is.
-KeptMemory& kept_memory() {
-  static KeptMemory& kept = *new KeptMemory;
-  return kept;
-}
-
 }  // namespace
 
-void* allocate_large(std::size_t bytes) {
+void* allocate_large(std::size_t bytes, KeptPages* pages) {
   if (bytes == 0) return nullptr;
   if (bytes < kHugePage) return ::operator new(bytes, kCacheLine);
-  void* const kept = kept_memory().take(whole_pages(bytes));
+  void* const kept = pages != nullptr ? pages->take(whole_pages(bytes)) : nullptr;
   return kept != nullptr ? kept : map_pages(whole_pages(bytes));
 }
 
-void release_large(void* memory, std::size_t bytes) noexcept {
-  if (bytes >= kHugePage) {
-    kept_memory().keep(memory, whole_pages(bytes));
-  } else {
+void release_large(void* memory, std::size_t bytes, KeptPages* pages) noexcept {
+  if (bytes < kHugePage) {
     ::operator delete(memory, kCacheLine);
+  } else if (pages != nullptr) {
+    pages->keep(memory, whole_pages(bytes));
+  } else {
+    ::munmap(memory, whole_pages(bytes));
   }
 }
 
 }  // namespace detail
 
-void release_kept_memory() noexcept { detail::kept_memory().release_all(); }
+namespace {
+constexpr std::size_t kMostBlocks = 64;
+}
+
+KeptPages::KeptPages(std::size_t most_kept_bytes) : most_kept_bytes_(most_kept_bytes) {
+  const MutexLock lock(mutex_);
+  blocks_.reserve(kMostBlocks);  // keep() may not throw
+}
+
+KeptPages::~KeptPages() { release(); }
+
+std::size_t KeptPages::kept_bytes() const {
+  const MutexLock lock(mutex_);
+  return kept_bytes_;
+}
+
+void KeptPages::release() noexcept {
+  const MutexLock lock(mutex_);
+  while (!blocks_.empty()) release_oldest();
+}
+
+void* KeptPages::take(std::size_t bytes) {
+  const MutexLock lock(mutex_);
+  const auto same = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const Block& b) { return b.bytes == bytes; });
+  if (same == blocks_.rend()) return nullptr;
+  void* const memory = same->memory;
+  kept_bytes_ -= bytes;
+  blocks_.erase(std::next(same).base());
+  return memory;
+}
+
+void KeptPages::keep(void* memory, std::size_t bytes) noexcept {
+  ::madvise(memory, bytes, MADV_FREE);  // without it the memory is kept under pressure too, as long as it is here
+  const MutexLock lock(mutex_);
+  blocks_.push_back({memory, bytes});
+  kept_bytes_ += bytes;
+  while (kept_bytes_ > most_kept_bytes_ || blocks_.size() == blocks_.capacity()) release_oldest();
+}
+
+void KeptPages::release_oldest() noexcept {
+  ::munmap(blocks_.front().memory, blocks_.front().bytes);
+  kept_bytes_ -= blocks_.front().bytes;
+  blocks_.erase(blocks_.begin());
+}
 
 }  // namespace fvd

@@ -3,30 +3,61 @@
 /// Memory for whole images.
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
+#include <vector>
+
+#include "core/base/mutex.hpp"
 
 namespace fvd {
 
+/// Pages that arrays gave back, for the next arrays of the same size: clean pages are a fifth of the time that the
+/// heights of a scan take. Until then the kernel may have them back when memory is short (MADV_FREE); they still count
+/// as resident. context: thread-safe.
+class KeptPages {
+ public:
+  /// most_kept_bytes: more than that is not kept; the oldest go first.
+  explicit KeptPages(std::size_t most_kept_bytes);
+  ~KeptPages();
+  KeptPages(const KeptPages&) = delete;
+  KeptPages& operator=(const KeptPages&) = delete;
+
+  /// Bytes that are kept now.
+  [[nodiscard]] std::size_t kept_bytes() const;
+  /// Gives the operating system back what is kept.
+  void release() noexcept;
+
+  /// As many bytes that were kept, a multiple of the page's size; nullptr if there are none of that size.
+  [[nodiscard]] void* take(std::size_t bytes);
+  void keep(void* memory, std::size_t bytes) noexcept;
+
+ private:
+  struct Block {
+    void* memory;
+    std::size_t bytes;
+  };
+  void release_oldest() noexcept FVD_REQUIRES(mutex_);
+
+  const std::size_t most_kept_bytes_;
+  mutable Mutex mutex_;
+  std::vector<Block> blocks_ FVD_GUARDED_BY(mutex_);  // oldest first
+  std::size_t kept_bytes_ FVD_GUARDED_BY(mutex_) = 0;
+};
+
+/// An array without one gives its pages back to the operating system.
+using KeptPagesPtr = std::shared_ptr<KeptPages>;
+
 namespace detail {
-/// 64-byte aligned; nullptr for 0 bytes. Throws std::bad_alloc. context: thread-safe, as the next.
-[[nodiscard]] void* allocate_large(std::size_t bytes);
-void release_large(void* memory, std::size_t bytes) noexcept;
-
-/// Bytes of released memory that are kept at most for the next array of the same size.
-inline constexpr std::size_t kMostKeptBytes = std::size_t{1} << 30;
+/// 64-byte aligned; nullptr for 0 bytes. pages may be null. Throws std::bad_alloc. context: thread-safe, as the next.
+[[nodiscard]] void* allocate_large(std::size_t bytes, KeptPages* pages);
+void release_large(void* memory, std::size_t bytes, KeptPages* pages) noexcept;
 }  // namespace detail
-
-/// Gives the operating system back what has been kept. context: thread-safe.
-void release_kept_memory() noexcept;
 
 /// A fixed number of plain values, unset at first, aligned to 64 bytes. From 2 MiB up the kernel is asked for huge
 /// pages (madvise(2), MADV_HUGEPAGE), and a page costs nothing until the first thread writes to it. A surface of 5
 /// million points is 30 000 ordinary pages: to get them takes as long as to compute the heights.
-///
-/// What one scan releases the next, of the same size, gets again: clean pages are a fifth of the time that the heights
-/// take. Until then the kernel may have it back when memory is short (MADV_FREE); it still counts as resident.
 template <typename T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -34,18 +65,23 @@ class LargeArray {
  public:
   LargeArray() = default;
   /// Throws std::bad_alloc.
-  explicit LargeArray(std::size_t size)
-      : size_(size), data_(static_cast<T*>(detail::allocate_large(size * sizeof(T)))) {}
+  explicit LargeArray(std::size_t size, KeptPagesPtr pages = nullptr)
+      : pages_(std::move(pages)),
+        size_(size),
+        data_(static_cast<T*>(detail::allocate_large(size * sizeof(T), pages_.get()))) {}
   LargeArray(LargeArray&& other) noexcept
-      : size_(std::exchange(other.size_, 0)), data_(std::exchange(other.data_, nullptr)) {}
+      : pages_(std::move(other.pages_)),
+        size_(std::exchange(other.size_, 0)),
+        data_(std::exchange(other.data_, nullptr)) {}
   LargeArray& operator=(LargeArray&& other) noexcept {
+    std::swap(pages_, other.pages_);
     std::swap(size_, other.size_);
     std::swap(data_, other.data_);
     return *this;
   }
   LargeArray(const LargeArray&) = delete;
   LargeArray& operator=(const LargeArray&) = delete;
-  ~LargeArray() { detail::release_large(data_, size_ * sizeof(T)); }
+  ~LargeArray() { detail::release_large(data_, size_ * sizeof(T), pages_.get()); }
 
   [[nodiscard]] T* data() noexcept { return data_; }
   [[nodiscard]] const T* data() const noexcept { return data_; }
@@ -54,6 +90,7 @@ class LargeArray {
   [[nodiscard]] std::span<const T> values() const noexcept { return {data_, size_}; }
 
  private:
+  KeptPagesPtr pages_;  // of which the memory came and to which it goes; may be null
   std::size_t size_ = 0;
   T* data_ = nullptr;
 };

@@ -27,9 +27,10 @@ namespace {
 template <typename Pixel>
 class TypedStack {
  public:
-  TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool, bool colour)
+  TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool, bool colour,
+             const KeptPagesPtr& pages)
       : height_(height),
-        peaks_(width, height, settings.bin_slices > 1),
+        peaks_(width, height, settings.bin_slices > 1, pages),
         colour_(colour ? width : 0, colour ? height : 0, settings.bin_slices),
         settings_(settings) {
     const int bands = pool.threads();
@@ -136,18 +137,20 @@ struct StreamingFocusStack::Impl {
   using Typed = std::variant<TypedStack<std::uint8_t>, TypedStack<std::uint16_t>>;
 
   static Typed make(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool,
-                    bool colour) {
-    if (format == PixelFormat::kMono8) return TypedStack<std::uint8_t>(width, height, format, settings, pool, colour);
-    return TypedStack<std::uint16_t>(width, height, format, settings, pool, colour);
+                    bool colour, const KeptPagesPtr& pages) {
+    if (format == PixelFormat::kMono8)
+      return TypedStack<std::uint8_t>(width, height, format, settings, pool, colour, pages);
+    return TypedStack<std::uint16_t>(width, height, format, settings, pool, colour, pages);
   }
 
-  Impl(int w, int h, PixelFormat f, const FocusSettings& s, WorkerPool& p, bool colour)
+  Impl(int w, int h, PixelFormat f, const FocusSettings& s, WorkerPool& p, bool colour, KeptPagesPtr kept)
       : width(w),
         height(h),
         format(f),
         settings(s),
         pool(&p),
-        stack(make(w, h, f, s, p, colour)),
+        pages(std::move(kept)),
+        stack(make(w, h, f, s, p, colour, pages)),
         heights(s.bin_slices, kMaxSlices),
         noise(w, h) {}
 
@@ -173,19 +176,20 @@ struct StreamingFocusStack::Impl {
   PixelFormat format;
   FocusSettings settings;
   WorkerPool* pool;
+  KeptPagesPtr pages;
   Typed stack;
   SampleHeights heights;
   NoiseProbe noise;
 };
 
 StreamingFocusStack::StreamingFocusStack(int width, int height, PixelFormat format, const FocusSettings& settings,
-                                         WorkerPool& pool, bool colour) {
+                                         WorkerPool& pool, bool colour, KeptPagesPtr pages) {
   check_focus_settings(settings);
   if (width < 1 || height < 1) {
     throw Error(ErrorCode::kBadInput,
                 "slices of " + shape(width, height, format) + ": width and height must be at least 1");
   }
-  impl_ = std::make_unique<Impl>(width, height, format, settings, pool, colour);
+  impl_ = std::make_unique<Impl>(width, height, format, settings, pool, colour, std::move(pages));
 }
 
 StreamingFocusStack::~StreamingFocusStack() = default;
@@ -235,8 +239,8 @@ HeightMap StreamingFocusStack::finish(PeakMethod method) const {
   if (slices() == 0) throw Error(ErrorCode::kBadSlice, "a height map needs slices; there are none");
   return std::visit(
       [&](auto& stack) {
-        return stack.finish(impl_->heights, method, impl_->noise, empty_map(impl_->width, impl_->height, impl_->format),
-                            *impl_->pool);
+        return stack.finish(impl_->heights, method, impl_->noise,
+                            empty_map(impl_->width, impl_->height, impl_->format, impl_->pages), *impl_->pool);
       },
       impl_->stack);
 }

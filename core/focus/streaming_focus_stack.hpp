@@ -32,9 +32,10 @@ class StreamingFocusStack {
 
   /// Allocates everything it will ever need. width, height >= 1. pool outlives the stack.
   /// colour: every slice comes with its colours, and the map gets an all-in-focus image in colour.
+  /// pages: where the memory of state and maps comes from and goes to, if given: the next scan of this size is faster.
   /// Throws Error kBadInput for settings out of range.
   StreamingFocusStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool,
-                      bool colour = false);
+                      bool colour = false, KeptPagesPtr pages = nullptr);
   ~StreamingFocusStack();
   StreamingFocusStack(StreamingFocusStack&&) noexcept;
   StreamingFocusStack& operator=(StreamingFocusStack&&) noexcept;

@@ -35,12 +35,13 @@ class Plane {
  public:
   Plane() = default;
   Plane(int width, int height, T fill = T{}) : Plane(unset(width, height)) { std::fill_n(data_.data(), size(), fill); }
-  /// Uninitialised; the caller must write every element, e.g. from several threads.
-  [[nodiscard]] static Plane unset(int width, int height) {
+  /// Uninitialised; the caller must write every element, e.g. from several threads. pages: where the memory comes from
+  /// and goes to, if given.
+  [[nodiscard]] static Plane unset(int width, int height, KeptPagesPtr pages = nullptr) {
     Plane plane;
     plane.width_ = width;
     plane.height_ = height;
-    plane.data_ = LargeArray<T>(plane.size());
+    plane.data_ = LargeArray<T>(plane.size(), std::move(pages));
     return plane;
   }
   Plane(Plane&& other) noexcept

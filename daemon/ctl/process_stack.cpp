@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "core/base/error.hpp"
-#include "core/base/large_array.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/base/version.hpp"
@@ -116,7 +115,6 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   ResultData data;
   describe(data, options, stack);
   measure(options, stack, start, on_slice, data);
-  release_kept_memory();  // there is no next scan
   data.step_summary = summarize_steps(data.steps);
   return {stack.list().description, write_result(options.out, data)};
 }

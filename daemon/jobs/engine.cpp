@@ -17,10 +17,15 @@ MachineBoard::Constants constants(const Config& config, const JobStore& store) {
           [&store] { return store.unacknowledged_count(); }};
 }
 
+std::size_t memory_budget_bytes(const Config& config) {
+  return static_cast<std::size_t>(config.compute.memory_budget_mib) << 20U;
+}
+
 }  // namespace
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
     : pool_(thread_count(config.compute.threads)),
+      pages_(std::make_shared<KeptPages>(memory_budget_bytes(config))),
       history_(config.paths.state_dir / "stage_history.json"),
       recipes_({config.paths.recipe_dir, config.paths.state_dir / "recipes"},
                {config.stage.min, config.stage.max, config.stage.take_up}, deps.store.recipe_versions()),
@@ -32,12 +37,12 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              });
            }),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir}),
-      runner_({config, deps.store, board_, hub_, deps.clock, pool_, preview_, history_, deps.make_result}),
+      runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, deps.make_result}),
       jobs_({deps.store,
              board_,
              work_,
              runner_,
-             {pool_.threads(), static_cast<std::size_t>(config.compute.memory_budget_mib) << 20U},
+             {pool_.threads(), memory_budget_bytes(config), pages_},
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
              [this] { return tasks_.task_stop(); }}),
       thread_(hub_, board_, work_) {}

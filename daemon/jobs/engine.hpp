@@ -46,6 +46,7 @@ class Engine {
 
  private:
   WorkerPool pool_;
+  KeptPagesPtr pages_;
   StageHistory history_;
   RecipeBook recipes_;
   PreviewHub preview_;

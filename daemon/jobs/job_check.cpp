@@ -14,7 +14,8 @@ void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& 
   check_plan(plan, devices->stage);
   const int width = recipe.camera.width > 0 ? recipe.camera.width : devices->sensor_width;
   const int height = recipe.camera.height > 0 ? recipe.camera.height : devices->sensor_height;
-  require_memory(job_memory(recipe, width, height, limits.threads), width, height, limits.memory_bytes);
+  require_memory(job_memory(recipe, width, height, limits.threads), width, height, limits.memory_bytes,
+                 limits.pages.get());
 }
 
 }  // namespace fvd

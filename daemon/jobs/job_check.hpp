@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/base/large_array.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/recipes/recipe.hpp"
 
@@ -12,7 +13,8 @@ namespace fvd {
 
 struct ComputeLimits {
   int threads = 1;               ///< of the worker pool
-  std::size_t memory_bytes = 0;  ///< budget of a job
+  std::size_t memory_bytes = 0;  ///< budget of a job, with the pages that are kept for the next
+  KeptPagesPtr pages = nullptr;  ///< may be null
 };
 
 /// Throws Error kNotReady without devices, kStageLimit, kBadRecipe, kMemoryBudget.

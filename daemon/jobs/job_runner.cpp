@@ -79,7 +79,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
     deps_.preview.offer(pixels, z_um);
   };
   measure(job.recipe,
-          {deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.pool,
+          {deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.pool, deps_.pages,
            static_cast<std::size_t>(deps_.config.compute.queue_slices), deps_.config.camera.time_offset},
           observer, acquired, stop);
   observer.on_phase("storing");

@@ -38,6 +38,7 @@ class JobRunner {
     DeviceHub& hub;
     Clock& clock;
     WorkerPool& pool;
+    KeptPagesPtr pages;
     PreviewHub& preview;
     StageHistory& history;
     ResultPipeline make_result = store_result;

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "core/base/error.hpp"
-#include "core/base/large_array.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 
 namespace fvd {
@@ -33,7 +32,7 @@ JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
   return needed;
 }
 
-void require_memory(const JobMemory& needed, int width, int height, std::size_t budget_bytes) {
+void require_memory(const JobMemory& needed, int width, int height, std::size_t budget_bytes, KeptPages* pages) {
   if (needed.total_bytes() > budget_bytes) {
     std::ostringstream message;
     message << "the job needs " << mebibytes(needed.total_bytes()) << " MiB for " << width << " x " << height
@@ -43,7 +42,7 @@ void require_memory(const JobMemory& needed, int width, int height, std::size_t 
             << " MiB: use a smaller region, fewer extra_peaks or frames, or raise compute.memory_budget_mib";
     throw Error(ErrorCode::kMemoryBudget, message.str());
   }
-  if (needed.total_bytes() + detail::kMostKeptBytes > budget_bytes) release_kept_memory();
+  if (pages != nullptr && needed.total_bytes() + pages->kept_bytes() > budget_bytes) pages->release();
 }
 
 }  // namespace fvd

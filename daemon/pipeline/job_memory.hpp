@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "core/base/large_array.hpp"
 #include "daemon/recipes/recipe.hpp"
 
 namespace fvd {
@@ -23,8 +24,8 @@ struct JobMemory {
 /// width, height: of the slices, > 0. threads >= 1: of the worker pool.
 [[nodiscard]] JobMemory job_memory(const Recipe& recipe, int width, int height, int threads);
 
-/// Throws Error kMemoryBudget, with the figures, if the job needs more than the budget. Gives memory that earlier jobs
-/// left for reuse back to the system where the budget would not hold both.
-void require_memory(const JobMemory& needed, int width, int height, std::size_t budget_bytes);
+/// Throws Error kMemoryBudget, with the figures, if the job needs more than the budget. pages, null or what earlier
+/// jobs left for reuse, are given back to the system where the budget would not hold both.
+void require_memory(const JobMemory& needed, int width, int height, std::size_t budget_bytes, KeptPages* pages);
 
 }  // namespace fvd

@@ -81,8 +81,8 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   result.scan_mode = recipe.mode;
   result.speed_um_per_s = recipe.mode == ScanMode::kContinuous ? recipe.speed_um_per_s : 0.0;
   const CameraSettings settings = deps.camera.configure(recipe.camera);
-  StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe),
-                            deps.pool);
+  StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe), deps.pool,
+                            false, deps.pages);
   if (!deps.stage.status().homed) deps.stage.home(stop);
   result.times.prepare_ms = milliseconds_since(deps.clock, started);
 

@@ -27,6 +27,7 @@ struct MeasurementDependencies {
   Axis& stage;
   Clock& clock;
   WorkerPool& pool;
+  KeptPagesPtr pages;  ///< for the stack and its maps; may be null
   std::size_t queue_slices;
   std::chrono::microseconds time_offset{0};  ///< of the stage's clock against the camera's
 };

@@ -26,6 +26,12 @@
 namespace fvd {
 namespace {
 
+/// As in the daemon, one scan's memory is the next one's.
+KeptPagesPtr kept_pages() {
+  static const KeptPagesPtr pages = std::make_shared<KeptPages>(std::size_t{1} << 30);
+  return pages;
+}
+
 constexpr int kWidth = 2448;
 constexpr int kHeight = 2048;
 constexpr int kSlices = 24;
@@ -83,7 +89,7 @@ void streaming(benchmark::State& state) {
   const auto together = static_cast<std::size_t>(state.range(3));
   double bytes = 0.0;
   for (auto _ : state) {
-    StreamingFocusStack stack(kWidth, kHeight, format_of(bits), settings, pool);
+    StreamingFocusStack stack(kWidth, kHeight, format_of(bits), settings, pool, false, kept_pages());
     bytes = stack.state_bytes_per_pixel();
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t k = 0; k < kSlices; k += together) stack.push(std::span(views).subspan(k, together));
@@ -97,7 +103,7 @@ void streaming(benchmark::State& state) {
 void finish(benchmark::State& state) {
   const auto& slices = scan<std::uint8_t>(8);
   WorkerPool pool(static_cast<int>(state.range(1)));
-  StreamingFocusStack stack(kWidth, kHeight, PixelFormat::kMono8, {}, pool);
+  StreamingFocusStack stack(kWidth, kHeight, PixelFormat::kMono8, {}, pool, false, kept_pages());
   for (int k = 0; k < kSlices; ++k) {
     stack.push(image_view(slices[static_cast<std::size_t>(k)].view(), PixelFormat::kMono8), k);
   }

@@ -26,14 +26,15 @@ struct HeightMap {
 };
 
 /// All planes allocated, contents to be written.
-[[nodiscard]] inline HeightMap empty_map(int width, int height, PixelFormat format) {
+[[nodiscard]] inline HeightMap empty_map(int width, int height, PixelFormat format,
+                                         const KeptPagesPtr& pages = nullptr) {
   HeightMap map;
-  map.height_m = Plane<float>::unset(width, height);
-  map.mask = Plane<MaskReasons>::unset(width, height);
-  map.sigma_m = Plane<float>::unset(width, height);
-  map.prominence = Plane<float>::unset(width, height);
+  map.height_m = Plane<float>::unset(width, height, pages);
+  map.mask = Plane<MaskReasons>::unset(width, height, pages);
+  map.sigma_m = Plane<float>::unset(width, height, pages);
+  map.prominence = Plane<float>::unset(width, height, pages);
   map.texture_format = format;
-  map.texture = Plane<std::uint16_t>::unset(width, height);
+  map.texture = Plane<std::uint16_t>::unset(width, height, pages);
   return map;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 namespace fvd {
 
@@ -21,11 +22,11 @@ std::size_t PeakAccumulator<Texture>::blocks_per_row(int width, bool binned) {
 }
 
 template <typename Texture>
-PeakAccumulator<Texture>::PeakAccumulator(int width, int height, bool binned)
+PeakAccumulator<Texture>::PeakAccumulator(int width, int height, bool binned, KeptPagesPtr pages)
     : padded_width_(padded(width)),
       blocks_per_row_(blocks_per_row(width, binned)),
       binned_(binned),
-      storage_(blocks_per_row_ * static_cast<std::size_t>(height)) {}
+      storage_(blocks_per_row_ * static_cast<std::size_t>(height), std::move(pages)) {}
 
 template <typename Texture>
 std::size_t PeakAccumulator<Texture>::memory_bytes(int width, int height, bool binned) {

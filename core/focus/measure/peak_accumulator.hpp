@@ -32,7 +32,7 @@ struct StateRow {
 template <typename Texture>
 class PeakAccumulator {
  public:
-  PeakAccumulator(int width, int height, bool binned);
+  PeakAccumulator(int width, int height, bool binned, KeptPagesPtr pages = nullptr);
 
   [[nodiscard]] StateRow<Texture> row(int y) noexcept;
   /// Writes rows first to end - 1: the memory is there when the first slice comes, and near to the thread that calls.

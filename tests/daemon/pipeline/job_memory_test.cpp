@@ -35,10 +35,22 @@ TEST(JobMemory, ASecondMethodTakesAnotherMapAndNoOtherState) {
 
 TEST(JobMemory, RefusesWhatOnlyItsFilesTakeOverTheBudget) {
   const JobMemory needed = job_memory({}, kWidth, kHeight, 2);
-  require_memory(needed, kWidth, kHeight, needed.total_bytes());
+  require_memory(needed, kWidth, kHeight, needed.total_bytes(), nullptr);
   test::expect_error(ErrorCode::kMemoryBudget, {"2448 x 2048", "files", "compute.memory_budget_mib"}, [&] {
-    require_memory(needed, kWidth, kHeight, needed.total_bytes() - needed.encoding_bytes / 2);
+    require_memory(needed, kWidth, kHeight, needed.total_bytes() - needed.encoding_bytes / 2, nullptr);
   });
+}
+
+TEST(JobMemory, CountsThePagesThatAreKept) {
+  const JobMemory needed = job_memory({}, kWidth, kHeight, 2);
+  constexpr std::size_t kBytes = std::size_t{8} << 20;
+  const auto pages = std::make_shared<KeptPages>(2 * kBytes);
+  { const LargeArray<std::uint8_t> array(kBytes, pages); }
+  ASSERT_EQ(pages->kept_bytes(), kBytes);
+  require_memory(needed, kWidth, kHeight, needed.total_bytes() + kBytes, pages.get());
+  EXPECT_EQ(pages->kept_bytes(), kBytes) << "the budget holds both";
+  require_memory(needed, kWidth, kHeight, needed.total_bytes() + kBytes - 1, pages.get());
+  EXPECT_EQ(pages->kept_bytes(), 0U);
 }
 
 }  // namespace
