@@ -40,7 +40,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              {pool_.threads(), static_cast<std::size_t>(config.compute.memory_budget_mib) << 20U},
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
              [this] { return tasks_.task_stop(); }}),
-      thread_(hub_, board_, work_) {}
+      thread_(hub_, board_, work_, [this] { runner_.store_late_end(); }) {}
 
 Engine::~Engine() { finish(); }
 
@@ -54,6 +54,7 @@ void Engine::shut_down() {
 void Engine::finish() {
   shut_down();
   thread_.finish();
+  runner_.store_late_end();  // the last chance
 }
 
 }  // namespace fvd

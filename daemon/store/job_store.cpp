@@ -3,6 +3,9 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <map>
+
+#include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
 #include "core/base/mutex.hpp"
@@ -58,11 +61,6 @@ StoredJob read_row(const Statement& row) {
   job.result_json = text();
   status.acquired = status.state != JobState::kProcessing;
   return job;
-}
-
-std::optional<JobStatus> first_status(Statement& rows) {
-  if (!rows.step()) return std::nullopt;
-  return read_row(rows).status;
 }
 
 std::string number_text(std::int64_t seq, const std::string& client) {
@@ -125,8 +123,21 @@ struct JobStore::Impl {
       query.bind(number.client).bind(number.seq);
     }
     if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
-    return read_row(query);
+    return as_it_stands(read_row(query));
   }
+
+  /// The row, or the job's end that the row does not have yet.
+  [[nodiscard]] StoredJob as_it_stands(StoredJob row) const FVD_REQUIRES(mutex) {
+    const auto kept = kept_ends.find(row.status.job_id);
+    return kept == kept_ends.end() ? std::move(row) : kept->second;
+  }
+  [[nodiscard]] std::optional<JobStatus> first_status(Statement& rows) const FVD_REQUIRES(mutex) {
+    if (!rows.step()) return std::nullopt;
+    return as_it_stands(read_row(rows)).status;
+  }
+
+  void store_end_locked(const StoredJob& end) FVD_REQUIRES(mutex);
+  void store_kept_ends_locked() FVD_REQUIRES(mutex);
 
   [[nodiscard]] std::optional<JobStatus> find_repeated_locked(const JobRequest& request) const FVD_REQUIRES(mutex) {
     const std::string number = number_text(request.seq, request.client);
@@ -155,6 +166,7 @@ struct JobStore::Impl {
 
   mutable Mutex mutex;
   Database database FVD_GUARDED_BY(mutex);
+  std::map<std::string, StoredJob> kept_ends FVD_GUARDED_BY(mutex);  ///< that could not be stored yet, by job_id
   RecipeTable recipes{database, mutex};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
@@ -171,6 +183,7 @@ std::optional<JobStatus> JobStore::find_repeated(const JobRequest& request) cons
 
 JobStatus JobStore::accept(const JobRequest& request) {
   const MutexLock lock(impl_->mutex);
+  impl_->store_kept_ends_locked();
   Transaction transaction(impl_->database);
   if (const auto known = impl_->find_repeated_locked(request)) {
     throw Error(ErrorCode::kSeqConflict,
@@ -196,12 +209,11 @@ JobStatus JobStore::accept(const JobRequest& request) {
   return job;
 }
 
-void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json) {
+void JobStore::Impl::store_end_locked(const StoredJob& end) {
   const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  const MutexLock lock(impl_->mutex);
-  Transaction transaction(impl_->database);
-  const bool was_running = impl_->find_locked(ended.job_id).status.state == JobState::kProcessing;
-  Statement(impl_->database,
+  const JobStatus& ended = end.status;
+  Transaction transaction(database);
+  Statement(database,
             "UPDATE jobs SET state = ?, error = ?, error_message = ?, slices_done = ?, slices_planned = ?, "
             "frames_expected = ?, frames_ok = ?, frames_incomplete = ?, frames_missing = ?, frames_stale = ?, "
             "frames_underrun = ?, result_dir = ?, result_json = ?, "
@@ -217,12 +229,47 @@ void JobStore::finish(const JobStatus& ended, const std::string& result_dir, con
       .bind(integer(ended.frames.missing))
       .bind(integer(ended.frames.stale))
       .bind(integer(ended.frames.underrun))
-      .bind(result_dir)
-      .bind(result_json)
+      .bind(end.result_dir)
+      .bind(end.result_json)
       .bind(ended.job_id)
       .run();
   transaction.commit();
+}
+
+void JobStore::Impl::store_kept_ends_locked() {
+  while (!kept_ends.empty()) {
+    const auto& [job_id, end] = *kept_ends.begin();
+    try {
+      store_end_locked(end);
+    } catch (const Error& error) {
+      throw Error(error.code(), "the end of job " + job_id + " is not stored yet: " + error.what());
+    }
+    spdlog::info("job {}: its end is stored now", job_id);
+    kept_ends.erase(kept_ends.begin());
+  }
+}
+
+void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json) {
+  StoredJob end{ended, result_dir, result_json};
+  const MutexLock lock(impl_->mutex);
+  bool was_running = true;  // also where the database cannot be asked
+  try {
+    was_running = impl_->find_locked(ended.job_id).status.state == JobState::kProcessing;
+    impl_->store_end_locked(end);
+    impl_->kept_ends.erase(ended.job_id);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kUnknownJob) throw;
+    end.status.not_durable = error.what();
+    impl_->kept_ends[ended.job_id] = std::move(end);
+    if (was_running) ++impl_->waiting;
+    throw;
+  }
   if (was_running) ++impl_->waiting;
+}
+
+void JobStore::store_kept_ends() {
+  const MutexLock lock(impl_->mutex);
+  impl_->store_kept_ends_locked();
 }
 
 StoredJob JobStore::find(const JobKey& key) const {
@@ -233,14 +280,14 @@ StoredJob JobStore::find(const JobKey& key) const {
 std::optional<JobStatus> JobStore::latest() const {
   const MutexLock lock(impl_->mutex);
   Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
-  return first_status(query);
+  return impl_->first_status(query);
 }
 
 std::optional<JobStatus> JobStore::highest(const std::string& client) const {
   const MutexLock lock(impl_->mutex);
   Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? ORDER BY seq DESC LIMIT 1");
   query.bind(client);
-  return first_status(query);
+  return impl_->first_status(query);
 }
 
 std::optional<JobStatus> JobStore::next_unacknowledged() const {
@@ -248,13 +295,17 @@ std::optional<JobStatus> JobStore::next_unacknowledged() const {
   Statement query(impl_->database,
                   "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE acknowledged = 0 AND state <> ? ORDER BY number LIMIT 1");
   query.bind(job_state_name(JobState::kProcessing));
-  return first_status(query);
+  if (auto oldest = impl_->first_status(query)) return oldest;
+  // No job is accepted while an end is kept, so that it is the newest.
+  if (!impl_->kept_ends.empty()) return impl_->kept_ends.begin()->second.status;
+  return std::nullopt;
 }
 
 int JobStore::unacknowledged_count() const noexcept { return impl_->waiting; }
 
 int JobStore::acknowledge(const JobKey& key) {
   const MutexLock lock(impl_->mutex);
+  impl_->store_kept_ends_locked();
   const JobStatus job = impl_->find_locked(key).status;
   if (job.state == JobState::kProcessing) {
     throw Error(ErrorCode::kBusy, "job " + job.job_id + " is still running; acknowledge it when it has ended");
