@@ -63,6 +63,19 @@ StoredJob read_row(const Statement& row) {
   return job;
 }
 
+using KeptEnds = std::map<std::string, StoredJob>;  // by job_id
+
+/// The row, or the job's end that the row does not have yet.
+StoredJob as_it_stands(StoredJob row, const KeptEnds& kept) {
+  const auto end = kept.find(row.status.job_id);
+  return end == kept.end() ? std::move(row) : end->second;
+}
+
+std::optional<JobStatus> first_status(Statement& rows, const KeptEnds& kept) {
+  if (!rows.step()) return std::nullopt;
+  return as_it_stands(read_row(rows), kept).status;
+}
+
 std::string number_text(std::int64_t seq, const std::string& client) {
   return "seq " + std::to_string(seq) + " of client '" + client + "'";
 }
@@ -76,6 +89,44 @@ std::string key_text(const JobKey& key) {
 std::int64_t scalar(const Database& database, const char* sql) {
   Statement query(database, sql);
   return query.step() ? query.integer(0) : 0;
+}
+
+StoredJob job_in(const Database& database, const KeptEnds& kept, const JobKey& key) {
+  const auto* id = std::get_if<std::string>(&key);
+  Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
+                                          : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
+  if (id != nullptr) {
+    query.bind(*id);
+  } else {
+    const auto& number = std::get<ClientSeq>(key);
+    query.bind(number.client).bind(number.seq);
+  }
+  if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
+  return as_it_stands(read_row(query), kept);
+}
+
+std::optional<JobStatus> repeated_in(const Database& database, const KeptEnds& kept, const JobRequest& request) {
+  const std::string number = number_text(request.seq, request.client);
+  Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
+  query.bind(request.client).bind(request.seq);
+  auto known = first_status(query, kept);
+  if (!known) {
+    Statement highest(database, "SELECT max(seq) FROM jobs WHERE client = ?");
+    highest.bind(request.client);
+    const std::int64_t newest = highest.step() ? highest.integer(0) : 0;
+    if (request.seq < newest - JobStore::kSeqWindow) {
+      throw Error(ErrorCode::kSeqStale, number + " is more than " + std::to_string(JobStore::kSeqWindow) +
+                                            " behind the newest, " + std::to_string(newest) + ": continue from there");
+    }
+    return std::nullopt;
+  }
+  const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
+  if (known->request.part_id != request.part_id || !same_recipe) {
+    throw Error(ErrorCode::kSeqConflict, number + " belongs to job " + known->job_id + " (part '" +
+                                             known->request.part_id + "', recipe '" + known->request.recipe +
+                                             "'): use a new number for a new job");
+  }
+  return known;
 }
 
 std::filesystem::path with_folder(const std::filesystem::path& file) {
@@ -112,62 +163,22 @@ struct JobStore::Impl {
     waiting = static_cast<int>(scalar(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0"));
   }
 
-  [[nodiscard]] StoredJob find_locked(const JobKey& key) const FVD_REQUIRES(mutex) {
-    const auto* id = std::get_if<std::string>(&key);
-    Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
-                                            : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
-    if (id != nullptr) {
-      query.bind(*id);
-    } else {
-      const auto& number = std::get<ClientSeq>(key);
-      query.bind(number.client).bind(number.seq);
-    }
-    if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
-    return as_it_stands(read_row(query));
-  }
-
-  /// The row, or the job's end that the row does not have yet.
-  [[nodiscard]] StoredJob as_it_stands(StoredJob row) const FVD_REQUIRES(mutex) {
-    const auto kept = kept_ends.find(row.status.job_id);
-    return kept == kept_ends.end() ? std::move(row) : kept->second;
-  }
-  [[nodiscard]] std::optional<JobStatus> first_status(Statement& rows) const FVD_REQUIRES(mutex) {
-    if (!rows.step()) return std::nullopt;
-    return as_it_stands(read_row(rows)).status;
-  }
-
   void store_end_locked(const StoredJob& end) FVD_REQUIRES(mutex);
   void store_kept_ends_locked() FVD_REQUIRES(mutex);
 
-  [[nodiscard]] std::optional<JobStatus> find_repeated_locked(const JobRequest& request) const FVD_REQUIRES(mutex) {
-    const std::string number = number_text(request.seq, request.client);
-    Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
-    query.bind(request.client).bind(request.seq);
-    auto known = first_status(query);
-    if (!known) {
-      Statement highest(database, "SELECT max(seq) FROM jobs WHERE client = ?");
-      highest.bind(request.client);
-      const std::int64_t newest = highest.step() ? highest.integer(0) : 0;
-      if (request.seq < newest - kSeqWindow) {
-        throw Error(ErrorCode::kSeqStale, number + " is more than " + std::to_string(kSeqWindow) +
-                                              " behind the newest, " + std::to_string(newest) +
-                                              ": continue from there");
-      }
-      return std::nullopt;
-    }
-    const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
-    if (known->request.part_id != request.part_id || !same_recipe) {
-      throw Error(ErrorCode::kSeqConflict, number + " belongs to job " + known->job_id + " (part '" +
-                                               known->request.part_id + "', recipe '" + known->request.recipe +
-                                               "'): use a new number for a new job");
-    }
-    return known;
+  /// Of now: who reads rows afterwards misses no end.
+  [[nodiscard]] KeptEnds kept() const {
+    const MutexLock lock(kept_mutex);
+    return kept_ends;
   }
 
-  mutable Mutex mutex;
+  Mutex mutex;  // held while a commit waits for the disk
   Database database FVD_GUARDED_BY(mutex);
-  std::map<std::string, StoredJob> kept_ends FVD_GUARDED_BY(mutex);  ///< that could not be stored yet, by job_id
-  RecipeTable recipes{database, mutex};
+  Mutex read_mutex;  // never held then; never together with mutex
+  Database reader FVD_GUARDED_BY(read_mutex){Database::reader_of(database)};
+  mutable Mutex kept_mutex;                       // innermost
+  KeptEnds kept_ends FVD_GUARDED_BY(kept_mutex);  ///< that could not be stored yet
+  RecipeTable recipes{{database, mutex}, {reader, read_mutex}};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
@@ -177,15 +188,16 @@ JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<I
 JobStore::~JobStore() = default;
 
 std::optional<JobStatus> JobStore::find_repeated(const JobRequest& request) const {
-  const MutexLock lock(impl_->mutex);
-  return impl_->find_repeated_locked(request);
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  return repeated_in(impl_->reader, kept, request);
 }
 
 JobStatus JobStore::accept(const JobRequest& request) {
   const MutexLock lock(impl_->mutex);
   impl_->store_kept_ends_locked();
   Transaction transaction(impl_->database);
-  if (const auto known = impl_->find_repeated_locked(request)) {
+  if (const auto known = repeated_in(impl_->database, {}, request)) {
     throw Error(ErrorCode::kSeqConflict,
                 number_text(request.seq, request.client) + " was accepted before, as job " + known->job_id);
   }
@@ -237,15 +249,15 @@ void JobStore::Impl::store_end_locked(const StoredJob& end) {
 }
 
 void JobStore::Impl::store_kept_ends_locked() {
-  while (!kept_ends.empty()) {
-    const auto& [job_id, end] = *kept_ends.begin();
+  for (const auto& [job_id, end] : kept()) {
     try {
       store_end_locked(end);
     } catch (const Error& error) {
       throw Error(error.code(), "the end of job " + job_id + " is not stored yet: " + error.what());
     }
     spdlog::info("job {}: its end is stored now", job_id);
-    kept_ends.erase(kept_ends.begin());
+    const MutexLock lock(kept_mutex);
+    kept_ends.erase(job_id);
   }
 }
 
@@ -254,13 +266,17 @@ void JobStore::finish(const JobStatus& ended, const std::string& result_dir, con
   const MutexLock lock(impl_->mutex);
   bool was_running = true;  // also where the database cannot be asked
   try {
-    was_running = impl_->find_locked(ended.job_id).status.state == JobState::kProcessing;
+    was_running = job_in(impl_->database, impl_->kept(), ended.job_id).status.state == JobState::kProcessing;
     impl_->store_end_locked(end);
+    const MutexLock kept_lock(impl_->kept_mutex);
     impl_->kept_ends.erase(ended.job_id);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::kUnknownJob) throw;
     end.status.not_durable = error.what();
-    impl_->kept_ends[ended.job_id] = std::move(end);
+    {
+      const MutexLock kept_lock(impl_->kept_mutex);
+      impl_->kept_ends[ended.job_id] = std::move(end);
+    }
     if (was_running) ++impl_->waiting;
     throw;
   }
@@ -273,31 +289,35 @@ void JobStore::store_kept_ends() {
 }
 
 StoredJob JobStore::find(const JobKey& key) const {
-  const MutexLock lock(impl_->mutex);
-  return impl_->find_locked(key);
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  return job_in(impl_->reader, kept, key);
 }
 
 std::optional<JobStatus> JobStore::latest() const {
-  const MutexLock lock(impl_->mutex);
-  Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
-  return impl_->first_status(query);
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
+  return first_status(query, kept);
 }
 
 std::optional<JobStatus> JobStore::highest(const std::string& client) const {
-  const MutexLock lock(impl_->mutex);
-  Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? ORDER BY seq DESC LIMIT 1");
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? ORDER BY seq DESC LIMIT 1");
   query.bind(client);
-  return impl_->first_status(query);
+  return first_status(query, kept);
 }
 
 std::optional<JobStatus> JobStore::next_unacknowledged() const {
-  const MutexLock lock(impl_->mutex);
-  Statement query(impl_->database,
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader,
                   "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE acknowledged = 0 AND state <> ? ORDER BY number LIMIT 1");
   query.bind(job_state_name(JobState::kProcessing));
-  if (auto oldest = impl_->first_status(query)) return oldest;
+  if (auto oldest = first_status(query, kept)) return oldest;
   // No job is accepted while an end is kept, so that it is the newest.
-  if (!impl_->kept_ends.empty()) return impl_->kept_ends.begin()->second.status;
+  if (!kept.empty()) return kept.begin()->second.status;
   return std::nullopt;
 }
 
@@ -306,7 +326,7 @@ int JobStore::unacknowledged_count() const noexcept { return impl_->waiting; }
 int JobStore::acknowledge(const JobKey& key) {
   const MutexLock lock(impl_->mutex);
   impl_->store_kept_ends_locked();
-  const JobStatus job = impl_->find_locked(key).status;
+  const JobStatus job = job_in(impl_->database, {}, key).status;
   if (job.state == JobState::kProcessing) {
     throw Error(ErrorCode::kBusy, "job " + job.job_id + " is still running; acknowledge it when it has ended");
   }

@@ -21,7 +21,7 @@ struct StoredJob {
 };
 
 /// A call that returned is on disk (SQLite, write-ahead log, synchronous=FULL; about 0.3 ms a commit).
-/// context: thread-safe.
+/// context: thread-safe. What only reads never waits for a commit.
 class JobStore {
  public:
   /// A sequence number that is unknown and further back than this from its client's highest is refused as stale.

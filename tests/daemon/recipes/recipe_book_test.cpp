@@ -200,6 +200,39 @@ TEST_F(ARecipeBook, WritesOverWhatADeadProcessLeft) {
   EXPECT_THAT(edited_files(), ElementsAre("a.json"));
 }
 
+TEST_F(ARecipeBook, PutsATextInForceWhoseRowWasThereWhenTheProcessDied) {
+  (void)book_.save(change(21, 0));
+  put(edited_ / "a.json.new", recipe_of(22));
+  (void)store_.recipe_versions().add({.id = "a", .author = "bert", .text = recipe_of(22)}, 10);
+
+  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions());  // the next start's
+
+  EXPECT_EQ(next.load("a").slices, 22);
+  EXPECT_EQ(next.get("a").version, 2);
+  EXPECT_EQ(next.get("a").author, "bert");
+  EXPECT_THAT(edited_files(), ElementsAre("a.json"));
+}
+
+TEST_F(ARecipeBook, DropsATextWithoutARow) {
+  (void)book_.save(change(21, 0));
+  put(edited_ / "a.json.new", recipe_of(22));
+
+  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions());
+
+  EXPECT_EQ(next.load("a").slices, 21);
+  EXPECT_THAT(next.versions("a"), SizeIs(1)) << "nobody changed it by hand";
+  EXPECT_THAT(edited_files(), ElementsAre("a.json"));
+}
+
+TEST_F(ARecipeBook, TakesAVersionBackThatCannotBePutInForce) {
+  std::filesystem::create_directories(edited_ / "a.json" / "in the way");
+
+  FVD_EXPECT_ERROR(kStorageWrite, (void)book_.save(change(21, 0)));
+
+  EXPECT_THAT(store_.recipe_versions().list("a"), IsEmpty());
+  EXPECT_THAT(edited_files(), ElementsAre("a.json")) << "no temporary file is left";
+}
+
 TEST_F(ARecipeBook, MakesAVersionOfAFileThatWasChangedByHand) {
   (void)book_.save(change(21, 0));
   put(edited_ / "a.json", recipe_of(33));
@@ -272,16 +305,14 @@ TEST(ARecipeStore, KeepsVersionsOverARestart) {
   const auto file = folder.path() / "fvd.sqlite";
   {
     JobStore store(file);
-    (void)store.recipe_versions().add({.id = "a", .author = "anna", .text = "one\0two"s}, 10, [] {});
-    EXPECT_THROW((void)store.recipe_versions().add({.id = "a", .author = "bert", .text = "x"}, 10,
-                                                   [] { throw Error(ErrorCode::kStorageFull, "full"); }),
-                 Error);
+    (void)store.recipe_versions().add({.id = "a", .author = "anna", .text = "one\0two"s}, 10);
+    store.recipe_versions().remove("a", store.recipe_versions().add({.id = "a", .text = "x"}, 10).version);
   }
   JobStore store(file);
   EXPECT_THAT(store.recipe_versions().list("a"), SizeIs(1));
   EXPECT_EQ(store.recipe_versions().latest("a").value().text, "one\0two"s);
   EXPECT_FALSE(store.recipe_versions().find("a", 2).has_value());
-  EXPECT_EQ(store.recipe_versions().add({.id = "a", .author = "c", .text = "y"}, 10, [] {}).version, 2);
+  EXPECT_EQ(store.recipe_versions().add({.id = "a", .author = "c", .text = "y"}, 10).version, 2);
 }
 
 }  // namespace
