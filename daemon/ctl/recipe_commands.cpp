@@ -27,11 +27,13 @@ int list(RpcClient client, const Terminal& terminal) {
   const Json reply = client.call("recipe.list");
   for (const Json& entry : reply.at("entries")) {
     terminal.out << entry.at("id").get<std::string>() << "  ";
-    if (entry.at("version") == 0) {
-      terminal.out << "shipped\n";
+    if (entry.at("version") == 0 && !entry.contains("error_message")) {
+      terminal.out << "shipped";
     } else {
-      terminal.out << "version " << entry.at("version") << "\n";
+      terminal.out << "version " << entry.at("version");
     }
+    const auto error = entry.find("error_message");
+    terminal.out << (error == entry.end() ? "" : "  " + error->get<std::string>()) << "\n";
   }
   terminal.out << std::flush;
   return kExitOk;

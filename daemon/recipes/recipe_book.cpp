@@ -58,7 +58,17 @@ std::map<std::string, bool> RecipeBook::ids() const {
 
 std::vector<RecipeEntry> RecipeBook::list() const {
   std::vector<RecipeEntry> entries;
-  for (const auto& [id, edited] : ids()) entries.push_back({id, edited, edited ? get(id).version : 0});
+  for (const auto& [id, edited] : ids()) {
+    RecipeEntry& entry = entries.emplace_back(RecipeEntry{id, edited});
+    try {
+      const RecipeVersion current = get(id);
+      entry.version = current.version;
+      (void)parse_recipe(current.text, id);
+    } catch (const Error& error) {
+      entry.error = error.code();
+      entry.error_message = error.what();
+    }
+  }
   return entries;
 }
 

@@ -290,6 +290,25 @@ TEST_F(ARecipeBook, NamesTheRecipeThatIsBad) {
   EXPECT_EQ(book_.get("bad").text, "{") << "it can be looked at and mended";
 }
 
+TEST_F(ARecipeBook, ListsABadRecipeWithItsErrorAmongTheOthers) {
+  (void)book_.save(change(21, 0));
+  put(shipped_ / "bad.json", "{");
+  put(edited_ / "huge.json", std::string(2U << 20U, ' '));
+
+  const auto entries = book_.list();
+
+  ASSERT_THAT(entries, SizeIs(4));
+  EXPECT_EQ(entries[0].id, "a");
+  EXPECT_EQ(entries[0].version, 1);
+  EXPECT_FALSE(entries[0].error);
+  EXPECT_FALSE(entries[1].error);
+  EXPECT_EQ(entries[2].error, ErrorCode::kBadRecipe);
+  EXPECT_THAT(entries[2].error_message, HasSubstr("recipe bad"));
+  EXPECT_EQ(entries[3].id, "huge");
+  EXPECT_TRUE(entries[3].error.has_value());
+  EXPECT_THAT(entries[3].error_message, HasSubstr("huge"));
+}
+
 TEST(ARecipeFolder, ListsItsRecipesSorted) {
   const test::ScratchDir folder;
   for (const char* name : {"b.json", "a.json", "notes.txt", "not an id.json", ".json", "c.json.new"}) {
