@@ -55,7 +55,9 @@ void describe_job_status(Fields& fields) {
 
 ordered_json job_status_json(const JobStatus& job) {
   const bool done = job.state != JobState::kProcessing;
-  const double progress = job.slices_planned > 0 ? static_cast<double>(job.slices_done) / job.slices_planned : 0.0;
+  // A camera that is faster than asked takes more slices than planned.
+  const double progress =
+      job.slices_planned > 0 ? std::min(1.0, static_cast<double>(job.slices_done) / job.slices_planned) : 0.0;
   return {{"job_id", job.job_id},
           {"seq", job.request.seq},
           {"client", job.request.client},
