@@ -157,10 +157,10 @@ std::int64_t RecipeBook::save_locked(const RecipeSave& request) {
   if (shadows) current = current_locked(request.id);
   if (current.version != request.base_version) {
     const std::string by = shadows ? ", saved by '" + current.author + "' at " + current.saved_utc : ", as shipped";
-    throw Error(ErrorCode::kBadInput, "recipe '" + request.id + "' is at version " + std::to_string(current.version) +
-                                          by + "; your text was made from version " +
-                                          std::to_string(request.base_version) +
-                                          ": get the recipe anew, put your changes into it, and save that");
+    throw Error(ErrorCode::kRecipeConflict,
+                "recipe '" + request.id + "' is at version " + std::to_string(current.version) + by +
+                    "; your text was made from version " + std::to_string(request.base_version) +
+                    ": get the recipe anew, put your changes into it, and save that");
   }
   if (shadows && current.text == request.text) return current.version;
   if (!shadows && ids.size() >= static_cast<std::size_t>(kMaxEdited)) {

@@ -56,9 +56,9 @@ class RecipeService {
   [[nodiscard]] virtual RecipeCheck check(const std::string& text, const std::string& id) const = 0;
 
   /// Keeps the document as a new version and puts it in force; returns the version. A document that is in force
-  /// already makes no new one. Throws Error kBadInput if the version in force is not the base, naming who saved it and
-  /// when, or for an unusable id, author or comment, or one recipe too many; kBadRecipe, kStorageFull, kStorageWrite,
-  /// kDatabase. Nothing has changed then.
+  /// already makes no new one. Throws Error kRecipeConflict if the version in force is not the base, naming who saved
+  /// it and when; kBadInput for an unusable id, author or comment, or one recipe too many; kBadRecipe, kStorageFull,
+  /// kStorageWrite, kDatabase. Nothing has changed then.
   virtual std::int64_t save(const RecipeSave& request) = 0;
 
   /// Newest first, without texts. Throws Error kUnknownRecipe.

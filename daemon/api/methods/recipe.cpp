@@ -197,7 +197,8 @@ void add_recipe_methods(MethodTable& methods, const Services& services) {
         jobs.prepare(params.id);
         return Reply{{"recipe", params.id}};
       })};
-  const std::vector<ErrorCode> saving{kBadInput, kBadRecipe, kUnknownRecipe, kStorageFull, kStorageWrite, kDatabase};
+  const std::vector<ErrorCode> saving{kBadInput,    kRecipeConflict, kBadRecipe, kUnknownRecipe,
+                                      kStorageFull, kStorageWrite,   kDatabase};
   methods["recipe.save"] = {
       .about = {.summary = "Keeps a document as a new version of a recipe and puts it in force; refused where another "
                            "version than base_version is in force",

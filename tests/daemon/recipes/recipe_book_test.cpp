@@ -102,9 +102,9 @@ TEST_F(ARecipeBook, TellsItsVersionsNewestFirst) {
 TEST_F(ARecipeBook, RefusesAChangeOfAnOldVersionAndSaysWhoWasFirst) {
   (void)book_.save(change(21, 0, "anna"));
 
-  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)book_.save(change(22, 0, "bert")),
+  FVD_EXPECT_ERROR_SAYING(kRecipeConflict, (void)book_.save(change(22, 0, "bert")),
                           AllOf(HasSubstr("version 1"), HasSubstr("'anna'"), HasSubstr("get the recipe anew")));
-  FVD_EXPECT_ERROR(kBadInput, (void)book_.save(change(22, 2, "bert")));
+  FVD_EXPECT_ERROR(kRecipeConflict, (void)book_.save(change(22, 2, "bert")));
   EXPECT_EQ(book_.load("a").slices, 21);
   EXPECT_EQ(book_.save(change(22, 1, "bert")), 2);
 }
@@ -119,7 +119,7 @@ TEST_F(ARecipeBook, LetsOneOfManyConcurrentChangesThrough) {
         (void)book_.save(change(30 + i, 0, "author " + std::to_string(i)));
         ++saved;
       } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::kBadInput) << error.what();
+        EXPECT_EQ(error.code(), ErrorCode::kRecipeConflict) << error.what();
         ++refused;
       }
     });
@@ -151,7 +151,7 @@ TEST_F(ARecipeBook, RestoresOnlyWhatItHas) {
   (void)book_.save({"new", recipe_of(5), 0, "anna", ""});
   FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.restore("new", 2, 1, "anna"), HasSubstr("has no version 2"));
   FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.restore("new", 0, 1, "anna"), HasSubstr("was shipped"));
-  FVD_EXPECT_ERROR(kBadInput, (void)book_.restore("new", 1, 0, "anna"));
+  FVD_EXPECT_ERROR(kRecipeConflict, (void)book_.restore("new", 1, 0, "anna"));
   FVD_EXPECT_ERROR(kUnknownRecipe, (void)book_.restore("../a", 0, 0, "anna"));
 }
 
@@ -238,7 +238,7 @@ TEST_F(ARecipeBook, MakesAVersionOfAFileThatWasChangedByHand) {
   put(edited_ / "a.json", recipe_of(33));
 
   EXPECT_EQ(book_.load("a").slices, 33);
-  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)book_.save(change(22, 1)), HasSubstr("version 2"));
+  FVD_EXPECT_ERROR_SAYING(kRecipeConflict, (void)book_.save(change(22, 1)), HasSubstr("version 2"));
   const auto versions = book_.versions("a");
   ASSERT_THAT(versions, SizeIs(2)) << "it is found once";
   EXPECT_THAT(versions[0].comment, HasSubstr("by hand"));
