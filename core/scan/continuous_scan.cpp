@@ -225,6 +225,11 @@ Error camera_too_fast(const SliceSorter& sorter, const ScanPlan& plan) {
   return {ErrorCode::kCameraSettings, message.str()};
 }
 
+void require_frames_as_planned(const SliceSorter& sorter, const ScanPlan& plan, const FrameCounts& frames) {
+  if (sorter.lost() > plan.allowed_lost_slices) throw too_many_lost(sorter, plan, frames);
+  if (sorter.far_too_many()) throw camera_too_fast(sorter, plan);
+}
+
 StepRecord record(int index, const Frame& frame, const PositionMean& position) {
   StepRecord step;
   step.index = index;
@@ -293,8 +298,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
         const PositionMean position = deps_.stage.position_at(oldest.moment, kPositionReach);
         const auto place = sorter.sort(oldest.frame.id, position.mean.value, oldest.circumstances);
         report.frames = ledger.counts();
-        if (sorter.lost() > plan.allowed_lost_slices) throw too_many_lost(sorter, plan, report.frames);
-        if (sorter.far_too_many()) throw camera_too_fast(sorter, plan);
+        require_frames_as_planned(sorter, plan, report.frames);
         if (place == SliceSorter::Place::kSlice) {
           report.steps.push_back(record(sorter.taken() + sorter.lost() - 1, oldest.frame, position));
           if (!deps_.sink.push({std::move(oldest.frame), position.mean.value}, deps_.clock.now() + kQueueTimeout,
@@ -320,7 +324,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
     circumstances.underruns = deps_.camera.health().underruns;
     if (!after) sorter.close(circumstances);
     report.frames = ledger.counts();
-    if (sorter.lost() > plan.allowed_lost_slices) throw too_many_lost(sorter, plan, report.frames);
+    require_frames_as_planned(sorter, plan, report.frames);
   } catch (...) {
     report.frames = ledger.counts();
     deps_.stage.stop();
