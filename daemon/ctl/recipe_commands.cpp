@@ -27,10 +27,11 @@ int list(RpcClient client, const Terminal& terminal) {
   const Json reply = client.call("recipe.list");
   for (const Json& entry : reply.at("entries")) {
     terminal.out << entry.at("id").get<std::string>() << "  ";
-    if (entry.at("version") == 0 && !entry.contains("error_message")) {
-      terminal.out << "shipped";
-    } else {
+    // Version 0 of an edited one: its file cannot be read.
+    if (entry.value("edited", entry.at("version") != 0)) {
       terminal.out << "version " << entry.at("version");
+    } else {
+      terminal.out << "shipped";
     }
     const auto error = entry.find("error_message");
     terminal.out << (error == entry.end() ? "" : "  " + error->get<std::string>()) << "\n";
