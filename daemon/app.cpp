@@ -1,7 +1,5 @@
 #include "daemon/app.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
 #include "drivers/registry/driver_table.hpp"
@@ -30,13 +28,7 @@ App::App(const Config& config)
                         clock_,
                         {.camera = [this] { return open_camera(config_.camera); },
                          .axis = [this] { return open_stage(config_.stage); }}}),
-      rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {
-  const auto last = store_.latest();
-  if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
-    spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,
-                 last->request.part_id, last->error_message);
-  }
-}
+      rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {}
 
 // The connections live until all that was accepted has ended.
 App::~App() { engine_.finish(); }

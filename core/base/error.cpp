@@ -68,6 +68,8 @@ std::string_view error_name(ErrorCode code) noexcept {
       return "storage_write_failed";
     case ErrorCode::kDatabase:
       return "db_failed";
+    case ErrorCode::kRecipeConflict:
+      return "recipe_conflict";
   }
   return "internal";
 }

@@ -40,9 +40,10 @@ enum class ErrorCode {
   kMemoryBudget,   ///< the job would need more memory than it may use
   kStorageFull,
   kStorageWrite,
-  kDatabase,  ///< the last: see kLastErrorCode
+  kDatabase,
+  kRecipeConflict,  ///< the recipe was changed meanwhile; the last: see kLastErrorCode
 };
-inline constexpr ErrorCode kLastErrorCode = ErrorCode::kDatabase;
+inline constexpr ErrorCode kLastErrorCode = ErrorCode::kRecipeConflict;
 
 /// The stable name of a code, e.g. "camera_disconnected".
 [[nodiscard]] std::string_view error_name(ErrorCode code) noexcept;

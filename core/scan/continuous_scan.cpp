@@ -22,8 +22,8 @@ using std::chrono::milliseconds;
 
 /// Longest wait for a frame before the stage is looked at.
 constexpr milliseconds kFrameWait{20};
-/// How much wider than planned the slices may lie throughout: cameras keep a frame rate within 2 %, and a drive rounds
-/// a low speed to whole units, by up to 3.2 %.
+/// How much wider or closer than planned the slices may lie throughout: cameras keep a frame rate within 2 %, and a
+/// drive rounds a low speed to whole units, by up to 3.2 %.
 constexpr double kPaceTolerance = 0.05;
 /// So many steps behind its way the scan has lost frames: half a step of phase, and one that the ends may cost.
 constexpr double kFramesBehind = 1.5;
@@ -102,9 +102,9 @@ class SliceSorter {
     const double way_um = along(z_um);
     const double step_um = plan_.step.value;
     const double end_um = (plan_.slices - 0.5) * step_um;
-    const Place place = way_um < -0.5 * step_um     ? Place::kBefore
-                        : way_um > end_um || full() ? Place::kAfter
-                                                    : Place::kSlice;
+    const Place place = way_um < -0.5 * step_um        ? Place::kBefore
+                        : way_um > end_um || covered() ? Place::kAfter
+                                                       : Place::kSlice;
     const bool gap = !last_id_ || id > *last_id_ + 1;
     if (gap && place != Place::kBefore) {
       // Those of the gap that were slices: it may begin on the ramp before them and end on the one after.
@@ -128,40 +128,55 @@ class SliceSorter {
 
   /// No frame came after the last slice.
   void close(Circumstances now) {
-    if (!full()) book_lost(plan_.slices - taken_ - lost_, now);
+    if (covered()) return;
+    book_lost(
+        full() ? static_cast<int>((last_target_um() - last_way_um_) / plan_.step.value) : plan_.slices - taken_ - lost_,
+        now);
   }
 
   [[nodiscard]] int taken() const { return taken_; }
   [[nodiscard]] int lost() const { return lost_; }
-  /// Slices and losses together are as many as were planned.
-  [[nodiscard]] bool full() const { return taken_ + lost_ >= plan_.slices; }
+  /// More slices than a camera that is a little faster than asked takes on the whole way.
+  [[nodiscard]] bool far_too_many() const {
+    return taken_ + lost_ > plan_.slices * (1.0 + kPaceTolerance) + kFramesBehind;
+  }
+  /// How far the slices reach, from the first target on.
+  [[nodiscard]] double reach_um() const { return last_way_um_; }
   /// Position along the way, from the first target on.
   [[nodiscard]] double along(double z_um) const {
     return plan_.downwards ? plan_.last().value - z_um : z_um - plan_.start.value;
   }
 
  private:
+  [[nodiscard]] double last_target_um() const { return (plan_.slices - 1) * plan_.step.value; }
+  /// Slices and losses together are as many as were planned.
+  [[nodiscard]] bool full() const { return taken_ + lost_ >= plan_.slices; }
+  /// And they reach the end: a camera that is faster than asked takes more than were planned on the same way.
+  [[nodiscard]] bool covered() const { return full() && last_way_um_ >= last_target_um() - plan_.step.value; }
+  /// The camera is faster than asked, by so much that more slices than planned may come.
+  [[nodiscard]] bool ahead() const { return taken_ + lost_ - 1 - last_way_um_ / plan_.step.value > kFramesBehind; }
+
   /// A camera that exposes too seldom counts on without a gap: what it left out shows in the positions alone. One frame
   /// more or less at the ends is no loss, as frames lie anywhere between two targets; nor are slices evenly a little
   /// wider apart, which cover the range all the same: `slices` of the result tells planned and measured.
   void book_missed_places(double way_um, bool after, bool ids_follow, Circumstances now) {
     const double step_um = plan_.step.value;
-    const double last_target_um = (plan_.slices - 1) * step_um;
     const bool began_inside = last_id_ && last_way_um_ >= -0.5 * step_um;
     int missed = 0;
     if (ids_follow && began_inside && way_um - last_way_um_ >= 1.5 * step_um) {
-      const double leap = (std::min(way_um, last_target_um + step_um) - last_way_um_) / step_um;
+      const double leap = (std::min(way_um, last_target_um() + step_um) - last_way_um_) / step_um;
       missed = std::max(0, static_cast<int>(std::lround(leap)) - 1);
     }
     const int open = plan_.slices - taken_ - lost_;
     if (after) {
-      if (open - missed > std::max(1.0, kPaceTolerance * plan_.slices) || places_missed_ + missed > 0) missed = open;
+      const bool fall_short = open - missed > std::max(1.0, kPaceTolerance * plan_.slices);
+      if (!ahead() && (fall_short || places_missed_ + missed > 0)) missed = open;
     } else {
       const double behind = way_um / step_um - (taken_ + lost_ + missed);  // -0.5..0.5 if every frame came
       const double allowed =
           places_missed_ > 0 ? kFramesBehind : std::max(kFramesBehind, kPaceTolerance * way_um / step_um);
       if (behind >= allowed) missed += static_cast<int>(behind);
-      missed = std::min(missed, open - 1);  // this frame is a slice
+      if (!ahead()) missed = std::min(missed, open - 1);  // this frame is a slice
     }
     if (missed <= 0) return;
     places_missed_ += missed;
@@ -199,6 +214,20 @@ Error too_many_lost(const SliceSorter& sorter, const ScanPlan& plan, const Frame
           << " for want of a buffer), the recipe allows " << plan.allowed_lost_slices
           << ": check the camera's link and frame rate, use a lower scan.speed_um_per_s, or scan.mode step";
   return {ErrorCode::kCameraFramesLost, message.str()};
+}
+
+Error camera_too_fast(const SliceSorter& sorter, const ScanPlan& plan) {
+  std::ostringstream message;
+  message << "the camera is faster than asked: " << sorter.taken() << " slices were taken on the first "
+          << sorter.reach_um() << " um of the way, " << plan.slices << " were to cover all "
+          << (plan.slices - 1) * plan.step.value << " um of it: check whether the camera keeps the frame rate of "
+          << plan.frame_rate_hz() << " Hz, or use scan.mode step";
+  return {ErrorCode::kCameraSettings, message.str()};
+}
+
+void require_frames_as_planned(const SliceSorter& sorter, const ScanPlan& plan, const FrameCounts& frames) {
+  if (sorter.lost() > plan.allowed_lost_slices) throw too_many_lost(sorter, plan, frames);
+  if (sorter.far_too_many()) throw camera_too_fast(sorter, plan);
 }
 
 StepRecord record(int index, const Frame& frame, const PositionMean& position) {
@@ -269,7 +298,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
         const PositionMean position = deps_.stage.position_at(oldest.moment, kPositionReach);
         const auto place = sorter.sort(oldest.frame.id, position.mean.value, oldest.circumstances);
         report.frames = ledger.counts();
-        if (sorter.lost() > plan.allowed_lost_slices) throw too_many_lost(sorter, plan, report.frames);
+        require_frames_as_planned(sorter, plan, report.frames);
         if (place == SliceSorter::Place::kSlice) {
           report.steps.push_back(record(sorter.taken() + sorter.lost() - 1, oldest.frame, position));
           if (!deps_.sink.push({std::move(oldest.frame), position.mean.value}, deps_.clock.now() + kQueueTimeout,
@@ -295,7 +324,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
     circumstances.underruns = deps_.camera.health().underruns;
     if (!after) sorter.close(circumstances);
     report.frames = ledger.counts();
-    if (sorter.lost() > plan.allowed_lost_slices) throw too_many_lost(sorter, plan, report.frames);
+    require_frames_as_planned(sorter, plan, report.frames);
   } catch (...) {
     report.frames = ledger.counts();
     deps_.stage.stop();

@@ -13,8 +13,8 @@ namespace fvd {
 /// Frames are taken as they come; one whose position is not known yet waits for it while the next are taken. Slices are
 /// the frames exposed from half a step before the first target to half a step after the last; all others belong to
 /// the ramps. A gap in the frame ids between them is a lost slice, and so is a place that no frame was exposed at, but
-/// for one at the ends. context: run() on one thread; stop requests from any. The stage is moved by a thread of its own
-/// meanwhile.
+/// for one at the ends. A camera that is up to 5 % faster than asked gives more slices than planned, which cover the
+/// same way. context: run() on one thread; stop requests from any. The stage is moved by a thread of its own meanwhile.
 class ContinuousScan {
  public:
   /// The camera is configured with `settings` already, but triggered by software.
@@ -22,8 +22,8 @@ class ContinuousScan {
       : deps_(dependencies), settings_(settings) {}
 
   /// As ScanRunner::run. On every way out the stage is at rest, or stopped, and the camera triggered by software again.
-  /// Throws Error kBadRecipe and kStageLimit before anything moves, kStageNotHomed, kCameraFramesLost, kSliceLost,
-  /// kAborted, and what camera and stage throw.
+  /// Throws Error kBadRecipe and kStageLimit before anything moves, kStageNotHomed, kCameraFramesLost, kCameraSettings
+  /// if the camera is much faster than asked, kSliceLost, kAborted, and what camera and stage throw.
   void run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
            std::stop_token stop);
 

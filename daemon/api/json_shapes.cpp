@@ -49,11 +49,15 @@ void describe_job_status(Fields& fields) {
   result.integer("error_code", "why it failed or was aborted; 0 = no error");
   result.text("error", "the error's name; empty = no error");
   result.text("error_message", "for people, at most 200 bytes");
+  result.boolean("durable", "a restart does not change what is told here; false: the end is not stored yet");
+  result.text("warning", "why it is not, at most 200 bytes; no job is taken before it is; empty = no warning");
 }
 
 ordered_json job_status_json(const JobStatus& job) {
   const bool done = job.state != JobState::kProcessing;
-  const double progress = job.slices_planned > 0 ? static_cast<double>(job.slices_done) / job.slices_planned : 0.0;
+  // A camera that is faster than asked takes more slices than planned.
+  const double progress =
+      job.slices_planned > 0 ? std::min(1.0, static_cast<double>(job.slices_done) / job.slices_planned) : 0.0;
   return {{"job_id", job.job_id},
           {"seq", job.request.seq},
           {"client", job.request.client},
@@ -71,7 +75,9 @@ ordered_json job_status_json(const JobStatus& job) {
           {"acknowledged", job.acknowledged},
           {"error_code", code_of(job.error)},
           {"error", error_of(job.error)},
-          {"error_message", shortened(job.error_message)}};
+          {"error_message", shortened(job.error_message)},
+          {"durable", job.not_durable.empty()},
+          {"warning", shortened(job.not_durable)}};
 }
 
 void describe_machine_status(Fields& fields) {
@@ -134,6 +140,7 @@ void describe_compact(Fields& fields, Presence presence) {
   result.integer("frames_expected", "compact: repeated ones too", Presence::kSometimes);
   result.integer("frames_ok", "compact", Presence::kSometimes);
   result.boolean("simulated", "a device was simulated", Presence::kSometimes);
+  result.boolean("durable", "false while the end is not stored yet: job.status tells why", Presence::kSometimes);
 }
 
 }  // namespace
@@ -157,6 +164,7 @@ ordered_json compact_result_json(const JobStatus& job, const std::string& result
                     {"part_id", job.request.part_id},
                     {"state", job_state_name(job.state)},
                     {"error_code", code_of(job.error)}};
+  if (!job.not_durable.empty()) json["durable"] = false;
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);
   const auto& values = result.at("values");
@@ -181,6 +189,7 @@ ordered_json full_result_json(const JobStatus& job, const std::string& result_te
                     {"error", error_of(job.error)},
                     {"error_message", shortened(job.error_message)},
                     {"directory", directory}};
+  if (!job.not_durable.empty()) json["durable"] = false;
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);
   for (const char* key : kFullGroups) json[key] = result.at(key);

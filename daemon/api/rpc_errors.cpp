@@ -34,6 +34,8 @@ RpcError rpc_error(ErrorCode code) noexcept {
       return {1015, false};
     case ErrorCode::kBadInput:
       return {1016, false};
+    case ErrorCode::kRecipeConflict:
+      return {1017, false};
     case ErrorCode::kCameraDisconnected:
       return {1101, true};
     case ErrorCode::kCameraFramesLost:

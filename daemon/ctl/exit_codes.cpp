@@ -8,6 +8,7 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kBadConfig:
     case ErrorCode::kBadRecipe:
     case ErrorCode::kUnknownRecipe:
+    case ErrorCode::kRecipeConflict:
     case ErrorCode::kUnknownJob:
     case ErrorCode::kBadSlice:
     case ErrorCode::kMemoryBudget:
@@ -44,6 +45,7 @@ int exit_code_of_rpc(int code) noexcept {
     case 1010:    // sequence number too old
     case 1015:    // invalid configuration
     case 1016:    // invalid input
+    case 1017:    // recipe changed meanwhile
     case 1203:    // too large
       return kExitBadData;
     case 1001:  // not ready

@@ -27,11 +27,14 @@ int list(RpcClient client, const Terminal& terminal) {
   const Json reply = client.call("recipe.list");
   for (const Json& entry : reply.at("entries")) {
     terminal.out << entry.at("id").get<std::string>() << "  ";
-    if (entry.at("version") == 0) {
-      terminal.out << "shipped\n";
+    // Version 0 of an edited one: its file cannot be read.
+    if (entry.value("edited", entry.at("version") != 0)) {
+      terminal.out << "version " << entry.at("version");
     } else {
-      terminal.out << "version " << entry.at("version") << "\n";
+      terminal.out << "shipped";
     }
+    const auto error = entry.find("error_message");
+    terminal.out << (error == entry.end() ? "" : "  " + error->get<std::string>()) << "\n";
   }
   terminal.out << std::flush;
   return kExitOk;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <thread>
 
+#include <spdlog/spdlog.h>
+
 namespace fvd {
 
 namespace {
@@ -45,7 +47,13 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              {pool_.threads(), memory_budget_bytes(config), pages_},
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
              [this] { return tasks_.task_stop(); }}),
-      thread_(hub_, board_, work_) {}
+      thread_(hub_, board_, work_, [this] { runner_.store_late_end(); }) {
+  const auto last = deps.store.latest();
+  if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
+    spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,
+                 last->request.part_id, last->error_message);
+  }
+}
 
 Engine::~Engine() { finish(); }
 
@@ -59,6 +67,7 @@ void Engine::shut_down() {
 void Engine::finish() {
   shut_down();
   thread_.finish();
+  runner_.store_late_end();  // the last chance
 }
 
 }  // namespace fvd

@@ -30,6 +30,7 @@ struct EngineDependencies {
 /// context: made and destroyed on one thread; the services are thread-safe.
 class Engine {
  public:
+  /// Warns of the latest job if a restart interrupted it and nobody acknowledged that yet.
   Engine(const Config& config, const EngineDependencies& dependencies);
   /// finish().
   ~Engine();

@@ -157,7 +157,9 @@ int JobQueue::acknowledge(const JobKey& key) {
   }
   const int remaining = deps_.store.acknowledge(key);
   deps_.board.update([&](MachineRecord& machine) {
-    if (machine.job && names(key, *machine.job)) machine.job->acknowledged = true;
+    if (!machine.job || !names(key, *machine.job)) return;
+    machine.job->acknowledged = true;
+    machine.job->not_durable.clear();
   });
   return remaining;
 }

@@ -133,20 +133,32 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
   ended.acquired = true;
   ended.error = end.error;
   ended.error_message = end.message;
-  // The row is durable before anybody can see the job's end; a database that fails must not hide that it ended.
+  // The row is durable before anybody can see the job's end; a database that fails must not hide how it ended.
   try {
     deps_.store.finish(ended, end.result.directory, end.result.text);
   } catch (const Error& failure) {
-    spdlog::critical("job {}: its end could not be stored: {}", ended.job_id, failure.what());
-    ended.state = JobState::kFailed;
-    ended.error = failure.code();
-    ended.error_message = failure.what();
+    spdlog::critical("job {}: its end is not stored yet, no job is taken before it is: {}", ended.job_id,
+                     failure.what());
+    ended.not_durable = failure.what();
   }
   deps_.board.update([&](MachineRecord& machine) {
     machine.job = ended;
     machine.apply(MachineEvent::kJobEnded);
     if (end.used_devices) machine.set_devices(end.failure);
     machine.apply(MachineEvent::kRecipePrepared);  // by the job, on the way
+  });
+}
+
+void JobRunner::store_late_end() {
+  const auto late = deps_.board.snapshot()->job;
+  if (!late || late->not_durable.empty()) return;
+  try {
+    deps_.store.store_kept_ends();
+  } catch (const Error&) {
+    return;  // it was told when the job ended
+  }
+  deps_.board.update([&late](MachineRecord& machine) {
+    if (machine.job && machine.job->job_id == late->job_id) machine.job->not_durable.clear();
   });
 }
 

@@ -28,7 +28,7 @@ struct AcceptedJob {
   Recipe recipe;
 };
 
-/// context: run() on the machine's thread, refuse() on any.
+/// context: run() on the machine's thread, the others on any.
 class JobRunner {
  public:
   struct Dependencies {
@@ -46,11 +46,14 @@ class JobRunner {
   explicit JobRunner(Dependencies dependencies) : deps_(std::move(dependencies)) {}
 
   /// Measures, and ends the job however that goes: its row first, then the board, then the devices are looked after.
-  /// Never throws.
+  /// An end that the database cannot take is told with JobStatus::not_durable. Never throws.
   void run(const AcceptedJob& job, const std::stop_token& stop);
 
   /// Ends a job that did not begin because the daemon goes: failed, kShuttingDown. Never throws.
   void refuse(const AcceptedJob& job);
+
+  /// Tries again to store the end of the latest job, if the database could not take it when it came. Never throws.
+  void store_late_end();
 
  private:
   /// How a job ended.

@@ -19,10 +19,11 @@ constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
 
 }  // namespace
 
-MachineThread::MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work)
+MachineThread::MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, std::function<void()> in_between)
     : hub_(hub),
       board_(board),
       work_(work),
+      in_between_(std::move(in_between)),
       thread_(start_thread("fvd-machine", [this](std::stop_token stop) { run(stop); })) {}
 
 MachineThread::~MachineThread() { finish(); }
@@ -38,6 +39,7 @@ void MachineThread::finish() {
 void MachineThread::run(std::stop_token stop) {
   while (!stop.stop_requested()) {
     const bool complete = look_after_devices();
+    in_between_();
     if (const auto work = work_.take(stop, complete ? kDeviceCheckPeriod : kDeviceRetryPeriod)) work->run();
   }
   hub_.drop_all();

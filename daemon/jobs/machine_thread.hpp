@@ -2,6 +2,7 @@
 
 /// The one thread that touches the devices: does the work that was posted, and looks after the devices in between.
 
+#include <functional>
 #include <stop_token>
 #include <thread>
 
@@ -13,8 +14,9 @@ namespace fvd {
 
 class MachineThread {
  public:
-  /// Starts at once; opens the devices first.
-  MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work);
+  /// Starts at once; opens the devices first. in_between: called as often as the devices are looked after, never
+  /// throws.
+  MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, std::function<void()> in_between);
   /// finish().
   ~MachineThread();
   MachineThread(const MachineThread&) = delete;
@@ -34,6 +36,7 @@ class MachineThread {
   DeviceHub& hub_;
   MachineBoard& board_;
   WorkQueue& work_;
+  const std::function<void()> in_between_;
   int known_openings_ = 0;  // of the devices that the board knows
   std::jthread thread_;     // last: ends before anything it uses
 };

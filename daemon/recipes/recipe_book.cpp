@@ -44,7 +44,10 @@ std::vector<std::string> edited_ids(const std::filesystem::path& folder) {
 }  // namespace
 
 RecipeBook::RecipeBook(RecipeFolders folders, StageLimits limits, RecipeVersions& versions)
-    : folders_(std::move(folders)), limits_(limits), versions_(versions) {}
+    : folders_(std::move(folders)), limits_(limits), versions_(versions) {
+  const MutexLock lock(mutex_);
+  for (const std::string& id : list_next_recipe_texts(folders_.edited)) settle_locked(id);
+}
 
 std::map<std::string, bool> RecipeBook::ids() const {
   std::map<std::string, bool> edited_by_id;
@@ -55,7 +58,17 @@ std::map<std::string, bool> RecipeBook::ids() const {
 
 std::vector<RecipeEntry> RecipeBook::list() const {
   std::vector<RecipeEntry> entries;
-  for (const auto& [id, edited] : ids()) entries.push_back({id, edited, edited ? get(id).version : 0});
+  for (const auto& [id, edited] : ids()) {
+    RecipeEntry& entry = entries.emplace_back(RecipeEntry{id, edited});
+    try {
+      const RecipeVersion current = get(id);
+      entry.version = current.version;
+      (void)parse_recipe(current.text, id);
+    } catch (const Error& error) {
+      entry.error = error.code();
+      entry.error_message = error.what();
+    }
+  }
   return entries;
 }
 
@@ -71,6 +84,11 @@ std::string RecipeBook::text_of(const std::string& id, bool& edited) const {
 }
 
 RecipeVersion RecipeBook::get(const std::string& id) const {
+  // While another client's save brings its text to the disk, the version before it is in force and told at once.
+  bool edited = false;
+  const std::string text = text_of(id, edited);
+  if (!edited) return {.id = id, .sha256 = recipe_sha256(text), .text = text};
+  if (auto latest = versions_.latest(id); latest && latest->text == text) return *std::move(latest);
   const MutexLock lock(mutex_);
   return current_locked(id);
 }
@@ -97,7 +115,22 @@ RecipeCheck RecipeBook::check(const std::string& text, const std::string& id) co
   return check;
 }
 
+void RecipeBook::settle_locked(const std::string& id) const {
+  try {
+    const auto next = find_next_recipe_text(folders_.edited, id);
+    if (!next) return;
+    const auto latest = versions_.latest(id);
+    if (!latest || latest->text != *next) return drop_next_recipe_text(folders_.edited, id);
+    put_next_recipe_text_in_force(folders_.edited, id);
+    spdlog::warn("recipe {}: version {}, saved by '{}', was not in force yet and is now", id, latest->version,
+                 latest->author);
+  } catch (const Error& error) {
+    spdlog::warn("recipe {}: whether its last change was saved cannot be found out yet: {}", id, error.what());
+  }
+}
+
 RecipeVersion RecipeBook::current_locked(const std::string& id) const {
+  settle_locked(id);
   bool edited = false;
   const std::string text = text_of(id, edited);
   if (!edited) return {.id = id, .sha256 = recipe_sha256(text), .text = text};
@@ -105,7 +138,7 @@ RecipeVersion RecipeBook::current_locked(const std::string& id) const {
   if (latest && latest->text == text) return *latest;
   const RecipeVersion found{
       .id = id, .sha256 = recipe_sha256(text), .author = "unknown", .comment = kChangedByHand, .text = text};
-  const RecipeVersion added = versions_.add(found, kVersionsKept, [] {});
+  const RecipeVersion added = versions_.add(found, kVersionsKept);
   spdlog::warn("recipe {}: {}; it is version {} now", id, kChangedByHand, added.version);
   return added;
 }
@@ -124,10 +157,10 @@ std::int64_t RecipeBook::save_locked(const RecipeSave& request) {
   if (shadows) current = current_locked(request.id);
   if (current.version != request.base_version) {
     const std::string by = shadows ? ", saved by '" + current.author + "' at " + current.saved_utc : ", as shipped";
-    throw Error(ErrorCode::kBadInput, "recipe '" + request.id + "' is at version " + std::to_string(current.version) +
-                                          by + "; your text was made from version " +
-                                          std::to_string(request.base_version) +
-                                          ": get the recipe anew, put your changes into it, and save that");
+    throw Error(ErrorCode::kRecipeConflict,
+                "recipe '" + request.id + "' is at version " + std::to_string(current.version) + by +
+                    "; your text was made from version " + std::to_string(request.base_version) +
+                    ": get the recipe anew, put your changes into it, and save that");
   }
   if (shadows && current.text == request.text) return current.version;
   if (!shadows && ids.size() >= static_cast<std::size_t>(kMaxEdited)) {
@@ -146,10 +179,28 @@ std::int64_t RecipeBook::save_locked(const RecipeSave& request) {
                              .author = request.author,
                              .comment = request.comment,
                              .text = request.text};
-  const RecipeVersion kept =
-      versions_.add(wanted, kVersionsKept, [&] { replace_recipe_text(folders_.edited, request.id, request.text); });
-  spdlog::info("recipe {}: version {} saved by '{}'", request.id, kept.version, request.author);
-  return kept.version;
+  const std::int64_t version = keep_locked(wanted);
+  spdlog::info("recipe {}: version {} saved by '{}'", request.id, version, request.author);
+  return version;
+}
+
+std::int64_t RecipeBook::keep_locked(const RecipeVersion& wanted) {
+  write_next_recipe_text(folders_.edited, wanted.id, wanted.text);
+  std::int64_t version = 0;
+  try {
+    version = versions_.add(wanted, kVersionsKept).version;
+  } catch (...) {
+    drop_next_recipe_text(folders_.edited, wanted.id);
+    throw;
+  }
+  try {
+    put_next_recipe_text_in_force(folders_.edited, wanted.id);
+  } catch (...) {
+    versions_.remove(wanted.id, version);  // where that fails too, the text waits until it can be put in force
+    drop_next_recipe_text(folders_.edited, wanted.id);
+    throw;
+  }
+  return version;
 }
 
 std::vector<RecipeVersion> RecipeBook::versions(const std::string& id) const {

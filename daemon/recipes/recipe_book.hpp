@@ -53,6 +53,10 @@ class RecipeBook final : public RecipeService {
   /// The version in force; 0 where the shipped one is. A file changed by hand is added.
   [[nodiscard]] RecipeVersion current_locked(const std::string& id) const FVD_REQUIRES(mutex_);
   std::int64_t save_locked(const RecipeSave& request) FVD_REQUIRES(mutex_);
+  /// File and row, or neither: the text waits beside the file while its row is committed.
+  std::int64_t keep_locked(const RecipeVersion& wanted) FVD_REQUIRES(mutex_);
+  /// Ends a save that was cut off: the text that waits is put in force if its row is there, and dropped if not.
+  void settle_locked(const std::string& id) const FVD_REQUIRES(mutex_);
 
   const RecipeFolders folders_;
   const StageLimits limits_;

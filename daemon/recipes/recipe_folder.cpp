@@ -13,12 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kNextSuffix = ".new";
+
 fs::path file_of(const fs::path& folder, const std::string& id) {
   if (!is_recipe_id(id)) {
     throw Error(ErrorCode::kUnknownRecipe, "a recipe id has 1 to 32 of the characters A-Z a-z 0-9 _ -");
   }
   return folder / (id + ".json");
 }
+
+fs::path next_of(const fs::path& folder, const std::string& id) { return file_of(folder, id) += kNextSuffix; }
 
 }  // namespace
 
@@ -42,19 +46,47 @@ std::optional<std::string> find_recipe_text(const fs::path& folder, const std::s
   return read_text_file(file);
 }
 
-void replace_recipe_text(const fs::path& folder, const std::string& id, std::string_view text) {
-  const fs::path file = file_of(folder, id);
-  const fs::path fresh = folder / (id + ".json.new");
+void write_next_recipe_text(const fs::path& folder, const std::string& id, std::string_view text) {
+  const fs::path next = next_of(folder, id);
   std::error_code error;
-  fs::remove(fresh, error);  // of a process that died while it wrote
-  write_new_file(fresh, text);
-  fs::rename(fresh, file, error);
-  if (error) {
-    std::error_code ignored;
-    fs::remove(fresh, ignored);
-    throw Error(ErrorCode::kStorageWrite, "cannot replace " + file.string() + ": " + error.message());
+  fs::remove(next, error);  // of a process that died while it wrote
+  write_new_file(next, text);
+  try {
+    sync_directory(folder);
+  } catch (...) {
+    fs::remove(next, error);
+    throw;
   }
-  sync_directory(folder);
+}
+
+std::optional<std::string> find_next_recipe_text(const fs::path& folder, const std::string& id) {
+  const fs::path next = next_of(folder, id);
+  std::error_code error;
+  if (!fs::is_regular_file(next, error)) return std::nullopt;
+  return read_text_file(next);
+}
+
+void put_next_recipe_text_in_force(const fs::path& folder, const std::string& id) {
+  const fs::path file = file_of(folder, id);
+  std::error_code error;
+  fs::rename(next_of(folder, id), file, error);
+  if (error) throw Error(ErrorCode::kStorageWrite, "cannot replace " + file.string() + ": " + error.message());
+}
+
+void drop_next_recipe_text(const fs::path& folder, const std::string& id) {
+  std::error_code ignored;
+  fs::remove(next_of(folder, id), ignored);
+}
+
+std::vector<std::string> list_next_recipe_texts(const fs::path& folder) {
+  std::vector<std::string> ids;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path file = entry->path().stem();  // <id>.json
+    const std::string id = file.stem().string();
+    if (entry->path().extension() == kNextSuffix && file.extension() == ".json" && is_recipe_id(id)) ids.push_back(id);
+  }
+  return ids;
 }
 
 }  // namespace fvd

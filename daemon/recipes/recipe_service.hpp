@@ -3,9 +3,11 @@
 /// What the API needs of the recipes at hand; tests put a fake in its place.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/error.hpp"
 #include "daemon/recipes/recipe.hpp"
 #include "daemon/recipes/recipe_versions.hpp"
 
@@ -15,7 +17,9 @@ namespace fvd {
 struct RecipeEntry {
   std::string id;
   bool edited = false;
-  std::int64_t version = 0;  ///< of the edited one; 0 = the shipped one
+  std::int64_t version = 0;                       ///< of the edited one; 0 = the shipped one
+  std::optional<ErrorCode> error = std::nullopt;  ///< why no job can use it; version is 0 where it could not be read
+  std::string error_message = {};
 };
 
 /// What a document is worth as a recipe.
@@ -39,7 +43,8 @@ class RecipeService {
  public:
   virtual ~RecipeService() = default;
 
-  /// Sorted by id. Throws Error kBadInput if the shipped folder cannot be read.
+  /// Sorted by id; one that cannot be used is among them with its error. Throws Error kBadInput if a folder cannot be
+  /// read.
   [[nodiscard]] virtual std::vector<RecipeEntry> list() const = 0;
   /// The text in force and its version, 0 = the shipped one, of which only id, version, sha256 and text are told.
   /// Throws Error kUnknownRecipe naming those that are known, kBadInput if it cannot be read.
@@ -51,9 +56,9 @@ class RecipeService {
   [[nodiscard]] virtual RecipeCheck check(const std::string& text, const std::string& id) const = 0;
 
   /// Keeps the document as a new version and puts it in force; returns the version. A document that is in force
-  /// already makes no new one. Throws Error kBadInput if the version in force is not the base, naming who saved it and
-  /// when, or for an unusable id, author or comment, or one recipe too many; kBadRecipe, kStorageFull, kStorageWrite,
-  /// kDatabase. Nothing has changed then.
+  /// already makes no new one. Throws Error kRecipeConflict if the version in force is not the base, naming who saved
+  /// it and when; kBadInput for an unusable id, author or comment, or one recipe too many; kBadRecipe, kStorageFull,
+  /// kStorageWrite, kDatabase. Nothing has changed then.
   virtual std::int64_t save(const RecipeSave& request) = 0;
 
   /// Newest first, without texts. Throws Error kUnknownRecipe.

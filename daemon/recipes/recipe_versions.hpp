@@ -3,7 +3,6 @@
 /// The versions of edited recipes, kept beside their files; daemon/store implements it on the database.
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,9 +30,10 @@ class RecipeVersions {
   /// Newest of the recipe.
   [[nodiscard]] virtual std::optional<RecipeVersion> latest(const std::string& id) const = 0;
 
-  /// Adds a version, numbered after the newest, and drops all but the newest `kept`; durable at the return. What
-  /// before_commit throws undoes it.
-  virtual RecipeVersion add(const RecipeVersion& version, int kept, const std::function<void()>& before_commit) = 0;
+  /// Adds a version, numbered after the newest, and drops all but the newest `kept`; durable at the return.
+  virtual RecipeVersion add(const RecipeVersion& version, int kept) = 0;
+  /// Takes a version back that could not be put in force.
+  virtual void remove(const std::string& id, std::int64_t version) = 0;
 };
 
 }  // namespace fvd

@@ -78,9 +78,14 @@ std::vector<MeasuredValue> measurements_of(const ResultData& data, const HeightS
 }
 
 std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warnings) {
-  if (const int missing = result.slices.planned - result.slices.measured; missing > 0) {
+  const int missing = result.slices.planned - result.slices.measured;
+  if (missing > 0) {
     warnings.push_back({"slices_missing", std::to_string(missing) + " of " + std::to_string(result.slices.planned) +
                                               " slices are missing; heights near them are less certain"});
+  } else if (missing < 0) {
+    warnings.push_back({"slices_added", std::to_string(-missing) + " slices more than the " +
+                                            std::to_string(result.slices.planned) +
+                                            " that were planned cover the range: the camera is faster than asked"});
   }
   const auto at_end = [&](std::size_t points, const char* code, const char* end) {
     const double fraction = result.points == 0 ? 0.0 : static_cast<double>(points) / static_cast<double>(result.points);

@@ -1,6 +1,12 @@
 #include "daemon/store/database.hpp"
 
 #include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/file.h>
 
 #include "core/base/error.hpp"
 
@@ -9,6 +15,7 @@ namespace fvd {
 namespace {
 
 constexpr int kBusyTimeout_ms = 1000;  // until a killed predecessor's lock is gone
+constexpr int kLockPoll_ms = 10;
 
 bool means_disk_full(int code, int system_errno) {
   if (code == SQLITE_FULL) return true;
@@ -33,19 +40,40 @@ std::string advice(int code) {
 
 }  // namespace
 
-Database::Database(const std::filesystem::path& file) : file_(file) {
+Database::Database(const std::filesystem::path& file, int flags) : file_(file) {
   sqlite3* handle = nullptr;
-  constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
-  const int code = sqlite3_open_v2(file.c_str(), &handle, kFlags, nullptr);
+  const int code = sqlite3_open_v2(file.c_str(), &handle, flags | SQLITE_OPEN_NOMUTEX, nullptr);
   handle_.reset(handle);
   if (handle == nullptr) throw Error(ErrorCode::kDatabase, "no memory to open the database " + file.string());
   if (code != SQLITE_OK) fail("opening");
   sqlite3_extended_result_codes(handle, 0);
   sqlite3_busy_timeout(handle, kBusyTimeout_ms);
+}
+
+Database::Database(const std::filesystem::path& file) : Database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) {
+  take_the_file();
   execute(
-      "PRAGMA locking_mode=EXCLUSIVE;"
       "PRAGMA journal_mode=WAL;"
       "PRAGMA synchronous=FULL;");
+}
+
+Database Database::reader_of(const Database& owner) {
+  Database reader(owner.file_, SQLITE_OPEN_READWRITE);
+  reader.execute("PRAGMA query_only=ON");
+  return reader;
+}
+
+void Database::take_the_file() {
+  // SQLite's own exclusive mode would keep our second connection out as well.
+  lock_ = UniqueFd(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
+  for (int waited_ms = 0; ::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0; waited_ms += kLockPoll_ms) {
+    const int reason = errno;
+    if (reason != EWOULDBLOCK || waited_ms >= kBusyTimeout_ms) {
+      throw Error(ErrorCode::kDatabase, "database " + file_.string() + ": locking: " + std::strerror(reason) +
+                                            (reason == EWOULDBLOCK ? advice(SQLITE_BUSY) : std::string()));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(kLockPoll_ms));  // flock() knows no deadline
+  }
 }
 
 void Database::execute(const char* sql) {

@@ -10,15 +10,20 @@
 
 #include <sqlite3.h>
 
+#include "daemon/base/unique_fd.hpp"
+
 namespace fvd {
 
 /// One connection. context: one thread at a time.
 class Database {
  public:
   /// Opens or creates the file; its folder must exist. Write-ahead log with synchronous=FULL: a commit that returned
-  /// survives a power cut. The file stays locked against every other process until destruction.
-  /// Throws Error kDatabase naming the file and the reason, kStorageFull.
+  /// survives a power cut. No other Database of this kind, of this or another process, opens the file until
+  /// destruction. Throws Error kDatabase naming the file and the reason, kStorageFull.
   explicit Database(const std::filesystem::path& file);
+  /// A second connection to an open one's file, which sees what was committed and waits for no commit. Writing through
+  /// it fails. `owner` outlives it. Throws Error kDatabase.
+  [[nodiscard]] static Database reader_of(const Database& owner);
 
   /// Runs statements without results. Throws Error kDatabase, kStorageFull.
   void execute(const char* sql);
@@ -29,10 +34,15 @@ class Database {
   [[noreturn]] void fail(std::string_view what) const;
 
  private:
+  Database(const std::filesystem::path& file, int flags);
+  /// Keeps every other owner out.
+  void take_the_file();
+
   struct Closer {
     void operator()(sqlite3* handle) const noexcept { sqlite3_close(handle); }
   };
   std::filesystem::path file_;
+  UniqueFd lock_;  // closed after the connection: closing any descriptor of the file drops the connection's locks
   std::unique_ptr<sqlite3, Closer> handle_;
 };
 

@@ -39,6 +39,7 @@ struct JobStatus {
   std::optional<ErrorCode> error;  ///< why it failed or was aborted
   std::string error_message;
   bool acknowledged = false;  ///< result.ack was received
+  std::string not_durable;    ///< why its end is not on disk yet; empty = it is, or the job has not ended
 };
 
 /// A sequence number belongs to the client that chose it.

@@ -3,6 +3,9 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <map>
+
+#include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
 #include "core/base/mutex.hpp"
@@ -60,9 +63,17 @@ StoredJob read_row(const Statement& row) {
   return job;
 }
 
-std::optional<JobStatus> first_status(Statement& rows) {
+using KeptEnds = std::map<std::string, StoredJob>;  // by job_id
+
+/// The row, or the job's end that the row does not have yet.
+StoredJob as_it_stands(StoredJob row, const KeptEnds& kept) {
+  const auto end = kept.find(row.status.job_id);
+  return end == kept.end() ? std::move(row) : end->second;
+}
+
+std::optional<JobStatus> first_status(Statement& rows, const KeptEnds& kept) {
   if (!rows.step()) return std::nullopt;
-  return read_row(rows).status;
+  return as_it_stands(read_row(rows), kept).status;
 }
 
 std::string number_text(std::int64_t seq, const std::string& client) {
@@ -78,6 +89,44 @@ std::string key_text(const JobKey& key) {
 std::int64_t scalar(const Database& database, const char* sql) {
   Statement query(database, sql);
   return query.step() ? query.integer(0) : 0;
+}
+
+StoredJob job_in(const Database& database, const KeptEnds& kept, const JobKey& key) {
+  const auto* id = std::get_if<std::string>(&key);
+  Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
+                                          : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
+  if (id != nullptr) {
+    query.bind(*id);
+  } else {
+    const auto& number = std::get<ClientSeq>(key);
+    query.bind(number.client).bind(number.seq);
+  }
+  if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
+  return as_it_stands(read_row(query), kept);
+}
+
+std::optional<JobStatus> repeated_in(const Database& database, const KeptEnds& kept, const JobRequest& request) {
+  const std::string number = number_text(request.seq, request.client);
+  Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
+  query.bind(request.client).bind(request.seq);
+  auto known = first_status(query, kept);
+  if (!known) {
+    Statement highest(database, "SELECT max(seq) FROM jobs WHERE client = ?");
+    highest.bind(request.client);
+    const std::int64_t newest = highest.step() ? highest.integer(0) : 0;
+    if (request.seq < newest - JobStore::kSeqWindow) {
+      throw Error(ErrorCode::kSeqStale, number + " is more than " + std::to_string(JobStore::kSeqWindow) +
+                                            " behind the newest, " + std::to_string(newest) + ": continue from there");
+    }
+    return std::nullopt;
+  }
+  const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
+  if (known->request.part_id != request.part_id || !same_recipe) {
+    throw Error(ErrorCode::kSeqConflict, number + " belongs to job " + known->job_id + " (part '" +
+                                             known->request.part_id + "', recipe '" + known->request.recipe +
+                                             "'): use a new number for a new job");
+  }
+  return known;
 }
 
 std::filesystem::path with_folder(const std::filesystem::path& file) {
@@ -114,48 +163,22 @@ struct JobStore::Impl {
     waiting = static_cast<int>(scalar(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0"));
   }
 
-  [[nodiscard]] StoredJob find_locked(const JobKey& key) const FVD_REQUIRES(mutex) {
-    const auto* id = std::get_if<std::string>(&key);
-    Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
-                                            : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
-    if (id != nullptr) {
-      query.bind(*id);
-    } else {
-      const auto& number = std::get<ClientSeq>(key);
-      query.bind(number.client).bind(number.seq);
-    }
-    if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
-    return read_row(query);
+  void store_end_locked(const StoredJob& end) FVD_REQUIRES(mutex);
+  void store_kept_ends_locked() FVD_REQUIRES(mutex);
+
+  /// Of now: who reads rows afterwards misses no end.
+  [[nodiscard]] KeptEnds kept() const {
+    const MutexLock lock(kept_mutex);
+    return kept_ends;
   }
 
-  [[nodiscard]] std::optional<JobStatus> find_repeated_locked(const JobRequest& request) const FVD_REQUIRES(mutex) {
-    const std::string number = number_text(request.seq, request.client);
-    Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
-    query.bind(request.client).bind(request.seq);
-    auto known = first_status(query);
-    if (!known) {
-      Statement highest(database, "SELECT max(seq) FROM jobs WHERE client = ?");
-      highest.bind(request.client);
-      const std::int64_t newest = highest.step() ? highest.integer(0) : 0;
-      if (request.seq < newest - kSeqWindow) {
-        throw Error(ErrorCode::kSeqStale, number + " is more than " + std::to_string(kSeqWindow) +
-                                              " behind the newest, " + std::to_string(newest) +
-                                              ": continue from there");
-      }
-      return std::nullopt;
-    }
-    const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
-    if (known->request.part_id != request.part_id || !same_recipe) {
-      throw Error(ErrorCode::kSeqConflict, number + " belongs to job " + known->job_id + " (part '" +
-                                               known->request.part_id + "', recipe '" + known->request.recipe +
-                                               "'): use a new number for a new job");
-    }
-    return known;
-  }
-
-  mutable Mutex mutex;
+  Mutex mutex;  // held while a commit waits for the disk
   Database database FVD_GUARDED_BY(mutex);
-  RecipeTable recipes{database, mutex};
+  Mutex read_mutex;  // never held then; never together with mutex
+  Database reader FVD_GUARDED_BY(read_mutex){Database::reader_of(database)};
+  mutable Mutex kept_mutex;                       // innermost
+  KeptEnds kept_ends FVD_GUARDED_BY(kept_mutex);  ///< that could not be stored yet
+  RecipeTable recipes{{database, mutex}, {reader, read_mutex}};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
@@ -165,14 +188,16 @@ JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<I
 JobStore::~JobStore() = default;
 
 std::optional<JobStatus> JobStore::find_repeated(const JobRequest& request) const {
-  const MutexLock lock(impl_->mutex);
-  return impl_->find_repeated_locked(request);
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  return repeated_in(impl_->reader, kept, request);
 }
 
 JobStatus JobStore::accept(const JobRequest& request) {
   const MutexLock lock(impl_->mutex);
+  impl_->store_kept_ends_locked();
   Transaction transaction(impl_->database);
-  if (const auto known = impl_->find_repeated_locked(request)) {
+  if (const auto known = repeated_in(impl_->database, {}, request)) {
     throw Error(ErrorCode::kSeqConflict,
                 number_text(request.seq, request.client) + " was accepted before, as job " + known->job_id);
   }
@@ -196,12 +221,11 @@ JobStatus JobStore::accept(const JobRequest& request) {
   return job;
 }
 
-void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json) {
+void JobStore::Impl::store_end_locked(const StoredJob& end) {
   const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  const MutexLock lock(impl_->mutex);
-  Transaction transaction(impl_->database);
-  const bool was_running = impl_->find_locked(ended.job_id).status.state == JobState::kProcessing;
-  Statement(impl_->database,
+  const JobStatus& ended = end.status;
+  Transaction transaction(database);
+  Statement(database,
             "UPDATE jobs SET state = ?, error = ?, error_message = ?, slices_done = ?, slices_planned = ?, "
             "frames_expected = ?, frames_ok = ?, frames_incomplete = ?, frames_missing = ?, frames_stale = ?, "
             "frames_underrun = ?, result_dir = ?, result_json = ?, "
@@ -217,45 +241,92 @@ void JobStore::finish(const JobStatus& ended, const std::string& result_dir, con
       .bind(integer(ended.frames.missing))
       .bind(integer(ended.frames.stale))
       .bind(integer(ended.frames.underrun))
-      .bind(result_dir)
-      .bind(result_json)
+      .bind(end.result_dir)
+      .bind(end.result_json)
       .bind(ended.job_id)
       .run();
   transaction.commit();
+}
+
+void JobStore::Impl::store_kept_ends_locked() {
+  for (const auto& [job_id, end] : kept()) {
+    try {
+      store_end_locked(end);
+    } catch (const Error& error) {
+      throw Error(error.code(), "the end of job " + job_id + " is not stored yet: " + error.what());
+    }
+    spdlog::info("job {}: its end is stored now", job_id);
+    const MutexLock lock(kept_mutex);
+    kept_ends.erase(job_id);
+  }
+}
+
+void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json) {
+  StoredJob end{ended, result_dir, result_json};
+  const MutexLock lock(impl_->mutex);
+  bool was_running = true;  // also where the database cannot be asked
+  try {
+    was_running = job_in(impl_->database, impl_->kept(), ended.job_id).status.state == JobState::kProcessing;
+    impl_->store_end_locked(end);
+    const MutexLock kept_lock(impl_->kept_mutex);
+    impl_->kept_ends.erase(ended.job_id);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kUnknownJob) throw;
+    end.status.not_durable = error.what();
+    {
+      const MutexLock kept_lock(impl_->kept_mutex);
+      impl_->kept_ends[ended.job_id] = std::move(end);
+    }
+    if (was_running) ++impl_->waiting;
+    throw;
+  }
   if (was_running) ++impl_->waiting;
 }
 
-StoredJob JobStore::find(const JobKey& key) const {
+void JobStore::store_kept_ends() {
   const MutexLock lock(impl_->mutex);
-  return impl_->find_locked(key);
+  impl_->store_kept_ends_locked();
+}
+
+StoredJob JobStore::find(const JobKey& key) const {
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  return job_in(impl_->reader, kept, key);
 }
 
 std::optional<JobStatus> JobStore::latest() const {
-  const MutexLock lock(impl_->mutex);
-  Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
-  return first_status(query);
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader, "SELECT " FVD_JOB_COLUMNS " FROM jobs ORDER BY number DESC LIMIT 1");
+  return first_status(query, kept);
 }
 
 std::optional<JobStatus> JobStore::highest(const std::string& client) const {
-  const MutexLock lock(impl_->mutex);
-  Statement query(impl_->database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? ORDER BY seq DESC LIMIT 1");
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? ORDER BY seq DESC LIMIT 1");
   query.bind(client);
-  return first_status(query);
+  return first_status(query, kept);
 }
 
 std::optional<JobStatus> JobStore::next_unacknowledged() const {
-  const MutexLock lock(impl_->mutex);
-  Statement query(impl_->database,
+  const KeptEnds kept = impl_->kept();
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader,
                   "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE acknowledged = 0 AND state <> ? ORDER BY number LIMIT 1");
   query.bind(job_state_name(JobState::kProcessing));
-  return first_status(query);
+  if (auto oldest = first_status(query, kept)) return oldest;
+  // No job is accepted while an end is kept, so that it is the newest.
+  if (!kept.empty()) return kept.begin()->second.status;
+  return std::nullopt;
 }
 
 int JobStore::unacknowledged_count() const noexcept { return impl_->waiting; }
 
 int JobStore::acknowledge(const JobKey& key) {
   const MutexLock lock(impl_->mutex);
-  const JobStatus job = impl_->find_locked(key).status;
+  impl_->store_kept_ends_locked();
+  const JobStatus job = job_in(impl_->database, {}, key).status;
   if (job.state == JobState::kProcessing) {
     throw Error(ErrorCode::kBusy, "job " + job.job_id + " is still running; acknowledge it when it has ended");
   }

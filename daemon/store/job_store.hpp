@@ -21,7 +21,7 @@ struct StoredJob {
 };
 
 /// A call that returned is on disk (SQLite, write-ahead log, synchronous=FULL; about 0.3 ms a commit).
-/// context: thread-safe.
+/// context: thread-safe. What only reads never waits for a commit.
 class JobStore {
  public:
   /// A sequence number that is unknown and further back than this from its client's highest is refused as stale.
@@ -41,12 +41,16 @@ class JobStore {
   [[nodiscard]] std::optional<JobStatus> find_repeated(const JobRequest& request) const;
 
   /// Makes the job's row durable and gives the job its id: unique over all starts, sortable by time, 29 characters.
-  /// request names its recipe. Throws Error kSeqConflict if the number is taken, kSeqStale, kDatabase, kStorageFull.
+  /// request names its recipe. An end that is kept in memory is stored first: no job is taken before. Throws Error
+  /// kSeqConflict if the number is taken, kSeqStale, kDatabase, kStorageFull.
   JobStatus accept(const JobRequest& request);
 
-  /// Makes the end of the job `ended.job_id` durable. ended.state is not kProcessing.
-  /// Throws Error kUnknownJob, kDatabase, kStorageFull.
+  /// Makes the end of the job `ended.job_id` durable. ended.state is not kProcessing. Throws Error kUnknownJob;
+  /// kDatabase and kStorageFull if the end is not on disk: it is kept in memory then and told with
+  /// JobStatus::not_durable by every function here, until it could be stored.
   void finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json);
+  /// Stores the ends that are kept in memory. Throws Error kDatabase, kStorageFull: they are still kept.
+  void store_kept_ends();
 
   /// Throws Error kUnknownJob. Of a running job only what was known when it was accepted.
   [[nodiscard]] StoredJob find(const JobKey& key) const;
@@ -59,7 +63,8 @@ class JobStore {
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const;
   /// How many there are. Kept in memory: reads no database and waits for nobody.
   [[nodiscard]] int unacknowledged_count() const noexcept;
-  /// Returns how many remain; repeating it changes nothing. Throws Error kUnknownJob, kBusy if the job has not ended.
+  /// Returns how many remain; repeating it changes nothing. An end that is kept in memory is stored first. Throws Error
+  /// kUnknownJob, kBusy if the job has not ended, kDatabase, kStorageFull.
   int acknowledge(const JobKey& key);
 
   /// In the same file; as long as the store. context: thread-safe.

@@ -22,11 +22,18 @@ std::optional<RecipeVersion> first_row_with_text(Statement& rows) {
   return version;
 }
 
+std::optional<RecipeVersion> latest_in(const Database& database, const std::string& id) {
+  Statement rows(database, "SELECT " FVD_RECIPE_COLUMNS
+                           ", document FROM recipe_versions WHERE recipe = ? ORDER BY version DESC LIMIT 1");
+  rows.bind(id);
+  return first_row_with_text(rows);
+}
+
 }  // namespace
 
 std::vector<RecipeVersion> RecipeTable::list(const std::string& id) const {
-  const MutexLock lock(mutex_);
-  Statement rows(database_,
+  const MutexLock lock(reader_.mutex);
+  Statement rows(reader_.database,
                  "SELECT " FVD_RECIPE_COLUMNS " FROM recipe_versions WHERE recipe = ? ORDER BY version DESC");
   rows.bind(id);
   std::vector<RecipeVersion> versions;
@@ -35,31 +42,24 @@ std::vector<RecipeVersion> RecipeTable::list(const std::string& id) const {
 }
 
 std::optional<RecipeVersion> RecipeTable::find(const std::string& id, std::int64_t version) const {
-  const MutexLock lock(mutex_);
-  Statement rows(database_,
+  const MutexLock lock(reader_.mutex);
+  Statement rows(reader_.database,
                  "SELECT " FVD_RECIPE_COLUMNS ", document FROM recipe_versions WHERE recipe = ? AND version = ?");
   rows.bind(id).bind(version);
   return first_row_with_text(rows);
 }
 
 std::optional<RecipeVersion> RecipeTable::latest(const std::string& id) const {
-  const MutexLock lock(mutex_);
-  return latest_locked(id);
+  const MutexLock lock(reader_.mutex);
+  return latest_in(reader_.database, id);
 }
 
-std::optional<RecipeVersion> RecipeTable::latest_locked(const std::string& id) const {
-  Statement rows(database_, "SELECT " FVD_RECIPE_COLUMNS
-                            ", document FROM recipe_versions WHERE recipe = ? ORDER BY version DESC LIMIT 1");
-  rows.bind(id);
-  return first_row_with_text(rows);
-}
-
-RecipeVersion RecipeTable::add(const RecipeVersion& version, int kept, const std::function<void()>& before_commit) {
-  const MutexLock lock(mutex_);
-  Transaction transaction(database_);
-  const auto newest = latest_locked(version.id);
+RecipeVersion RecipeTable::add(const RecipeVersion& version, int kept) {
+  const MutexLock lock(writer_.mutex);
+  Transaction transaction(writer_.database);
+  const auto newest = latest_in(writer_.database, version.id);
   const std::int64_t number = newest ? newest->version + 1 : 1;
-  Statement(database_,
+  Statement(writer_.database,
             "INSERT INTO recipe_versions (recipe, version, sha256, author, comment, document) "
             "VALUES (?, ?, ?, ?, ?, ?)")
       .bind(version.id)
@@ -69,14 +69,21 @@ RecipeVersion RecipeTable::add(const RecipeVersion& version, int kept, const std
       .bind(version.comment)
       .bind(version.text)
       .run();
-  Statement(database_, "DELETE FROM recipe_versions WHERE recipe = ? AND version <= ?")
+  Statement(writer_.database, "DELETE FROM recipe_versions WHERE recipe = ? AND version <= ?")
       .bind(version.id)
       .bind(number - kept)
       .run();
-  RecipeVersion added = latest_locked(version.id).value();
-  before_commit();
+  RecipeVersion added = latest_in(writer_.database, version.id).value();
   transaction.commit();
   return added;
+}
+
+void RecipeTable::remove(const std::string& id, std::int64_t version) {
+  const MutexLock lock(writer_.mutex);
+  Statement(writer_.database, "DELETE FROM recipe_versions WHERE recipe = ? AND version = ?")
+      .bind(id)
+      .bind(version)
+      .run();
 }
 
 }  // namespace fvd

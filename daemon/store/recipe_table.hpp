@@ -8,22 +8,25 @@
 
 namespace fvd {
 
-/// context: thread-safe; waits for the database's other users.
+/// context: thread-safe; a reader waits for other readers, never for a commit.
 class RecipeTable final : public RecipeVersions {
  public:
-  /// mutex guards the database; both outlive the table.
-  RecipeTable(Database& database, Mutex& mutex) : database_(database), mutex_(mutex) {}
+  struct Connection {
+    Database& database;
+    Mutex& mutex;  ///< guards it
+  };
+  /// What they refer to outlives the table.
+  RecipeTable(Connection writer, Connection reader) : writer_(writer), reader_(reader) {}
 
   [[nodiscard]] std::vector<RecipeVersion> list(const std::string& id) const override;
   [[nodiscard]] std::optional<RecipeVersion> find(const std::string& id, std::int64_t version) const override;
   [[nodiscard]] std::optional<RecipeVersion> latest(const std::string& id) const override;
-  RecipeVersion add(const RecipeVersion& version, int kept, const std::function<void()>& before_commit) override;
+  RecipeVersion add(const RecipeVersion& version, int kept) override;
+  void remove(const std::string& id, std::int64_t version) override;
 
  private:
-  [[nodiscard]] std::optional<RecipeVersion> latest_locked(const std::string& id) const FVD_REQUIRES(mutex_);
-
-  Database& database_;
-  Mutex& mutex_;
+  const Connection writer_;
+  const Connection reader_;
 };
 
 }  // namespace fvd

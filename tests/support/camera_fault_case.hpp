@@ -172,7 +172,7 @@ inline CameraSettings camera_fault_settings() {
   return settings;
 }
 
-/// As the engine does it: tries every 0.2 s, gives dead cameras away, until it is open or 10 s are over.
+/// As the machine's thread does it: tries every 0.2 s, gives dead cameras away, until it is open or 10 s are over.
 inline std::unique_ptr<Camera> open_again(const CameraConfig& config) {
   const HostTime deadline = HostClock::now() + std::chrono::seconds(10);
   SystemClock clock;

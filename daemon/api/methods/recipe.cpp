@@ -74,7 +74,9 @@ struct RestoreParams {
 void describe_list(Fields& fields) {
   const ResultFields result(fields);
   result.any("recipes", "list of ids");
-  result.any("entries", "list of objects: id, edited (it shadows the shipped recipe), version (0 = shipped)");
+  result.any("entries",
+             "list of objects: id, edited (it shadows the shipped recipe), version (0 = shipped); of one that no "
+             "job can use error and error_message, too");
 }
 
 void describe_recipe(Fields& fields) {
@@ -111,7 +113,12 @@ Reply list(const RecipeService& recipes) {
   Reply reply{{"recipes", Reply::array()}, {"entries", Reply::array()}};
   for (const RecipeEntry& entry : recipes.list()) {
     reply["recipes"].push_back(entry.id);
-    reply["entries"].push_back({{"id", entry.id}, {"edited", entry.edited}, {"version", entry.version}});
+    Reply shown{{"id", entry.id}, {"edited", entry.edited}, {"version", entry.version}};
+    if (entry.error) {
+      shown["error"] = error_name(*entry.error);
+      shown["error_message"] = entry.error_message;
+    }
+    reply["entries"].push_back(std::move(shown));
   }
   return reply;
 }
@@ -190,7 +197,8 @@ void add_recipe_methods(MethodTable& methods, const Services& services) {
         jobs.prepare(params.id);
         return Reply{{"recipe", params.id}};
       })};
-  const std::vector<ErrorCode> saving{kBadInput, kBadRecipe, kUnknownRecipe, kStorageFull, kStorageWrite, kDatabase};
+  const std::vector<ErrorCode> saving{kBadInput,    kRecipeConflict, kBadRecipe, kUnknownRecipe,
+                                      kStorageFull, kStorageWrite,   kDatabase};
   methods["recipe.save"] = {
       .about = {.summary = "Keeps a document as a new version of a recipe and puts it in force; refused where another "
                            "version than base_version is in force",

@@ -185,6 +185,53 @@ TEST_F(AContinuousScan, LosesNothingToASpeedOrRateThatIsAFewPercentOff) {
   }
 }
 
+TEST_F(AContinuousScan, CoversTheWholeWayWithACameraThatIsAFewPercentTooFast) {
+  for (const int slices : {51, 101, 401}) {
+    for (const double rate : {1.01, 1.02, 1.04}) {
+      plan_.start = Micrometers{-300.0};
+      plan_.step = Micrometers{1.0};
+      plan_.speed_um_per_s = 200.0;
+      plan_.slices = slices;
+      camera_.rate_factor = rate;
+      report_ = {};
+      sink_.z_um.clear();
+      run();
+      EXPECT_GE(sink_.z_um.back(), plan_.last().value - 1.0) << slices << " slices at " << rate;
+      EXPECT_EQ(report_.frames.missing, 0U) << slices << " slices at " << rate;
+      EXPECT_NEAR(static_cast<double>(sink_.z_um.size()), rate * slices, 2.0) << slices << " slices at " << rate;
+      EXPECT_TRUE(report_.frames.balanced());
+    }
+  }
+}
+
+TEST_F(AContinuousScan, BooksWhatIsLostOfACameraThatIsTooFast) {
+  plan_.slices = 401;
+  plan_.start = Micrometers{-300.0};
+  plan_.step = Micrometers{1.0};
+  plan_.speed_um_per_s = 200.0;
+  plan_.allowed_lost_slices = 20;
+  camera_.rate_factor = 1.04;
+  camera_.plan(90.0, 97.0, Fate::kNotExposed);  // 390 to 397 of 400 um: as many as were planned are there before
+  run();
+  EXPECT_NEAR(static_cast<double>(report_.frames.missing), 7.0, 1.5);
+  EXPECT_GE(sink_.z_um.back(), 99.0);
+}
+
+TEST_F(AContinuousScan, BooksTheEndThatACameraThatIsTooFastDidNotExpose) {
+  plan_.slices = 401;
+  plan_.start = Micrometers{-300.0};
+  plan_.step = Micrometers{1.0};
+  plan_.speed_um_per_s = 200.0;
+  camera_.rate_factor = 1.04;
+  camera_.plan(92.0, 500.0, Fate::kNotExposed);
+  test::expect_error(ErrorCode::kCameraFramesLost, {"of 401 slices were lost"}, [this] { run(); });
+}
+
+TEST_F(AContinuousScan, FailsIfTheCameraIsMuchFasterThanAsked) {
+  camera_.rate_factor = 2.0;
+  test::expect_error(ErrorCode::kCameraSettings, {"faster than asked", "cover all 100 um"}, [this] { run(); });
+}
+
 TEST_F(AContinuousScan, FailsWithoutAnyFrame) {
   camera_.plan(-1000.0, 1000.0, Fate::kNothing);
   test::expect_error(ErrorCode::kCameraFramesLost, {"51 of 51"}, [&] { run(); });

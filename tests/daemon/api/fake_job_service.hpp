@@ -25,7 +25,7 @@ class FakeRecipes final : public RecipeService {
     return {"", {"has format 1"}, "abc"};
   }
   std::int64_t save(const RecipeSave& request) override {
-    if (request.base_version != 3) throw Error(ErrorCode::kBadInput, "saved by 'anna'");
+    if (request.base_version != 3) throw Error(ErrorCode::kRecipeConflict, "saved by 'anna'");
     saved = request;
     return 4;
   }
@@ -128,7 +128,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     listener_ = std::move(listener);
   }
 
-  /// Changes a job and tells the listener, as the engine's thread would.
+  /// Changes a job and tells the listener, as the machine's thread would.
   void change(const ClientSeq& number, const std::function<void(JobStatus&)>& how) {
     std::function<void()> listener;
     {

@@ -50,7 +50,7 @@ TEST_F(ADispatcher, SavesARecipeAgainstItsBase) {
     changed[key] = value;
     return error_of(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", "recipe.save"}, {"params", changed}}.dump());
   };
-  EXPECT_EQ(error_with("base_version", 2), 1016);
+  EXPECT_EQ(error_with("base_version", 2), 1017);
   EXPECT_EQ(error_with("base_version", -1), json_rpc::kInvalidParams);
   EXPECT_EQ(error_with("text", 5), json_rpc::kInvalidParams);
   EXPECT_EQ(error_with("comment", json::array()), json_rpc::kInvalidParams);

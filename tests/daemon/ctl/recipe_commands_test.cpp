@@ -54,6 +54,12 @@ TEST_F(FvdctlRecipe, ListsWhatIsInForce) {
   EXPECT_EQ(run({"list"}).out, "a  shipped\nb  version 3\n");
 }
 
+TEST_F(FvdctlRecipe, ListsARecipeThatCannotBeUsedWithItsError) {
+  answer("recipe.list",
+         {{"entries", {{{"id", "a"}, {"edited", false}, {"version", 0}, {"error_message", "recipe a: /format: no"}}}}});
+  EXPECT_EQ(run({"list"}).out, "a  shipped  recipe a: /format: no\n");
+}
+
 TEST_F(FvdctlRecipe, PrintsARecipeAsItStands) {
   answer("recipe.get", {{"text", "// why\n{}"}, {"version", 3}});
   const Outcome outcome = run({"get", "a"});

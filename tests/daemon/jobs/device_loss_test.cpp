@@ -3,15 +3,19 @@
 
 #include <cerrno>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "daemon/jobs/device_commands.hpp"
-#include "gtest/gtest.h"
 #include "tests/daemon/jobs/engine_bench.hpp"
 #include "tests/daemon/store/broken_disk.hpp"
+#include "tests/support/expect_error.hpp"
 
 namespace fvd {
 namespace {
 
 using test::AnEngine;
+using ::testing::HasSubstr;
 using T = sim::TriggerOutcome;
 
 class ACameraLossAtSlice : public AnEngine, public testing::WithParamInterface<int> {};
@@ -137,21 +141,60 @@ TEST_F(AnEngine, FailsAJobWhoseResultFindsTheDiskFullAndTakesTheNext) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "results" / second / "result.json"));
 }
 
-TEST_F(AnEngine, TellsAJobFailedWhoseEndFindsTheDatabasesDiskFull) {
-  std::unique_ptr<test::BrokenDisk> broken;
-  open([&broken](AtomicDirectory& directory, const ResultData& acquired) {
-    JobResult result = store_result(directory, acquired);
-    broken = std::make_unique<test::BrokenDisk>(ENOSPC);
-    return result;
-  });
-  ASSERT_TRUE(await_state(ScanState::kInitialized));
-  jobs().start({1, "a", "part"});
-  ASSERT_TRUE(await_end_of(1));
-  engine_->finish();
-  broken.reset();
+/// An engine whose database finds its disk full from the end of the first job on.
+class AnEngineThatCannotStoreAnEnd : public test::AnEngine {
+ protected:
+  void end_a_job() {
+    open([this](AtomicDirectory& directory, const ResultData& acquired) {
+      JobResult result = store_result(directory, acquired);
+      if (!broken_) broken_.emplace(ENOSPC);
+      return result;
+    });
+    ASSERT_TRUE(await_state(ScanState::kInitialized));
+    job_id_ = jobs().start({1, "a", "part"}).job.job_id;
+    ASSERT_TRUE(await_end_of(1));
+  }
+  void TearDown() override {
+    AnEngine::TearDown();
+    broken_.reset();
+  }
+
+  std::optional<test::BrokenDisk> broken_;
+  std::string job_id_;
+};
+
+TEST_F(AnEngineThatCannotStoreAnEnd, TellsTheTruthWithAWarningAndTakesNoJobMeanwhile) {
+  end_a_job();
   const auto now = machine().snapshot();
-  EXPECT_EQ(now->job->state, JobState::kFailed) << "what is not durable is not told as completed";
-  EXPECT_EQ(now->job->error, ErrorCode::kStorageFull);
+  EXPECT_EQ(now->job->state, JobState::kCompleted);
+  EXPECT_THAT(now->job->not_durable, HasSubstr("free some disk space"));
+  EXPECT_EQ(now->results_waiting, 1);
+  EXPECT_NE(services_->results.result_json(job_id_), "");
+  EXPECT_EQ(services_->results.next_unacknowledged()->job_id, job_id_);
+  FVD_EXPECT_ERROR_SAYING(kStorageFull, (void)services_->results.acknowledge(job_id_), HasSubstr(job_id_));
+  FVD_EXPECT_ERROR_SAYING(kStorageFull, jobs().start({2, "b", "part"}), HasSubstr(job_id_));
+  EXPECT_TRUE(jobs().start({1, "a", "part"}).duplicate) << "never a second motion";
+}
+
+TEST_F(AnEngineThatCannotStoreAnEnd, StoresItAsSoonAsTheDatabaseWorksAgain) {
+  end_a_job();
+  broken_->mend();
+  ASSERT_TRUE(await([](const MachineStatus& status) { return status.job->not_durable.empty(); }));
+  machine().on_change({});
+  engine_.reset();
+  store_.reset();
+  store_ = std::make_unique<JobStore>(folder_.path() / "fvd.sqlite");  // as the next start finds it
+  EXPECT_EQ(store_->find(job_id_).status.state, JobState::kCompleted);
+  EXPECT_NE(store_->find(job_id_).result_json, "");
+}
+
+TEST_F(AnEngineThatCannotStoreAnEnd, StoresItBeforeItTakesTheNextJob) {
+  end_a_job();
+  broken_->mend();
+  (void)jobs().start({2, "b", "part"});
+  EXPECT_EQ(store_->find(job_id_).status.not_durable, "");
+  ASSERT_TRUE(await_end_of(2));
+  EXPECT_EQ(machine().snapshot()->job->not_durable, "");
 }
 
 TEST_F(AnEngine, RefusesAJobWhoseRowFindsTheDiskFullAndTakesTheNext) {

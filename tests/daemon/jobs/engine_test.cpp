@@ -1,6 +1,13 @@
 #include "daemon/jobs/engine.hpp"
 
-#include "gtest/gtest.h"
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
 #include "tests/daemon/jobs/engine_bench.hpp"
 
 namespace fvd {
@@ -9,6 +16,9 @@ namespace {
 using std::chrono::seconds;
 using test::AnEngine;
 using test::Hold;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST_F(AnEngine, NeverClosesACameraThatIsBeingInterrupted) {
   open();
@@ -126,6 +136,44 @@ TEST_F(AnEngine, AbortsAJobThatWaitsBehindACommand) {
   ASSERT_TRUE(await_end_of(1));
   EXPECT_EQ(machine().snapshot()->job->state, JobState::kAborted);
   EXPECT_EQ(machine().snapshot()->job->error, ErrorCode::kAborted);
+}
+
+/// What is logged while it lives.
+class CapturedLog {
+ public:
+  CapturedLog() : before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
+  }
+  ~CapturedLog() { spdlog::set_default_logger(before_); }
+  CapturedLog(const CapturedLog&) = delete;
+  CapturedLog& operator=(const CapturedLog&) = delete;
+  /// Once nobody else logs.
+  [[nodiscard]] std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+TEST_F(AnEngine, SaysAtEveryStartWhichJobARestartInterruptedUntilThatIsAcknowledged) {
+  const std::string job_id = store_->accept({7, "P-1", "part"}).job_id;
+  store_.reset();  // the process ends while the job runs
+  store_ = std::make_unique<JobStore>(folder_.path() / "fvd.sqlite");
+  const auto logged_by_a_start = [this] {
+    const CapturedLog log;
+    open();
+    machine().on_change({});
+    engine_.reset();
+    return log.text();
+  };
+
+  for (int start = 0; start < 2; ++start) {
+    EXPECT_THAT(logged_by_a_start(), AllOf(HasSubstr("[warning] job " + job_id + " of client plc, seq 7, part 'P-1'"),
+                                           HasSubstr("measure the part again with a new sequence number")));
+  }
+  (void)store_->acknowledge(job_id);
+  EXPECT_THAT(logged_by_a_start(), Not(HasSubstr(job_id)));
 }
 
 TEST_F(AnEngine, EndsAJobThatWasPendingAtShutdown) {

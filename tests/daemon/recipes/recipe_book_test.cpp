@@ -102,9 +102,9 @@ TEST_F(ARecipeBook, TellsItsVersionsNewestFirst) {
 TEST_F(ARecipeBook, RefusesAChangeOfAnOldVersionAndSaysWhoWasFirst) {
   (void)book_.save(change(21, 0, "anna"));
 
-  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)book_.save(change(22, 0, "bert")),
+  FVD_EXPECT_ERROR_SAYING(kRecipeConflict, (void)book_.save(change(22, 0, "bert")),
                           AllOf(HasSubstr("version 1"), HasSubstr("'anna'"), HasSubstr("get the recipe anew")));
-  FVD_EXPECT_ERROR(kBadInput, (void)book_.save(change(22, 2, "bert")));
+  FVD_EXPECT_ERROR(kRecipeConflict, (void)book_.save(change(22, 2, "bert")));
   EXPECT_EQ(book_.load("a").slices, 21);
   EXPECT_EQ(book_.save(change(22, 1, "bert")), 2);
 }
@@ -119,7 +119,7 @@ TEST_F(ARecipeBook, LetsOneOfManyConcurrentChangesThrough) {
         (void)book_.save(change(30 + i, 0, "author " + std::to_string(i)));
         ++saved;
       } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::kBadInput) << error.what();
+        EXPECT_EQ(error.code(), ErrorCode::kRecipeConflict) << error.what();
         ++refused;
       }
     });
@@ -151,7 +151,7 @@ TEST_F(ARecipeBook, RestoresOnlyWhatItHas) {
   (void)book_.save({"new", recipe_of(5), 0, "anna", ""});
   FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.restore("new", 2, 1, "anna"), HasSubstr("has no version 2"));
   FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.restore("new", 0, 1, "anna"), HasSubstr("was shipped"));
-  FVD_EXPECT_ERROR(kBadInput, (void)book_.restore("new", 1, 0, "anna"));
+  FVD_EXPECT_ERROR(kRecipeConflict, (void)book_.restore("new", 1, 0, "anna"));
   FVD_EXPECT_ERROR(kUnknownRecipe, (void)book_.restore("../a", 0, 0, "anna"));
 }
 
@@ -200,12 +200,45 @@ TEST_F(ARecipeBook, WritesOverWhatADeadProcessLeft) {
   EXPECT_THAT(edited_files(), ElementsAre("a.json"));
 }
 
+TEST_F(ARecipeBook, PutsATextInForceWhoseRowWasThereWhenTheProcessDied) {
+  (void)book_.save(change(21, 0));
+  put(edited_ / "a.json.new", recipe_of(22));
+  (void)store_.recipe_versions().add({.id = "a", .author = "bert", .text = recipe_of(22)}, 10);
+
+  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions());  // the next start's
+
+  EXPECT_EQ(next.load("a").slices, 22);
+  EXPECT_EQ(next.get("a").version, 2);
+  EXPECT_EQ(next.get("a").author, "bert");
+  EXPECT_THAT(edited_files(), ElementsAre("a.json"));
+}
+
+TEST_F(ARecipeBook, DropsATextWithoutARow) {
+  (void)book_.save(change(21, 0));
+  put(edited_ / "a.json.new", recipe_of(22));
+
+  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions());
+
+  EXPECT_EQ(next.load("a").slices, 21);
+  EXPECT_THAT(next.versions("a"), SizeIs(1)) << "nobody changed it by hand";
+  EXPECT_THAT(edited_files(), ElementsAre("a.json"));
+}
+
+TEST_F(ARecipeBook, TakesAVersionBackThatCannotBePutInForce) {
+  std::filesystem::create_directories(edited_ / "a.json" / "in the way");
+
+  FVD_EXPECT_ERROR(kStorageWrite, (void)book_.save(change(21, 0)));
+
+  EXPECT_THAT(store_.recipe_versions().list("a"), IsEmpty());
+  EXPECT_THAT(edited_files(), ElementsAre("a.json")) << "no temporary file is left";
+}
+
 TEST_F(ARecipeBook, MakesAVersionOfAFileThatWasChangedByHand) {
   (void)book_.save(change(21, 0));
   put(edited_ / "a.json", recipe_of(33));
 
   EXPECT_EQ(book_.load("a").slices, 33);
-  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)book_.save(change(22, 1)), HasSubstr("version 2"));
+  FVD_EXPECT_ERROR_SAYING(kRecipeConflict, (void)book_.save(change(22, 1)), HasSubstr("version 2"));
   const auto versions = book_.versions("a");
   ASSERT_THAT(versions, SizeIs(2)) << "it is found once";
   EXPECT_THAT(versions[0].comment, HasSubstr("by hand"));
@@ -257,6 +290,25 @@ TEST_F(ARecipeBook, NamesTheRecipeThatIsBad) {
   EXPECT_EQ(book_.get("bad").text, "{") << "it can be looked at and mended";
 }
 
+TEST_F(ARecipeBook, ListsABadRecipeWithItsErrorAmongTheOthers) {
+  (void)book_.save(change(21, 0));
+  put(shipped_ / "bad.json", "{");
+  put(edited_ / "huge.json", std::string(2U << 20U, ' '));
+
+  const auto entries = book_.list();
+
+  ASSERT_THAT(entries, SizeIs(4));
+  EXPECT_EQ(entries[0].id, "a");
+  EXPECT_EQ(entries[0].version, 1);
+  EXPECT_FALSE(entries[0].error);
+  EXPECT_FALSE(entries[1].error);
+  EXPECT_EQ(entries[2].error, ErrorCode::kBadRecipe);
+  EXPECT_THAT(entries[2].error_message, HasSubstr("recipe bad"));
+  EXPECT_EQ(entries[3].id, "huge");
+  EXPECT_TRUE(entries[3].error.has_value());
+  EXPECT_THAT(entries[3].error_message, HasSubstr("huge"));
+}
+
 TEST(ARecipeFolder, ListsItsRecipesSorted) {
   const test::ScratchDir folder;
   for (const char* name : {"b.json", "a.json", "notes.txt", "not an id.json", ".json", "c.json.new"}) {
@@ -272,16 +324,14 @@ TEST(ARecipeStore, KeepsVersionsOverARestart) {
   const auto file = folder.path() / "fvd.sqlite";
   {
     JobStore store(file);
-    (void)store.recipe_versions().add({.id = "a", .author = "anna", .text = "one\0two"s}, 10, [] {});
-    EXPECT_THROW((void)store.recipe_versions().add({.id = "a", .author = "bert", .text = "x"}, 10,
-                                                   [] { throw Error(ErrorCode::kStorageFull, "full"); }),
-                 Error);
+    (void)store.recipe_versions().add({.id = "a", .author = "anna", .text = "one\0two"s}, 10);
+    store.recipe_versions().remove("a", store.recipe_versions().add({.id = "a", .text = "x"}, 10).version);
   }
   JobStore store(file);
   EXPECT_THAT(store.recipe_versions().list("a"), SizeIs(1));
   EXPECT_EQ(store.recipe_versions().latest("a").value().text, "one\0two"s);
   EXPECT_FALSE(store.recipe_versions().find("a", 2).has_value());
-  EXPECT_EQ(store.recipe_versions().add({.id = "a", .author = "c", .text = "y"}, 10, [] {}).version, 2);
+  EXPECT_EQ(store.recipe_versions().add({.id = "a", .author = "c", .text = "y"}, 10).version, 2);
 }
 
 }  // namespace

@@ -76,6 +76,15 @@ TEST(Evaluate, SaysThatTheRangeIsShort) {
   EXPECT_THAT(found->message, HasSubstr("the range of 0..20 um"));
 }
 
+TEST(Evaluate, WarnsOfMoreSlicesThanPlanned) {
+  ResultData data = test::sample_result();
+  data.steps[1].measured = true;
+  data.slices_planned = 2;
+  const Result result = evaluated(data);
+  EXPECT_THAT(codes(result), testing::Contains("slices_added"));
+  EXPECT_THAT(result.warnings[0].text, HasSubstr("1 slices more than the 2"));
+}
+
 TEST(Evaluate, WarnsOfMissingSlicesAndOfARangeThatEndsTooEarly) {
   ResultData data = test::sample_result();
   EXPECT_THAT(codes(evaluated(data)), testing::ElementsAre("slices_missing", "range_first"));

@@ -2,6 +2,7 @@
 
 /// A disk on which SQLite cannot write, or not any more.
 
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <initializer_list>
@@ -12,12 +13,14 @@
 
 namespace fvd::test {
 
-/// While it lives, SQLite's writes fail with one errno, after the first `good_writes` of them. One at a time.
+/// While it lives, SQLite's writes fail with one errno, after the first `good_writes` of them, until it is mended. One
+/// at a time. context: made and destroyed while nobody uses SQLite, mend() at any time.
 class BrokenDisk {
  public:
   explicit BrokenDisk(int error, int good_writes = 0) {
     error_ = error;
     good_writes_ = good_writes;
+    mended_ = false;
     for (const char* call : {"pwrite", "pwrite64"}) set(call, reinterpret_cast<sqlite3_syscall_ptr>(&try_pwrite));
     set("write", reinterpret_cast<sqlite3_syscall_ptr>(&try_write));
   }
@@ -26,6 +29,8 @@ class BrokenDisk {
   }
   BrokenDisk(const BrokenDisk&) = delete;
   BrokenDisk& operator=(const BrokenDisk&) = delete;
+
+  void mend() { mended_ = true; }
 
   /// True once a write failed.
   [[nodiscard]] bool has_failed() const { return good_writes_ < 0; }
@@ -36,6 +41,7 @@ class BrokenDisk {
     vfs->xSetSystemCall(vfs, call, function);
   }
   static bool fails() {
+    if (mended_) return false;
     if (good_writes_ > 0) {
       --good_writes_;
       return false;
@@ -51,7 +57,8 @@ class BrokenDisk {
     return fails() ? -1 : ::write(file, bytes, count);
   }
   static inline int error_ = 0;
-  static inline int good_writes_ = 0;
+  static inline std::atomic<int> good_writes_ = 0;
+  static inline std::atomic<bool> mended_ = false;
 };
 
 }  // namespace fvd::test

@@ -120,16 +120,44 @@ TEST(JobStoreCrash, SaysThatTheDiskIsFullAndWorksAgainWhenItIsNot) {
   EXPECT_NO_THROW((void)store.accept({1, "part", "chapter"}));
 }
 
-TEST(JobStoreCrash, SaysThatTheDiskIsBroken) {
+TEST(JobStoreCrash, KeepsAnEndThatTheDiskDoesNotTakeAndStoresItLater) {
   const test::ScratchDir folder;
-  JobStore store(folder.path() / "jobs.db");
-  JobStatus job = store.accept({1, "part", "chapter"});
-  job.state = JobState::kCompleted;
+  const auto file = folder.path() / "jobs.db";
   {
+    JobStore store(file);
+    JobStatus job = store.accept({1, "part", "chapter"});
+    job.state = JobState::kCompleted;
+    {
+      const test::BrokenDisk broken(EIO);
+      FVD_EXPECT_ERROR(kDatabase, store.finish(job, "dir", "{}"));
+      EXPECT_EQ(store.find(ClientSeq{1}).status.state, JobState::kCompleted) << "what happened is told";
+      EXPECT_THAT(store.find(ClientSeq{1}).status.not_durable, HasSubstr("database"));
+      EXPECT_EQ(store.find(ClientSeq{1}).result_json, "{}");
+      EXPECT_EQ(store.latest()->state, JobState::kCompleted);
+      EXPECT_EQ(store.highest(kDefaultClient)->state, JobState::kCompleted);
+      EXPECT_EQ(store.next_unacknowledged()->job_id, job.job_id);
+      EXPECT_EQ(store.unacknowledged_count(), 1);
+      FVD_EXPECT_ERROR_SAYING(kDatabase, (void)store.accept({2, "part", "chapter"}), HasSubstr(job.job_id));
+      FVD_EXPECT_ERROR(kDatabase, store.store_kept_ends());
+    }
+    store.store_kept_ends();
+    EXPECT_EQ(store.find(ClientSeq{1}).status.not_durable, "");
+    EXPECT_EQ(store.unacknowledged_count(), 1) << "counted once";
+  }
+  EXPECT_EQ(JobStore(file).find(ClientSeq{1}).status.state, JobState::kCompleted);
+}
+
+TEST(JobStoreCrash, FindsAJobWhoseEndWasNeverStoredAsInterrupted) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "jobs.db";
+  {
+    JobStore store(file);
+    JobStatus job = store.accept({1, "part", "chapter"});
+    job.state = JobState::kCompleted;
     const test::BrokenDisk broken(EIO);
     FVD_EXPECT_ERROR(kDatabase, store.finish(job, "dir", "{}"));
   }
-  EXPECT_EQ(store.find(ClientSeq{1}).status.state, JobState::kProcessing) << "nothing half done";
+  EXPECT_EQ(JobStore(file).find(ClientSeq{1}).status.error, ErrorCode::kInterrupted) << "nothing half done";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "daemon/store/job_store.hpp"
 
 #include <chrono>
+#include <future>
 #include <set>
 #include <string>
 #include <thread>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/store/database.hpp"
+#include "tests/daemon/store/held_disk.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -244,6 +246,28 @@ TEST_F(AJobStore, CountsAHundredThousandResultsWithoutReadingThem) {
 TEST_F(AJobStore, RefusesToAcknowledgeARunningJob) {
   const JobStatus job = store_->accept(request(1));
   FVD_EXPECT_ERROR(kBusy, store_->acknowledge(job.job_id));
+}
+
+TEST_F(AJobStore, KeepsNoReaderWaitingForACommit) {
+  const JobStatus job = store_->accept(request(1));
+  (void)store_->recipe_versions().add({.id = "a", .text = "one"}, 10);
+  test::HeldDisk disk;
+  std::jthread commit([&] { finish(job); });
+  disk.await_a_write();
+
+  const auto read = std::async(std::launch::async, [this] {
+    EXPECT_EQ(store_->find(ClientSeq{1}).status.state, JobState::kProcessing) << "not durable yet";
+    EXPECT_TRUE(store_->find_repeated(request(1)).has_value());
+    EXPECT_TRUE(store_->latest().has_value());
+    EXPECT_FALSE(store_->next_unacknowledged().has_value());
+    EXPECT_EQ(store_->recipe_versions().latest("a").value().text, "one");
+  });
+  EXPECT_EQ(read.wait_for(std::chrono::seconds(5)), std::future_status::ready);
+
+  disk.let_go();
+  commit.join();
+  read.wait();
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.state, JobState::kCompleted);
 }
 
 TEST_F(AJobStore, TakesJobsFromSeveralThreads) {
