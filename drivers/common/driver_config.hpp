@@ -39,7 +39,7 @@ struct StageConfig {
   std::chrono::milliseconds response_timeout{200};
   std::string gcs_axis = "1";                  ///< driver "gcs": the axis as the controller calls it
   std::string gcs_feedback = "motor_encoder";  ///< driver "gcs": or "linear_scale"
-  Micrometers min{-1000.0};  ///< software limits, take-up included
+  Micrometers min{-1000.0};                    ///< software limits, take-up included
   Micrometers max{1000.0};
   Micrometers take_up{20.0};  ///< overshoot below the first slice, >= 3x backlash
   double speed_um_per_s = 1000.0;
