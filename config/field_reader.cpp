@@ -56,6 +56,11 @@ std::string range_text(IntegerRange range) {
          ".." + std::to_string(range.max);
 }
 
+/// "4", "0..5"
+std::string count_text(IntegerRange count) {
+  return std::to_string(count.min) + (count.min == count.max ? "" : ".." + std::to_string(count.max));
+}
+
 std::string range_text(NumberRange range) {
   std::ostringstream text;
   if (range.above_min) {
@@ -116,9 +121,9 @@ void FieldReader::report(std::string_view name, const std::string& message) {
   problems_.push_back({pointer_ + "/" + escaped(name), message});
 }
 
-void FieldReader::refuse(std::string_view name, const json& value, const std::string& accepted) {
+void FieldReader::refuse(std::string_view name, const json& value, const std::string& accepted, const char* verb) {
   refused_.emplace(name);
-  report(name, shown(value) + " is not accepted; expected " + accepted);
+  report(name, shown(value) + " is not accepted; " + verb + " " + accepted);
 }
 
 const json* FieldReader::find(std::string_view name) {
@@ -143,8 +148,12 @@ void FieldReader::integer64(std::string_view name, std::int64_t& value, IntegerR
   const json* found = find(name);
   if (found == nullptr) return;
   const auto number = whole_number(*found, range.hex);
-  if (!number || *number < range.min || *number > range.max) return refuse(name, *found, range_text(range));
-  value = *number;
+  if (number && *number >= range.min && *number <= range.max) {
+    value = *number;
+    return;
+  }
+  if (range.min == range.max) return refuse(name, *found, std::to_string(range.min), "must be");
+  refuse(name, *found, range_text(range));
 }
 
 void FieldReader::number(std::string_view name, double& value, NumberRange range, std::string_view /*meaning*/) {
@@ -212,9 +221,7 @@ bool FieldReader::object_list(std::string_view name, const ObjectList& list, Int
   if (found == nullptr) return false;
   const auto size = static_cast<std::int64_t>(found->size());
   if (!found->is_array() || size < count.min || size > count.max) {
-    refuse(name, *found,
-           "a list of " + std::to_string(count.min) + ".." + std::to_string(count.max) +
-               (list.rows ? " lists [ ]" : " objects { }"));
+    refuse(name, *found, "a list of " + count_text(count) + (list.rows ? " lists [ ]" : " objects { }"));
     return false;
   }
   const std::size_t problems_before = problems_.size();

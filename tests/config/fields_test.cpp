@@ -184,6 +184,15 @@ TEST(RelationOfKeys, HoldsAtItsBorderOnlyWhereItIsClosed) {
   EXPECT_TRUE(accepted(Relation::kAbove, 5.5));
 }
 
+TEST(ARangeOfOneNumber, IsSaidAsThatNumber) {
+  Problems problems;
+  std::int64_t format = 2;
+  const auto describe_format = [&](Fields& fields) { fields.integer("format", format, {2, 2}, "of the document"); };
+  read_document(R"({"format": 3})", describe_format, problems);
+  EXPECT_THAT(problems, ElementsAre(Problem{"/format", "3 is not accepted; must be 2"}));
+  EXPECT_THAT(schema_to_table(fields_to_schema(describe_format, "t")), HasSubstr("| `format` | 2 | `2` |"));
+}
+
 TEST(WrittenFields, ReadBackAsTheSameStructure) {
   Plan plan;
   plan.steps = {{"a", 4}, {"b", 5}};

@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"", "", "line 1"}, BadRecipe{"{}", "/format", "is missing"},
         BadRecipe{"{}", "/acquire", "is missing"},
         BadRecipe{R"({"format": 2, "acquire": {}})", "/acquire/scan", "is missing"},
-        BadRecipe{R"({"format": 3, "acquire": {}})", "/format", "within 2..2"},
+        BadRecipe{R"({"format": 3, "acquire": {}})", "/format", "3 is not accepted; must be 2"},
         BadRecipe{R"({"format": 2, "scan": {"start_um": 0, "step_um": 1, "slices": 3}})", "/scan", "unknown key"},
         BadRecipe{with_scan(R"({"start_um": 0, "step_um": 1})"), "/acquire/scan/slices", "is missing"},
         BadRecipe{with_scan(R"({"start_um": 0, "step_um": 0, "slices": 3})"), "/acquire/scan/step_um", "above 0"},
