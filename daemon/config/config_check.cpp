@@ -1,8 +1,11 @@
 /// What the range of a single key cannot say: values that must fit together, files that must be there.
 
 #include <algorithm>
+#include <initializer_list>
 #include <iterator>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include <arpa/inet.h>
 
@@ -33,74 +36,94 @@ std::string folder_problem(const fs::path& folder) {
   return error ? "cannot list folder '" + folder.string() + "': " + error.message() : "";
 }
 
-void check_rpc(const RpcConfig& rpc, Problems& problems) {
-  if (!is_numeric_address(rpc.address)) {
-    problems.push_back({"/rpc/address", "'" + rpc.address +
-                                            "' is no numeric address; expected e.g. 127.0.0.1 for this machine only "
-                                            "or 0.0.0.0 for every interface"});
-  }
-}
+/// Collects problems. What rests on a value that was refused when it was read is not judged: its default stands there.
+class ConfigCheck {
+ public:
+  ConfigCheck(const Config& config, const Problems& read) : config_(config), read_(read) {}
 
-void check_camera(const CameraConfig& camera, Problems& problems) {
-  if (camera.driver == "aravis" && camera.address.empty()) {
-    problems.push_back({"/camera/address", "is empty; expected the camera's IP address or vendor-model-serial"});
+  Problems run() {
+    check_rpc(config_.rpc);
+    check_camera(config_.camera);
+    check_travel(config_.stage);
+    check_drive(config_.stage);
+    const std::string& camera_driver = config_.camera.driver;
+    const std::string& stage_driver = config_.stage.driver;
+    report_if((camera_driver == "replay") != (stage_driver == "replay"), "/stage/driver", {"/camera/driver"},
+              "'" + stage_driver + "' does not go with camera driver '" + camera_driver +
+                  "': recorded slices need both to be replay");
+    check_paths(config_.paths);
+    return std::move(found_);
   }
-  if (camera.driver != "replay") return;
-  if (const std::string problem = folder_problem(camera.replay_dir); !problem.empty()) {
-    problems.push_back({"/camera/replay_dir", problem});
-  }
-}
 
-void check_stage(const StageConfig& stage, Problems& problems) {
-  if (stage.min >= stage.max) {
-    problems.push_back({"/stage/min_um", text(stage.min.value) + " is not below max_um, " + text(stage.max.value)});
-  } else if (stage.take_up >= stage.max - stage.min) {
-    problems.push_back({"/stage/take_up_um", text(stage.take_up.value) + " leaves no room between min_um and max_um, " +
-                                                 text((stage.max - stage.min).value) + " apart"});
-  }
-  if (stage.driver != "modbus") return;
-  if (stage.transport == "tcp" && stage.address.empty()) {
-    problems.push_back({"/stage/address", "is empty; expected the drive's host or IP address"});
-  }
-  if (stage.transport == "rtu") {
-    if (stage.serial_device.empty()) {
-      problems.push_back({"/stage/serial_device", "is empty; expected a serial port such as /dev/serial/by-id/..."});
-    }
-    if (std::find(std::begin(kModbusBauds), std::end(kModbusBauds), stage.serial_baud) == std::end(kModbusBauds)) {
-      std::string bauds;
-      for (const int baud : kModbusBauds) bauds += " " + std::to_string(baud);
-      problems.push_back(
-          {"/stage/serial_baud", std::to_string(stage.serial_baud) + " is not accepted; expected one of" + bauds});
-    }
-  }
-  std::error_code error;
-  if (!fs::is_regular_file(stage.profile, error)) {
-    problems.push_back({"/stage/profile", "there is no file '" + stage.profile.string() +
-                                              "'; expected a drive profile such as drives/oriental-az.json"});
-  }
-}
+ private:
+  [[nodiscard]] bool judged(std::string_view pointer) const { return !is_reported(read_, pointer); }
 
-void check_paths(const PathsConfig& paths, Problems& problems) {
-  if (paths.state_dir.empty()) problems.push_back({"/paths/state_dir", "is empty; expected a folder"});
-  if (paths.runtime_dir.empty()) problems.push_back({"/paths/runtime_dir", "is empty; expected a folder"});
-  if (const std::string problem = folder_problem(paths.recipe_dir); !problem.empty()) {
-    problems.push_back({"/paths/recipe_dir", problem});
+  /// others: what the rule rests on beside the value at the pointer.
+  void report_if(bool wrong, std::string_view pointer, std::initializer_list<std::string_view> others,
+                 std::string message) {
+    if (!wrong || !judged(pointer)) return;
+    if (!std::all_of(others.begin(), others.end(), [this](std::string_view other) { return judged(other); })) return;
+    found_.push_back({std::string(pointer), std::move(message)});
   }
-}
+
+  void check_rpc(const RpcConfig& rpc) {
+    report_if(!is_numeric_address(rpc.address), "/rpc/address", {},
+              "'" + rpc.address +
+                  "' is no numeric address; expected e.g. 127.0.0.1 for this machine only or 0.0.0.0 for every "
+                  "interface");
+  }
+
+  void check_camera(const CameraConfig& camera) {
+    report_if(camera.driver == "aravis" && camera.address.empty(), "/camera/address", {"/camera/driver"},
+              "is empty; expected the camera's IP address or vendor-model-serial");
+    if (camera.driver != "replay") return;
+    const std::string problem = folder_problem(camera.replay_dir);
+    report_if(!problem.empty(), "/camera/replay_dir", {"/camera/driver"}, problem);
+  }
+
+  void check_travel(const StageConfig& stage) {
+    const bool in_order = stage.min < stage.max;
+    report_if(!in_order, "/stage/min_um", {"/stage/max_um"},
+              text(stage.min.value) + " is not below max_um, " + text(stage.max.value));
+    report_if(in_order && stage.take_up >= stage.max - stage.min, "/stage/take_up_um",
+              {"/stage/min_um", "/stage/max_um"},
+              text(stage.take_up.value) + " leaves no room between min_um and max_um, " +
+                  text((stage.max - stage.min).value) + " apart");
+  }
+
+  void check_drive(const StageConfig& stage) {
+    if (stage.driver != "modbus") return;
+    const auto on = [&](const char* transport, bool wrong, std::string_view pointer, std::string message) {
+      report_if(stage.transport == transport && wrong, pointer, {"/stage/driver", "/stage/transport"},
+                std::move(message));
+    };
+    on("tcp", stage.address.empty(), "/stage/address", "is empty; expected the drive's host or IP address");
+    on("rtu", stage.serial_device.empty(), "/stage/serial_device",
+       "is empty; expected a serial port such as /dev/serial/by-id/...");
+    std::string bauds;
+    for (const int baud : kModbusBauds) bauds += " " + std::to_string(baud);
+    on("rtu", std::find(std::begin(kModbusBauds), std::end(kModbusBauds), stage.serial_baud) == std::end(kModbusBauds),
+       "/stage/serial_baud", std::to_string(stage.serial_baud) + " is not accepted; expected one of" + bauds);
+    std::error_code error;
+    report_if(
+        !fs::is_regular_file(stage.profile, error), "/stage/profile", {"/stage/driver"},
+        "there is no file '" + stage.profile.string() + "'; expected a drive profile such as drives/oriental-az.json");
+  }
+
+  void check_paths(const PathsConfig& paths) {
+    report_if(paths.state_dir.empty(), "/paths/state_dir", {}, "is empty; expected a folder");
+    report_if(paths.runtime_dir.empty(), "/paths/runtime_dir", {}, "is empty; expected a folder");
+    const std::string problem = folder_problem(paths.recipe_dir);
+    report_if(!problem.empty(), "/paths/recipe_dir", {}, problem);
+  }
+
+  const Config& config_;
+  const Problems& read_;
+  Problems found_;
+};
 
 }  // namespace
 
-Problems check_config(const Config& config) {
-  Problems problems;
-  check_rpc(config.rpc, problems);
-  check_camera(config.camera, problems);
-  check_stage(config.stage, problems);
-  if ((config.camera.driver == "replay") != (config.stage.driver == "replay")) {
-    problems.push_back({"/stage/driver", "'" + config.stage.driver + "' does not go with camera driver '" +
-                                             config.camera.driver + "': recorded slices need both to be replay"});
-  }
-  check_paths(config.paths, problems);
-  return problems;
-}
+Problems check_config(const Config& config, const Problems& read) { return ConfigCheck(config, read).run(); }
 
 }  // namespace fvd

@@ -166,6 +166,18 @@ TEST(RelationOfKeys, IsNotJudgedWhereOneOfThemIsWrong) {
   EXPECT_THAT(problems_of(R"({"low": "x", "high": 1})"), ElementsAre(problem("/low", "is not accepted")));
 }
 
+TEST(RelationOfKeys, IsJudgedBesideAProblemOfAnotherKey) {
+  EXPECT_THAT(problems_of(R"({"low": 9, "kind": 5})"),
+              ::testing::UnorderedElementsAre(problem("/kind", "not accepted"), problem("/low", "at most high - 3")));
+}
+
+TEST(AProblem, IsAboutItsValueAndAllWithinIt) {
+  const Problems problems{{"/a/b", "wrong"}, {"/c", "wrong"}};
+  for (const char* reported : {"/a/b", "/a/b/0", "/c", "/c/d/e"}) EXPECT_TRUE(is_reported(problems, reported));
+  for (const char* sound : {"/a", "/a/bc", "/a/d", "/cd", "/d", ""}) EXPECT_FALSE(is_reported(problems, sound));
+  EXPECT_TRUE(is_reported({{"", "is no JSON"}}, "/a"));
+}
+
 TEST(RelationOfKeys, HoldsAtItsBorderOnlyWhereItIsClosed) {
   const auto accepted = [](Relation relation, double value) {
     const json object = json::object();

@@ -17,6 +17,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kSmallest =
@@ -212,6 +213,19 @@ TEST(Recipe, ReportsAllProblemsAtOnce) {
       AllOf(HasSubstr("/scan/start_um"), HasSubstr("/scan/step_um"), HasSubstr("/scan/slices"), HasSubstr("/x")));
 }
 
+TEST(Recipe, IsJudgedAsAWholeBesideProblemsOfSingleKeys) {
+  FVD_EXPECT_ERROR_SAYING(
+      kBadRecipe,
+      (void)parse_recipe(with_scan(R"({"start_um": "x", "step_um": 1, "slices": 5, "mode": "continuous",)"
+                                   R"( "trigger": "line", "allowed_lost_slices": 4})"),
+                         "r"),
+      AllOf(HasSubstr("/acquire/scan/start_um"), HasSubstr("/acquire/scan/trigger: line is for scan.mode step"),
+            HasSubstr("/acquire/scan/allowed_lost_slices")));
+  FVD_EXPECT_ERROR_SAYING(kBadRecipe,
+                          (void)parse_recipe(with_focus(R"({"peak": "gauss", "extra_peaks": ["five_sample"]})"), "r"),
+                          AllOf(HasSubstr("focus/peak: "), Not(HasSubstr("already"))));
+}
+
 TEST(Recipe, IsCheckedAgainstTheStageLimits) {
   const Recipe recipe = parse_recipe(kSmallest, "r");  // -7 to 193, with 20 of take-up from -27
 
@@ -225,6 +239,8 @@ TEST(Recipe, IsCheckedAgainstTheStageLimits) {
   EXPECT_EQ(high[0].pointer, "/acquire/scan/slices");
   EXPECT_THAT(high[0].message, AllOf(HasSubstr("193"), HasSubstr("at most 192")));
   EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um), SizeIs(2));
+  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/acquire/scan/step_um", "is missing"}}), SizeIs(1));
+  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/scan/start_um", "is missing"}}), IsEmpty());
 }
 
 TEST(RecipeId, IsAPlainName) {
