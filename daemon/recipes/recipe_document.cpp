@@ -11,6 +11,7 @@
 #include "config/field_reader.hpp"
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
+#include "daemon/export/exporter_table.hpp"
 
 namespace fvd {
 
@@ -33,6 +34,14 @@ struct Places {
 };
 const Places kFormat1Places{"/scan", "/focus"};
 const Places kFormat2Places{"/acquire/scan", "/reconstruct/focus"};
+
+std::string names_of_single_files() {
+  std::string names;
+  for (const Exporter& exporter : exporter_table()) {
+    if (exporter.need == ExportNeed::kResult) names += (names.empty() ? "" : ", ") + std::string(exporter.name);
+  }
+  return names;
+}
 
 /// What keys say together; a rule is passed over where a value that it rests on was refused.
 void check_together(const Recipe& recipe, const Places& places, Problems& problems) {
@@ -59,6 +68,13 @@ void check_together(const Recipe& recipe, const Places& places, Problems& proble
   if (judged({peak, extra_peaks}) &&
       std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
     refuse(extra_peaks, peak_method_name(recipe.peak), "is the peak already; expected others only");
+  }
+  if (!judged({"/export", extra_peaks}) || !recipe.extra_peaks.empty()) return;
+  for (const Exporter& exporter : chosen_exporters(recipe.exports.value_or(std::vector<std::string>{}))) {
+    if (exporter.need != ExportNeed::kEachExtraMap) continue;
+    refuse("/export", exporter.name,
+           "stands for the maps of extra_peaks, which is empty, so it makes no file; expected extra_peaks at " +
+               extra_peaks + ", or names that make files: " + names_of_single_files());
   }
 }
 

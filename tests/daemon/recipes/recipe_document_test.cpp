@@ -120,6 +120,12 @@ TEST(Recipe, HasTheDigestThatSha256sumTellsOfTheFile) {
   EXPECT_NE(parse_recipe(std::string(kSmallest) + "\n", "a").sha256, recipe_sha256(kSmallest));
 }
 
+TEST(Recipe, NamesTheFilesOfFurtherMapsOnlyWhereThereAreSome) {
+  const Recipe recipe =
+      parse_recipe(with_reconstruct(R"({"focus": {"extra_peaks": ["nearest"]}}, "export": ["height_*.tiff"])"), "r");
+  EXPECT_THAT(recipe.exports.value(), ElementsAre("height_*.tiff"));
+}
+
 TEST(OldRecipe, IsReadWithANote) {
   const Recipe old = parse_recipe(kSmallestOld, "r");
   EXPECT_EQ(values(old), values(parse_recipe(kSmallest, "r")));
@@ -199,6 +205,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "above 0"},
         BadRecipe{with_reconstruct(R"({"smooth_px": 2})"), "/reconstruct/smooth_px", "unknown key"},
         BadRecipe{with("", R"(, "export": ["height.csv"])"), "/export", "\"height.tiff\""},
+        BadRecipe{with("", R"(, "export": ["mask.png", "height_*.tiff"])"), "/export",
+                  "height_*.tiff stands for the maps of extra_peaks, which is empty, so it makes no file; expected "
+                  "extra_peaks at /reconstruct/focus/extra_peaks, or names that make files: height.tiff, sigma.tiff"},
         BadRecipe{with("", R"(, "keep": {"slices": "yes"})"), "/keep/slices", "true or false"},
         BadRecipe{with("", R"(, "evaluation": {})"), "/evaluation", "unknown key"},
         BadRecipe{with("", R"(, "report": {})"), "/report", "unknown key"},
