@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <sstream>
 
+#include "config/nearest_name.hpp"
 #include "config/relation.hpp"
 #include "config/strict_json.hpp"
 
@@ -15,30 +15,6 @@ namespace fvd {
 namespace {
 
 using nlohmann::json;
-
-/// Levenshtein distance, for "did you mean".
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
-std::string hint(const std::string& name, const std::set<std::string, std::less<>>& known) {
-  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(name, a) < edit_distance(name, b);
-  });
-  if (nearest == known.end() || edit_distance(name, *nearest) > 1 + name.size() / 3) return "";
-  return "; did you mean '" + *nearest + "'?";
-}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -113,7 +89,7 @@ void FieldReader::finish() {
   if (!object_.is_object()) return;
   for (const auto& [name, value] : object_.items()) {
     if (known_.contains(name) || (pointer_.empty() && name == "$schema")) continue;
-    report(name, row_ ? "is one too many" : "unknown key" + hint(name, known_));
+    report(name, row_ ? "is one too many" : "unknown key" + did_you_mean(name, {known_.begin(), known_.end()}));
   }
 }
 

@@ -176,6 +176,16 @@ TEST(Fvdctl, ExitsWithUsageForWrongArguments) {
   }
 }
 
+TEST(Fvdctl, NamesAnUnknownCommandAndTheNearest) {
+  const Outcome near = run({"--runtime-dir", "/r", "stat"});
+  EXPECT_EQ(near.code, kExitUsage);
+  EXPECT_THAT(near.err, HasSubstr("'stat' is not a command; expected one of state, start, "));
+  EXPECT_THAT(near.err, HasSubstr("did you mean 'state'?"));
+  const Outcome far = run({"bogus"});
+  EXPECT_EQ(far.code, kExitUsage);
+  EXPECT_THAT(far.err, HasSubstr("'bogus' is not a command"));
+}
+
 TEST(Fvdctl, PrintsHelpAndVersion) {
   EXPECT_EQ(run({"--help"}).code, kExitOk);
   EXPECT_THAT(run({"--help"}).out, HasSubstr("process"));

@@ -114,6 +114,12 @@ TEST_F(FvdctlRecipe, ConvertsWithoutADaemon) {
   EXPECT_EQ(run({"convert", file(outcome.out)}).code, kExitBadData) << "it is converted already";
 }
 
+TEST_F(FvdctlRecipe, NamesACommandThatItDoesNotHave) {
+  const Outcome outcome = run({"delete", "a"});
+  EXPECT_EQ(outcome.code, kExitUsage);
+  EXPECT_THAT(outcome.err, HasSubstr("'delete' is not a command of recipe; expected one of list, get"));
+}
+
 TEST_F(FvdctlRecipe, RefusesWrongArguments) {
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{},
                                                                                          {"get"},
