@@ -114,6 +114,23 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   return options;
 }
 
+/// What made the verdict, e.g. "valid_fraction is 0.31, the recipe asks for at least 0.5".
+std::string limit_text(const MeasuredValue& measured) {
+  std::ostringstream text;
+  const std::string unit = measured.unit == "1" ? "" : " " + measured.unit;
+  text << measured.name;
+  if (measured.value) {
+    text << " is " << *measured.value << unit;
+  } else {
+    text << " could not be measured";
+  }
+  text << ", the recipe asks for";
+  if (measured.limits->lower) text << " at least " << *measured.limits->lower << unit;
+  if (measured.limits->lower && measured.limits->upper) text << " and";
+  if (measured.limits->upper) text << " at most " << *measured.limits->upper << unit;
+  return text.str();
+}
+
 void print_summary(std::ostream& out, const ProcessReport& report, const std::filesystem::path& directory) {
   const Result& result = report.result;
   const auto um = [&result](std::string_view name) { return result.find(name)->value; };
@@ -129,6 +146,10 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
     text << "heights   none: every point is a hole, see hole_points in result.json\n";
   }
   if (result.verdict) text << "verdict   " << verdict_name(*result.verdict) << "\n";
+  for (const MeasuredValue& measured : result.measurements) {
+    if (measured.verdict.value_or(Verdict::kPass) == Verdict::kPass) continue;
+    text << "limit     " << limit_text(measured) << "\n";
+  }
   for (const Warning& warning : result.warnings) text << "warning   " << warning.text << "\n";
   text << "memory    " << std::setprecision(1) << result.focus.state_bytes_per_pixel
        << " bytes per pixel, whatever the number of slices\n";
@@ -185,7 +206,7 @@ int run_process(const ProcessArguments& arguments, const Terminal& terminal) {
   });
   progress.end();
   print_summary(terminal.out, report, options.out);
-  return report.result.verdict == Verdict::kFail ? kExitVerdictFail : kExitOk;
+  return report.result.verdict.value_or(Verdict::kPass) == Verdict::kPass ? kExitOk : kExitVerdictFail;
 }
 
 }  // namespace fvd::ctl

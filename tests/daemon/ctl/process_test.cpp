@@ -191,7 +191,8 @@ TEST_F(AProcessWithARecipe, TellsTheRecipeAndJudgesByIt) {
 TEST_F(AProcessWithARecipe, EndsAsFailedWhereTooFewPointsAreValid) {
   const Outcome outcome = run({"--min-significance", "1000000", "--out", scratch_ / "out"});
   EXPECT_EQ(outcome.code, kExitVerdictFail) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("verdict   fail"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("verdict   fail\nlimit     valid_fraction is 0, the recipe asks for at least 0.5"));
   EXPECT_EQ(result("out")["verdict"], "fail");
 }
 
