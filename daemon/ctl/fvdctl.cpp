@@ -102,8 +102,13 @@ int result(const Arguments& arguments, const Terminal& terminal) {
   RpcClient client = connect(arguments);
   Json params = job_key(client, arguments.job, arguments.client);
   params["format"] = arguments.format;
-  print(terminal.out, client.call("result.get", params));
-  return kExitOk;
+  const Json reply = client.call("result.get", params);
+  print(terminal.out, reply);
+  if (reply.at("state") == "processing") {
+    return fail(terminal, "the job has no result yet; 'fvdctl wait' waits for its end", kExitUnavailable);
+  }
+  if (job_exit_code(reply) == kExitOk) return kExitOk;
+  return report_end(wait_for_job(client, {{"job_id", reply.at("job_id")}}), terminal);
 }
 
 int rpc(const Arguments& arguments, const Terminal& terminal) {

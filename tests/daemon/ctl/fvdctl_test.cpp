@@ -117,9 +117,28 @@ TEST(Fvdctl, ExitsWithOneWhenTheJobFailed) {
 }
 
 TEST(Fvdctl, PrintsTheResultInTheFormatAskedFor) {
-  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}})}});
+  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}, {"state", "completed"}})}});
   EXPECT_EQ(ask(server, {"result", "J7", "--format", "full"}).code, kExitOk);
   EXPECT_EQ(server.requests().at(0)["params"], json({{"job_id", "J7"}, {"format", "full"}}));
+}
+
+TEST(Fvdctl, ExitsWithOneForTheResultOfAJobThatFailed) {
+  json failed = status("failed", 2, "");
+  failed["error"] = "too_few_valid_points";
+  failed["error_message"] = "only 12 % of the points are valid";
+  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}, {"state", "failed"}})},
+                        {"job.wait", FakeRpcServer::result(failed)}});
+  const Outcome outcome = ask(server, {"result", "J7"});
+  EXPECT_EQ(outcome.code, kExitJobFailed);
+  EXPECT_EQ(json::parse(outcome.out)["state"], "failed");
+  EXPECT_EQ(outcome.err, "fvdctl: job J7 failed: too_few_valid_points: only 12 % of the points are valid\n");
+}
+
+TEST(Fvdctl, ExitsWithUnavailableWhereThereIsNoResultYet) {
+  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}, {"state", "processing"}})}});
+  const Outcome outcome = ask(server, {"result", "J7"});
+  EXPECT_EQ(outcome.code, kExitUnavailable);
+  EXPECT_THAT(outcome.err, HasSubstr("no result yet"));
 }
 
 TEST(Fvdctl, CallsAnyMethod) {
