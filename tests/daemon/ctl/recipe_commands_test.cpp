@@ -80,9 +80,19 @@ TEST_F(FvdctlRecipe, ShowsTheNotesOfAnAcceptedOne) {
 
 TEST_F(FvdctlRecipe, SavesAgainstTheBaseThatIsNamed) {
   answer("recipe.save", {{"id", "part"}, {"version", 4}});
-  EXPECT_EQ(run({"save", file("{}"), "--base", "3", "--author", "anna", "--comment", "c"}).code, kExitOk);
+  const Outcome outcome = run({"save", file("{}"), "--base", "3", "--author", "anna", "--comment", "c"});
+  EXPECT_EQ(outcome.code, kExitOk);
+  EXPECT_EQ(outcome.err, "fvdctl: recipe part: version 4 is in force now\n");
   EXPECT_EQ(server->requests().at(0)["params"],
             json({{"id", "part"}, {"text", "{}"}, {"base_version", 3}, {"author", "anna"}, {"comment", "c"}}));
+}
+
+TEST_F(FvdctlRecipe, SaysThatAnUnchangedRecipeWasNotSaved) {
+  answer("recipe.save", {{"id", "part"}, {"version", 3}});
+  const Outcome outcome = run({"save", file("{}"), "--base", "3", "--author", "anna"});
+  EXPECT_EQ(outcome.code, kExitOk);
+  EXPECT_EQ(json::parse(outcome.out)["version"], 3);
+  EXPECT_EQ(outcome.err, "fvdctl: recipe part: nothing changed, version 3 with this text is in force already\n");
 }
 
 TEST_F(FvdctlRecipe, SavesANewRecipeUnderItsFilesName) {
