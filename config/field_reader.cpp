@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <sstream>
 
+#include "config/nearest_name.hpp"
 #include "config/relation.hpp"
 #include "config/strict_json.hpp"
 
@@ -15,30 +15,6 @@ namespace fvd {
 namespace {
 
 using nlohmann::json;
-
-/// Levenshtein distance, for "did you mean".
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
-std::string hint(const std::string& name, const std::set<std::string, std::less<>>& known) {
-  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(name, a) < edit_distance(name, b);
-  });
-  if (nearest == known.end() || edit_distance(name, *nearest) > 1 + name.size() / 3) return "";
-  return "; did you mean '" + *nearest + "'?";
-}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -54,6 +30,11 @@ std::string shown(const json& value) {
 std::string range_text(IntegerRange range) {
   return std::string(range.hex ? "an integer or \"0x..\" within " : "an integer within ") + std::to_string(range.min) +
          ".." + std::to_string(range.max);
+}
+
+/// "4", "0..5"
+std::string count_text(IntegerRange count) {
+  return std::to_string(count.min) + (count.min == count.max ? "" : ".." + std::to_string(count.max));
 }
 
 std::string range_text(NumberRange range) {
@@ -108,7 +89,7 @@ void FieldReader::finish() {
   if (!object_.is_object()) return;
   for (const auto& [name, value] : object_.items()) {
     if (known_.contains(name) || (pointer_.empty() && name == "$schema")) continue;
-    report(name, row_ ? "is one too many" : "unknown key" + hint(name, known_));
+    report(name, row_ ? "is one too many" : "unknown key" + did_you_mean(name, {known_.begin(), known_.end()}));
   }
 }
 
@@ -116,9 +97,9 @@ void FieldReader::report(std::string_view name, const std::string& message) {
   problems_.push_back({pointer_ + "/" + escaped(name), message});
 }
 
-void FieldReader::refuse(std::string_view name, const json& value, const std::string& accepted) {
+void FieldReader::refuse(std::string_view name, const json& value, const std::string& accepted, const char* verb) {
   refused_.emplace(name);
-  report(name, shown(value) + " is not accepted; expected " + accepted);
+  report(name, shown(value) + " is not accepted; " + verb + " " + accepted);
 }
 
 const json* FieldReader::find(std::string_view name) {
@@ -143,8 +124,12 @@ void FieldReader::integer64(std::string_view name, std::int64_t& value, IntegerR
   const json* found = find(name);
   if (found == nullptr) return;
   const auto number = whole_number(*found, range.hex);
-  if (!number || *number < range.min || *number > range.max) return refuse(name, *found, range_text(range));
-  value = *number;
+  if (number && *number >= range.min && *number <= range.max) {
+    value = *number;
+    return;
+  }
+  if (range.min == range.max) return refuse(name, *found, std::to_string(range.min), "must be");
+  refuse(name, *found, range_text(range));
 }
 
 void FieldReader::number(std::string_view name, double& value, NumberRange range, std::string_view /*meaning*/) {
@@ -212,9 +197,7 @@ bool FieldReader::object_list(std::string_view name, const ObjectList& list, Int
   if (found == nullptr) return false;
   const auto size = static_cast<std::int64_t>(found->size());
   if (!found->is_array() || size < count.min || size > count.max) {
-    refuse(name, *found,
-           "a list of " + std::to_string(count.min) + ".." + std::to_string(count.max) +
-               (list.rows ? " lists [ ]" : " objects { }"));
+    refuse(name, *found, "a list of " + count_text(count) + (list.rows ? " lists [ ]" : " objects { }"));
     return false;
   }
   const std::size_t problems_before = problems_.size();

@@ -46,7 +46,8 @@ class FieldReader final : public Fields {
 
  private:
   [[nodiscard]] const nlohmann::json* find(std::string_view name);
-  void refuse(std::string_view name, const nlohmann::json& value, const std::string& accepted);
+  void refuse(std::string_view name, const nlohmann::json& value, const std::string& accepted,
+              const char* verb = "expected");
   void report(std::string_view name, const std::string& message);
   /// Of all shapes, where nobody knows which one was meant: only keys that none of them has are reported.
   void know_members(const std::vector<Shape>& shapes);

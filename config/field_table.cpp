@@ -49,6 +49,7 @@ std::string accepted(const ordered_json& schema) {
   if (schema.contains("exclusiveMinimum")) {
     return "> " + bound(schema["exclusiveMinimum"]) + " .. " + bound(schema["maximum"]);
   }
+  if (schema["minimum"] == schema["maximum"]) return bound(schema["minimum"]);
   return bound(schema["minimum"]) + " .. " + bound(schema["maximum"]);
 }
 

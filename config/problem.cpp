@@ -1,6 +1,15 @@
 #include "config/problem.hpp"
 
+#include <algorithm>
+
 namespace fvd {
+
+bool is_reported(const Problems& problems, std::string_view pointer) noexcept {
+  return std::any_of(problems.begin(), problems.end(), [pointer](const Problem& problem) {
+    const std::string& place = problem.pointer;
+    return pointer.starts_with(place) && (pointer.size() == place.size() || pointer[place.size()] == '/');
+  });
+}
 
 std::string to_text(const Problems& problems, const std::string& source) {
   std::string text;

@@ -3,6 +3,7 @@
 /// What is wrong with a document, and where.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -18,7 +19,11 @@ struct Problem {
 
 using Problems = std::vector<Problem>;
 
-/// One line a problem: "<source>: <pointer>: <message>".
+/// Whether one of the problems is about the value at this place, or about an object that it stands in. A structure read
+/// from the document holds something else there, so nothing that rests on the value can be judged.
+[[nodiscard]] bool is_reported(const Problems& problems, std::string_view pointer) noexcept;
+
+/// One line per problem: "<source>: <pointer>: <message>".
 [[nodiscard]] std::string to_text(const Problems& problems, const std::string& source);
 
 /// Throws Error `code` with all problems if there are any.

@@ -1,6 +1,10 @@
 /// What the range of a single key cannot say: values that must fit together, files that must be there.
 
+#include <algorithm>
+#include <initializer_list>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include <arpa/inet.h>
 
@@ -31,45 +35,75 @@ std::string folder_problem(const fs::path& folder) {
   return error ? "cannot list folder '" + folder.string() + "': " + error.message() : "";
 }
 
-void check_rpc(const RpcConfig& rpc, Problems& problems) {
-  if (!is_numeric_address(rpc.address)) {
-    problems.push_back({"/rpc/address", "'" + rpc.address +
-                                            "' is no numeric address; expected e.g. 127.0.0.1 for this machine only "
-                                            "or 0.0.0.0 for every interface"});
-  }
-}
+/// Collects problems. What rests on a value that was refused when it was read is not judged: its default stands there.
+class ConfigCheck {
+ public:
+  ConfigCheck(const Config& config, const Problems& read) : config_(config), read_(read) {}
 
-void check_stage(const StageConfig& stage, Problems& problems) {
-  if (stage.min >= stage.max) {
-    problems.push_back({"/stage/min_um", text(stage.min.value) + " is not below max_um, " + text(stage.max.value)});
-  } else if (stage.take_up >= stage.max - stage.min) {
-    problems.push_back({"/stage/take_up_um", text(stage.take_up.value) + " leaves no room between min_um and max_um, " +
-                                                 text((stage.max - stage.min).value) + " apart"});
+  Problems run() {
+    check_rpc(config_.rpc);
+    check_device(config_.camera, {"/camera/driver"});
+    check_travel(config_.stage);
+    check_device(config_.stage, {"/stage/driver", "/stage/transport"});
+    const std::string& camera_driver = config_.camera.driver;
+    const std::string& stage_driver = config_.stage.driver;
+    report_if((camera_driver == "replay") != (stage_driver == "replay"), "/stage/driver", {"/camera/driver"},
+              "'" + stage_driver + "' does not go with camera driver '" + camera_driver +
+                  "': recorded slices need both to be replay");
+    check_paths(config_.paths);
+    return std::move(found_);
   }
-}
 
-void check_paths(const PathsConfig& paths, Problems& problems) {
-  if (paths.state_dir.empty()) problems.push_back({"/paths/state_dir", "is empty; expected a folder"});
-  if (paths.runtime_dir.empty()) problems.push_back({"/paths/runtime_dir", "is empty; expected a folder"});
-  if (const std::string problem = folder_problem(paths.recipe_dir); !problem.empty()) {
-    problems.push_back({"/paths/recipe_dir", problem});
+ private:
+  [[nodiscard]] bool judged(std::string_view pointer) const { return !is_reported(read_, pointer); }
+
+  /// others: what the rule rests on beside the value at the pointer.
+  void report_if(bool wrong, std::string_view pointer, std::initializer_list<std::string_view> others,
+                 std::string message) {
+    if (!wrong || !judged(pointer)) return;
+    if (!std::all_of(others.begin(), others.end(), [this](std::string_view other) { return judged(other); })) return;
+    found_.push_back({std::string(pointer), std::move(message)});
   }
-}
+
+  void check_rpc(const RpcConfig& rpc) {
+    report_if(!is_numeric_address(rpc.address), "/rpc/address", {},
+              "'" + rpc.address +
+                  "' is no numeric address; expected e.g. 127.0.0.1 for this machine only or 0.0.0.0 for every "
+                  "interface");
+  }
+
+  void check_travel(const StageConfig& stage) {
+    const bool in_order = stage.min < stage.max;
+    report_if(!in_order, "/stage/min_um", {"/stage/max_um"},
+              text(stage.min.value) + " is not below max_um, " + text(stage.max.value));
+    report_if(in_order && stage.take_up >= stage.max - stage.min, "/stage/take_up_um",
+              {"/stage/min_um", "/stage/max_um"},
+              text(stage.take_up.value) + " leaves no room between min_um and max_um, " +
+                  text((stage.max - stage.min).value) + " apart");
+  }
+
+  /// What the driver finds, as far as the driver, the line that it is reached by, and the value itself were read.
+  template <typename DeviceConfig>
+  void check_device(const DeviceConfig& device, std::initializer_list<std::string_view> others) {
+    Problems found;
+    check_driver(device, found);
+    for (Problem& problem : found) report_if(true, problem.pointer, others, std::move(problem.message));
+  }
+
+  void check_paths(const PathsConfig& paths) {
+    report_if(paths.state_dir.empty(), "/paths/state_dir", {}, "is empty; expected a folder");
+    report_if(paths.runtime_dir.empty(), "/paths/runtime_dir", {}, "is empty; expected a folder");
+    const std::string problem = folder_problem(paths.recipe_dir);
+    report_if(!problem.empty(), "/paths/recipe_dir", {}, problem);
+  }
+
+  const Config& config_;
+  const Problems& read_;
+  Problems found_;
+};
 
 }  // namespace
 
-Problems check_config(const Config& config) {
-  Problems problems;
-  check_rpc(config.rpc, problems);
-  check_driver(config.camera, problems);
-  check_stage(config.stage, problems);
-  check_driver(config.stage, problems);
-  if ((config.camera.driver == "replay") != (config.stage.driver == "replay")) {
-    problems.push_back({"/stage/driver", "'" + config.stage.driver + "' does not go with camera driver '" +
-                                             config.camera.driver + "': recorded slices need both to be replay"});
-  }
-  check_paths(config.paths, problems);
-  return problems;
-}
+Problems check_config(const Config& config, const Problems& read) { return ConfigCheck(config, read).run(); }
 
 }  // namespace fvd

@@ -71,16 +71,7 @@ LoadedConfig load_config(const std::filesystem::path& file, const Overrides& ove
     loaded.problems.push_back({"", error.what()});
     return loaded;
   }
-  // A key refused above holds its default here: what that default breaks would only confuse.
-  const auto refused = [known = loaded.problems](const Problem& found) {
-    for (const Problem& problem : known) {
-      if (problem.pointer == found.pointer) return true;
-    }
-    return false;
-  };
-  for (Problem& problem : check_config(loaded.config)) {
-    if (!refused(problem)) loaded.problems.push_back(std::move(problem));
-  }
+  for (Problem& problem : check_config(loaded.config, loaded.problems)) loaded.problems.push_back(std::move(problem));
   return loaded;
 }
 

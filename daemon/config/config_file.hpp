@@ -30,8 +30,9 @@ struct LoadedConfig {
 [[nodiscard]] LoadedConfig parse_config(std::string_view json_text, const std::filesystem::path& base,
                                         const Overrides& overrides = {});
 
-/// What must fit together or exist on this machine, beyond the range of a single key. No device is touched.
-[[nodiscard]] Problems check_config(const Config& config);
+/// What must fit together or exist on this machine, beyond the range of a single key. read: the problems
+/// of reading it; what rests on a value that they are about is not judged. No device is touched.
+[[nodiscard]] Problems check_config(const Config& config, const Problems& read = {});
 
 /// Reads the file and does both; a file that cannot be read is a problem too.
 [[nodiscard]] LoadedConfig load_config(const std::filesystem::path& file, const Overrides& overrides = {});

@@ -8,7 +8,7 @@ namespace fvd::ctl {
 
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitJobFailed = 1;     ///< the job failed or was aborted
-inline constexpr int kExitVerdictFail = 2;   ///< a result, whose values are not within the recipe's limits
+inline constexpr int kExitVerdictFail = 2;   ///< `process`: values are outside the recipe's limits
 inline constexpr int kExitUsage = 64;        ///< wrong arguments
 inline constexpr int kExitBadData = 65;      ///< a file, parameter, job or recipe that cannot be used
 inline constexpr int kExitUnavailable = 69;  ///< no daemon or drive, no answer in time, or it takes no commands now

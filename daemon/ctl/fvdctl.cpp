@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "config/nearest_name.hpp"
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
@@ -46,6 +47,11 @@ RpcClient connect(const Arguments& arguments) {
 
 void print(std::ostream& out, const Json& json) {
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
+}
+
+int fail(const Terminal& terminal, const std::string& message, int code) {
+  terminal.err << "fvdctl: " << message << std::endl;
+  return code;
 }
 
 /// Says how a job ended; the reason of a failure goes to err.
@@ -96,8 +102,13 @@ int result(const Arguments& arguments, const Terminal& terminal) {
   RpcClient client = connect(arguments);
   Json params = job_key(client, arguments.job, arguments.client);
   params["format"] = arguments.format;
-  print(terminal.out, client.call("result.get", params));
-  return kExitOk;
+  const Json reply = client.call("result.get", params);
+  print(terminal.out, reply);
+  if (reply.at("state") == "processing") {
+    return fail(terminal, "the job has no result yet; 'fvdctl wait' waits for its end", kExitUnavailable);
+  }
+  if (job_exit_code(reply) == kExitOk) return kExitOk;
+  return report_end(wait_for_job(client, {{"job_id", reply.at("job_id")}}), terminal);
 }
 
 int rpc(const Arguments& arguments, const Terminal& terminal) {
@@ -219,9 +230,22 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
       ->required();
 }
 
-int fail(const Terminal& terminal, const std::string& message, int code) {
-  terminal.err << "fvdctl: " << message << std::endl;
-  return code;
+/// What is wrong with a word that stands where a command should; empty where that is not what went wrong.
+std::string unknown_command(const CLI::App& app) {
+  const CLI::App* parent = &app;
+  for (auto inner = parent->get_subcommands(); !inner.empty(); inner = parent->get_subcommands()) {
+    parent = inner.front();
+  }
+  const std::vector<std::string> words = parent->remaining();
+  if (parent->get_require_subcommand_min() == 0 || words.empty() || words.front().starts_with('-')) return {};
+  std::vector<std::string> names;
+  std::string listed;
+  for (const CLI::App* command : parent->get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+    listed += (listed.empty() ? "" : ", ") + command->get_name();
+  }
+  return "'" + words.front() + "' is not a command" + (parent == &app ? "" : " of " + parent->get_name()) +
+         "; expected one of " + listed + did_you_mean(words.front(), names);
 }
 
 int run(std::vector<std::string> arguments, const Terminal& terminal) {
@@ -241,6 +265,7 @@ int run(std::vector<std::string> arguments, const Terminal& terminal) {
     std::reverse(arguments.begin(), arguments.end());  // the order CLI11 takes a vector in
     app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {
+    if (const std::string unknown = unknown_command(app); !unknown.empty()) return fail(terminal, unknown, kExitUsage);
     return app.exit(error, terminal.out, terminal.err) == 0 ? kExitOk : kExitUsage;
   }
   return chosen();

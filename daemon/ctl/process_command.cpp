@@ -32,7 +32,8 @@ std::vector<std::string> operator_names() {
 constexpr const char* kRecordedHeights = "z.txt";
 
 ZSource z_source(const ProcessArguments& arguments, const Recipe& recipe) {
-  if (!arguments.z_file.empty()) return ZFile{arguments.z_file, *length_unit_from_name(arguments.z_unit)};
+  if (!arguments.z_file.empty())
+    return ZFile{arguments.z_file, *length_unit_from_name(arguments.z_unit.value_or("um"))};
   if (arguments.z_step_um == 0.0 || (arguments.recipe.empty() && !arguments.z_step_um)) {
     throw UsageError("the z of the slices is not known: give --z-step-um (not 0), --z-file or --recipe");
   }
@@ -100,7 +101,9 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
     const std::filesystem::path file = arguments.recipe;
     options.recipe = parse_recipe(read_text_file(file), file.stem().string());
   }
+  options.recipe_plans_scan = !arguments.recipe.empty();
   options.z = z_source(arguments, options.recipe);
+  options.z_unit_assumed = std::holds_alternative<ZFile>(options.z) && !arguments.z_unit;
   const Overrides overrides = apply(arguments, options.recipe);
   if (!arguments.recipe.empty() && !overrides.options().empty()) {
     options.recipe.sha256.clear();  // of what the file says
@@ -109,6 +112,23 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   options.knows_pixel_pitch = arguments.pixel_pitch_um || !arguments.recipe.empty();
   options.threads = arguments.threads;
   return options;
+}
+
+/// What made the verdict, e.g. "valid_fraction is 0.31, the recipe asks for at least 0.5".
+std::string limit_text(const MeasuredValue& measured) {
+  std::ostringstream text;
+  const std::string unit = measured.unit == "1" ? "" : " " + measured.unit;
+  text << measured.name;
+  if (measured.value) {
+    text << " is " << *measured.value << unit;
+  } else {
+    text << " could not be measured";
+  }
+  text << ", the recipe asks for";
+  if (measured.limits->lower) text << " at least " << *measured.limits->lower << unit;
+  if (measured.limits->lower && measured.limits->upper) text << " and";
+  if (measured.limits->upper) text << " at most " << *measured.limits->upper << unit;
+  return text.str();
 }
 
 void print_summary(std::ostream& out, const ProcessReport& report, const std::filesystem::path& directory) {
@@ -126,6 +146,10 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
     text << "heights   none: every point is a hole, see hole_points in result.json\n";
   }
   if (result.verdict) text << "verdict   " << verdict_name(*result.verdict) << "\n";
+  for (const MeasuredValue& measured : result.measurements) {
+    if (measured.verdict.value_or(Verdict::kPass) == Verdict::kPass) continue;
+    text << "limit     " << limit_text(measured) << "\n";
+  }
   for (const Warning& warning : result.warnings) text << "warning   " << warning.text << "\n";
   text << "memory    " << std::setprecision(1) << result.focus.state_bytes_per_pixel
        << " bytes per pixel, whatever the number of slices\n";
@@ -145,12 +169,11 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
       command.add_option("--z-start-um", a.z_start_um, "z of the first slice; default: the recipe's, else 0");
   CLI::Option* file = command.add_option(
       "--z-file", a.z_file,
-      "z of each slice, one number a line, # for comments; with a recipe, the source's own z.txt is used by itself");
+      "z of each slice, one number per line, # for comments; with a recipe, the source's own z.txt is used by itself");
   file->excludes(step)->excludes(start);
-  command.add_option("--z-unit", a.z_unit, "unit of the z file")
+  command.add_option("--z-unit", a.z_unit, "unit of the z file, default um")
       ->needs(file)
-      ->check(CLI::IsMember({"um", "mm", "m"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"um", "mm", "m"}));
   command.add_option("--window", a.window_px,
                      "side of the focus window in pixels, odd, 3..63, default 9; the intensity has none");
   command
@@ -183,7 +206,7 @@ int run_process(const ProcessArguments& arguments, const Terminal& terminal) {
   });
   progress.end();
   print_summary(terminal.out, report, options.out);
-  return report.result.verdict == Verdict::kFail ? kExitVerdictFail : kExitOk;
+  return report.result.verdict.value_or(Verdict::kPass) == Verdict::kPass ? kExitOk : kExitVerdictFail;
 }
 
 }  // namespace fvd::ctl

@@ -28,7 +28,7 @@ struct ProcessArguments {
   std::string part_id;
   std::string recipe;  ///< file; empty = the defaults of recipes, and the stage is not corrected
   std::string z_file;
-  std::string z_unit = "um";
+  std::optional<std::string> z_unit;  ///< of z_file; absent = um
   std::optional<double> z_step_um;
   std::optional<double> z_start_um;
   std::optional<int> window_px;

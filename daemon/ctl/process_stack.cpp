@@ -5,11 +5,13 @@
 #include <cmath>
 #include <functional>
 #include <thread>
+#include <utility>
 
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/ctl/stack_check.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/pipeline/reconstruct.hpp"
 #include "drivers/replay/recorded_stack.hpp"
@@ -90,6 +92,7 @@ void push_slices(StreamingFocusStack& focus, WorkerPool& pool, const RecordedSta
 void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyClock::time_point start,
              const std::function<void(int, int)>& on_slice, ResultData& data) {
   const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
+  for (Warning& warning : check_stack(options, z_um)) data.warnings.push_back(std::move(warning));
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
   StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), focus_settings(options.recipe), pool,

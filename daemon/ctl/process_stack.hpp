@@ -18,7 +18,9 @@ struct ProcessOptions {
   std::filesystem::path source;  ///< folder of slices or multi-page TIFF
   std::filesystem::path out;     ///< result directory, must not exist
   ZSource z;
-  Recipe recipe;                   ///< what of it is no business of the scan; its id may be empty
+  bool z_unit_assumed = false;     ///< z is a file, and nobody said that it is in um
+  Recipe recipe;                   ///< its id may be empty
+  bool recipe_plans_scan = false;  ///< the slices should be as many, and as far apart, as the recipe says
   bool knows_pixel_pitch = false;  ///< false: the recipe's is a default, and the files carry pixels
   int threads = 0;                 ///< 0 = one a core
   std::string part_id;             ///< empty = the name of the source
@@ -31,7 +33,8 @@ struct ProcessReport {
 };
 
 /// Reads a few slices at a time; writes only after the last one was good. on_slice(done, total) follows each slice.
-/// Throws Error kBadInput naming the file, kStorageWrite, kStorageFull; nothing is left in `out` then.
+/// Throws Error kBadInput naming the file, or as check_stack(); kStorageWrite, kStorageFull; nothing is left in `out`
+/// then.
 ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice);
 
 }  // namespace fvd::ctl

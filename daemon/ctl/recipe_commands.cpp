@@ -64,15 +64,27 @@ std::string author_of(const RecipeArguments& arguments) {
   return user != nullptr && *user != '\0' ? user : "fvdctl";
 }
 
+/// The reply to out. A new version has another number than its base: the same number is the text in force.
+int report_saved(const Json& reply, std::int64_t base_version, const Terminal& terminal) {
+  print(terminal.out, reply);
+  terminal.err << "fvdctl: recipe " << reply.at("id").get<std::string>() << ": ";
+  if (reply.at("version") == base_version) {
+    terminal.err << "nothing changed, version " << base_version << " with this text is in force already" << std::endl;
+  } else {
+    terminal.err << "version " << reply.at("version") << " is in force now" << std::endl;
+  }
+  return kExitOk;
+}
+
 int save(const RecipeArguments& arguments, RpcClient client, const Terminal& terminal) {
   const std::string id = id_of(arguments);
   const std::string text = read_text_file(arguments.file);
-  print(terminal.out, client.call("recipe.save", {{"id", id},
-                                                  {"text", text},
-                                                  {"base_version", arguments.base_version},
-                                                  {"author", author_of(arguments)},
-                                                  {"comment", arguments.comment}}));
-  return kExitOk;
+  const Json reply = client.call("recipe.save", {{"id", id},
+                                                 {"text", text},
+                                                 {"base_version", arguments.base_version},
+                                                 {"author", author_of(arguments)},
+                                                 {"comment", arguments.comment}});
+  return report_saved(reply, arguments.base_version, terminal);
 }
 
 int versions(const RecipeArguments& arguments, RpcClient client, const Terminal& terminal) {
@@ -86,11 +98,11 @@ int versions(const RecipeArguments& arguments, RpcClient client, const Terminal&
 }
 
 int restore(const RecipeArguments& arguments, RpcClient client, const Terminal& terminal) {
-  print(terminal.out, client.call("recipe.restore", {{"id", arguments.id},
-                                                     {"version", arguments.version},
-                                                     {"base_version", arguments.base_version},
-                                                     {"author", author_of(arguments)}}));
-  return kExitOk;
+  const Json reply = client.call("recipe.restore", {{"id", arguments.id},
+                                                    {"version", arguments.version},
+                                                    {"base_version", arguments.base_version},
+                                                    {"author", author_of(arguments)}});
+  return report_saved(reply, arguments.base_version, terminal);
 }
 
 int convert(const RecipeArguments& arguments, const Terminal& terminal) {

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <ctime>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -196,7 +197,8 @@ int run_stage_accuracy(StageArguments arguments, const Terminal& terminal) {
   const double lead_um = arguments.lead_um > 0.0 ? arguments.lead_um : info.lead.value;
   if (lead_um > 0.0) options.lead_um = lead_um;
   const StageReport report = make_stage_report(points, options);
-  const StageReportHeader header{info.name, info.address, std::chrono::system_clock::now(), kVersion, info.simulated};
+  StageReportHeader header{info.name, info.address, std::chrono::system_clock::now(), kVersion, std::nullopt};
+  if (info.simulated) header.simulated = true;  // a line does not tell a simulator from a drive
   write_stage_report(arguments.out, points, report, header);
   print_report(terminal.out, Json::parse(stage_report_json(report, header)), arguments.out);
   if (const auto link = stage->link_stats()) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct StageReportHeader {
   std::string address;  ///< of the drive
   std::chrono::system_clock::time_point date;
   std::string software_version;
-  bool simulated = false;
+  std::optional<bool> simulated;  ///< absent = unknown: a drive at the end of a line may be a simulator
 };
 
 /// "none", "motor_encoder" or "linear_scale", as in drive profiles.

@@ -102,14 +102,21 @@ Json definitions() {
       {"standard_error", "from the residuals of the fit, taken for independent"}};
 }
 
+Json provenance(const StageReport& report, const StageReportHeader& header) {
+  Json json{{"profile", text_or_null(header.profile)},
+            {"address", text_or_null(header.address)},
+            {"date", iso8601_utc(header.date)},
+            {"software_version", text_or_null(header.software_version)}};
+  if (header.simulated) json["simulated"] = *header.simulated;
+  json["feedback"] = feedback_name(report.feedback);
+  return json;
+}
+
 }  // namespace
 
 std::string stage_report_json(const StageReport& report, const StageReportHeader& header) {
   Json json;
-  json["provenance"] = {
-      {"profile", text_or_null(header.profile)}, {"address", text_or_null(header.address)},
-      {"date", iso8601_utc(header.date)},        {"software_version", text_or_null(header.software_version)},
-      {"simulated", header.simulated},           {"feedback", feedback_name(report.feedback)}};
+  json["provenance"] = provenance(report, header);
   json["observable"] = report.observable;
   json["caveats"] = report.caveats;
   json["points"] = report.n;

@@ -197,7 +197,7 @@ std::string stage_report_png(const std::vector<StagePoint>& points, const StageR
   try {
     cv::Mat page(kHeight, kWidth, CV_8UC3, page_colour::kBackground);
     draw_page_header(page, "Stage accuracy: " + (header.profile.empty() ? "unknown profile" : header.profile),
-                     subtitle(report, header), header.simulated, kMargin);
+                     subtitle(report, header), header.simulated.value_or(false), kMargin);
     const bool data = report.observable && !points.empty();
     const PlotAxes axes(kPlot, position_range(report), data ? error_range(points) : AxisRange{-1.0, 1.0});
     if (!points.empty()) axes.draw_x(page, "quantised position z, um");

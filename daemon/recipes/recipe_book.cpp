@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -101,16 +102,17 @@ Recipe RecipeBook::load(const std::string& id) const {
 }
 
 RecipeCheck RecipeBook::check(const std::string& text, const std::string& id) const {
+  Problems problems;
+  const Recipe recipe = read_recipe(text, id, problems);
+  for (Problem& found : check_stage_limits(recipe, limits_.min, limits_.max, limits_.take_up, problems)) {
+    problems.push_back(std::move(found));
+  }
   RecipeCheck check;
-  try {
-    const Recipe recipe = parse_recipe(text, id);
-    const Problems problems = check_stage_limits(recipe, limits_.min, limits_.max, limits_.take_up);
-    throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
+  if (problems.empty()) {
     check.notes = recipe.notes;
     check.sha256 = recipe.sha256;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kBadRecipe) throw;
-    check.refusal = error.what();
+  } else {
+    check.refusal = to_text(problems, "recipe " + id);
   }
   return check;
 }

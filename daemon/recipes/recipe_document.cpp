@@ -1,6 +1,7 @@
 #include "daemon/recipes/recipe_document.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <memory>
 #include <sstream>
 
@@ -10,6 +11,7 @@
 #include "config/field_reader.hpp"
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
+#include "daemon/export/exporter_table.hpp"
 
 namespace fvd {
 
@@ -33,21 +35,46 @@ struct Places {
 const Places kFormat1Places{"/scan", "/focus"};
 const Places kFormat2Places{"/acquire/scan", "/reconstruct/focus"};
 
+std::string names_of_single_files() {
+  std::string names;
+  for (const Exporter& exporter : exporter_table()) {
+    if (exporter.need == ExportNeed::kResult) names += (names.empty() ? "" : ", ") + std::string(exporter.name);
+  }
+  return names;
+}
+
+/// What keys say together; a rule is passed over where a value that it rests on was refused.
 void check_together(const Recipe& recipe, const Places& places, Problems& problems) {
+  const auto judged = [read = problems](std::initializer_list<std::string> pointers) {
+    return std::none_of(pointers.begin(), pointers.end(),
+                        [&read](const std::string& pointer) { return is_reported(read, pointer); });
+  };
   const auto refuse = [&](const std::string& pointer, auto value, const std::string& why) {
     std::ostringstream text;
     text << value << " " << why;
     problems.push_back({pointer, text.str()});
   };
-  if (recipe.focus.window_px % 2 == 0) {
-    refuse(places.focus + "/window_px", recipe.focus.window_px,
-           "is even; expected an odd number so that a pixel is its centre");
+  const std::string window = places.focus + "/window_px";
+  const std::string mode = places.scan + "/mode";
+  const std::string trigger = places.scan + "/trigger";
+  const std::string peak = places.focus + "/peak";
+  const std::string extra_peaks = places.focus + "/extra_peaks";
+  if (judged({window}) && recipe.focus.window_px % 2 == 0) {
+    refuse(window, recipe.focus.window_px, "is even; expected an odd number so that a pixel is its centre");
   }
-  if (recipe.mode == ScanMode::kContinuous && recipe.camera.trigger == TriggerMode::kLine) {
-    refuse(places.scan + "/trigger", "line", "is for scan.mode step; in a continuous scan the camera runs free");
+  if (judged({mode, trigger}) && recipe.mode == ScanMode::kContinuous && recipe.camera.trigger == TriggerMode::kLine) {
+    refuse(trigger, "line", "is for scan.mode step; in a continuous scan the camera runs free");
   }
-  if (std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
-    refuse(places.focus + "/extra_peaks", peak_method_name(recipe.peak), "is the peak already; expected others only");
+  if (judged({peak, extra_peaks}) &&
+      std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
+    refuse(extra_peaks, peak_method_name(recipe.peak), "is the peak already; expected others only");
+  }
+  if (!judged({"/export", extra_peaks}) || !recipe.extra_peaks.empty()) return;
+  for (const Exporter& exporter : chosen_exporters(recipe.exports.value_or(std::vector<std::string>{}))) {
+    if (exporter.need != ExportNeed::kEachExtraMap) continue;
+    refuse("/export", exporter.name,
+           "stands for the maps of extra_peaks, which is empty, so it makes no file; expected extra_peaks at " +
+               extra_peaks + ", or names that make files: " + names_of_single_files());
   }
 }
 
@@ -67,9 +94,8 @@ std::string recipe_sha256(std::string_view bytes) {
   return digest.get();
 }
 
-Recipe parse_recipe(std::string_view json_text, const std::string& id) {
+Recipe read_recipe(std::string_view json_text, const std::string& id, Problems& problems) {
   Recipe recipe;
-  Problems problems;
   if (json_text.size() > kMaxRecipeBytes) {
     problems.push_back({"", "has " + std::to_string(json_text.size()) + " bytes; expected at most " +
                                 std::to_string(kMaxRecipeBytes)});
@@ -78,14 +104,20 @@ Recipe parse_recipe(std::string_view json_text, const std::string& id) {
     FieldReader reader(*document, problems);
     format_1 ? describe_format_1(recipe, reader) : describe(recipe, reader);
     reader.finish();
-    if (problems.empty()) check_together(recipe, format_1 ? kFormat1Places : kFormat2Places, problems);
+    check_together(recipe, format_1 ? kFormat1Places : kFormat2Places, problems);
     if (format_1) recipe.notes.emplace_back("has format 1, read as format 2; 'fvdctl recipe convert FILE' writes that");
   }
-  throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
   // Frames wait for their position, and for those before them to be complete, while the camera goes on.
   if (recipe.mode == ScanMode::kContinuous) recipe.camera.pool_frames = kContinuousPoolFrames;
   recipe.id = id;
   recipe.sha256 = recipe_sha256(json_text);
+  return recipe;
+}
+
+Recipe parse_recipe(std::string_view json_text, const std::string& id) {
+  Problems problems;
+  Recipe recipe = read_recipe(json_text, id, problems);
+  throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
   return recipe;
 }
 
@@ -113,17 +145,21 @@ std::string convert_recipe(std::string_view json_text, const std::string& id) {
   return made.dump(2) + "\n";
 }
 
-Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up) {
+Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up,
+                            const Problems& read) {
   Problems problems;
+  const auto judged = [&read](const std::string& key) {
+    return !is_reported(read, kFormat1Places.scan + key) && !is_reported(read, kFormat2Places.scan + key);
+  };
   const double first = recipe.start_um - take_up.value;
   const double last = recipe.start_um + recipe.step_um * (recipe.slices - 1);
-  if (first < min.value) {
+  if (judged("/start_um") && first < min.value) {
     std::ostringstream text;
     text << recipe.start_um << " with " << take_up.value << " um of take-up reaches " << first
          << " um; expected a start of at least " << min.value + take_up.value << " um";
     problems.push_back({"/acquire/scan/start_um", text.str()});
   }
-  if (last > max.value) {
+  if (judged("/start_um") && judged("/step_um") && judged("/slices") && last > max.value) {
     std::ostringstream text;
     text << recipe.slices << " slices reach " << last << " um; expected at most " << max.value
          << " um: fewer slices, a smaller step_um or a lower start_um";

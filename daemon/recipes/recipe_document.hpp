@@ -30,6 +30,9 @@ void describe_format_1(Recipe& recipe, Fields& fields);
 /// Hex digest of a document's bytes.
 [[nodiscard]] std::string recipe_sha256(std::string_view bytes);
 
+/// Either format; adds every problem with its JSON pointer. A value that one of them is about is at its default.
+[[nodiscard]] Recipe read_recipe(std::string_view json_text, const std::string& id, Problems& problems);
+
 /// Either format. Throws Error kBadRecipe with every problem and its JSON pointer.
 [[nodiscard]] Recipe parse_recipe(std::string_view json_text, const std::string& id);
 
@@ -37,8 +40,10 @@ void describe_format_1(Recipe& recipe, Fields& fields);
 /// kBadRecipe if it is refused, also where it is of format 2 already.
 [[nodiscard]] std::string convert_recipe(std::string_view json_text, const std::string& id);
 
-/// What of the recipe would leave the stage's limits: the take-up below the first slice, and the last slice.
-[[nodiscard]] Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up);
+/// What of the recipe would leave the stage's limits: the take-up below the first slice, and the last slice. read: the
+/// problems of reading it; what rests on a value that they are about is not judged.
+[[nodiscard]] Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up,
+                                          const Problems& read = {});
 
 /// JSON Schema of format 2; config/recipe.schema.json is this text.
 [[nodiscard]] std::string recipe_schema_text();

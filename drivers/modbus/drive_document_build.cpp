@@ -31,13 +31,6 @@ class ProfileBuilder {
  private:
   void report(const std::string& pointer, std::string message) { problems_.push_back({pointer, std::move(message)}); }
 
-  /// A problem of this value or of the object it stands in: what it says is not what the document says.
-  [[nodiscard]] bool reported(const std::string& pointer) const {
-    return std::any_of(problems_.begin(), problems_.end(), [&](const Problem& problem) {
-      return pointer == problem.pointer || pointer.starts_with(problem.pointer + "/");
-    });
-  }
-
   void build_scale() {
     profile_.direction = document_.direction == "positive" ? 1 : -1;
     profile_.feedback = document_.feedback_source == "motor_encoder"  ? FeedbackSource::kMotorEncoder
@@ -49,7 +42,7 @@ class ProfileBuilder {
       profile_.acceleration.inverse = true;
     } else if (document_.acceleration_units_per_um_s2) {
       profile_.acceleration.factor = *document_.acceleration_units_per_um_s2;
-    } else if (!reported(key)) {
+    } else if (!is_reported(problems_, key)) {
       report(key, "is missing and has no default; or give acceleration_inverse_um_s2 for a time");
     }
   }
@@ -138,7 +131,7 @@ class ProfileBuilder {
     profile_.alarm = condition("/status/alarm", document_.alarm);
     if (document_.homed_word.empty()) {
       profile_.homed = condition("/status/homed", document_.homed);
-    } else if (!profile_.target && !reported("/target_register")) {
+    } else if (!profile_.target && !is_reported(problems_, "/target_register")) {
       report("/target_register", "is missing: without a bit for homed it tells a restart of the drive");
     }
     const auto build_optional = [this](const char* name, const std::optional<ConditionDocument>& text,

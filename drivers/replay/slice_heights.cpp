@@ -55,6 +55,20 @@ std::vector<double> read_file(const ZFile& file) {
   return z_um;
 }
 
+/// No stage makes such steps: they are numbers of another unit.
+constexpr double kMinFileStep_um = 1e-3;
+
+void check_unit(const ZFile& file, const std::vector<double>& z_um) {
+  if (z_um.size() < 2) return;
+  const double step_um = std::abs(z_um.back() - z_um.front()) / static_cast<double>(z_um.size() - 1);
+  if (step_um >= kMinFileStep_um) return;
+  std::ostringstream message;
+  message << file.path.string() << ": the mean step is " << step_um << " um, less than any stage makes; numbers in "
+          << "another unit than um need it said: --z-unit mm or m of fvdctl process with --z-file, stage.replay_z_unit "
+          << "of a configuration";
+  refuse(message.str());
+}
+
 void check_monotonic(const std::vector<double>& z_um) {
   for (std::size_t i = 1; i < z_um.size(); ++i) {
     const bool rising = z_um[1] > z_um[0];
@@ -95,6 +109,7 @@ std::vector<double> slice_heights_um(const ZSource& source, const SliceList& lis
       refuse(file->path.string() + " has " + std::to_string(z_um.size()) + " heights, but there are " +
              std::to_string(list.slices.size()) + " slices: " + list.description);
     }
+    check_unit(*file, z_um);
   } else {
     if (!list.gap.empty()) {
       refuse("the slices " + list.description + " are not evenly numbered (" + list.gap +

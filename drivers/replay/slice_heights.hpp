@@ -23,7 +23,7 @@ struct ZSpacing {
   double step_um = 0.0;
 };
 
-/// A text file: one number a line in `unit`, decimal point; '#' starts a comment, empty lines are skipped.
+/// A text file: one number per line in `unit`, decimal point; '#' starts a comment, empty lines are skipped.
 struct ZFile {
   std::filesystem::path path;
   LengthUnit unit = LengthUnit::kMicrometre;
@@ -33,7 +33,8 @@ using ZSource = std::variant<ZSpacing, ZFile>;
 
 /// z of each slice of the list in um, strictly rising or strictly falling.
 /// Throws Error kBadInput: a step of 0, a step for a list whose numbering has a gap, a file that cannot be read, a line
-/// that is not one number (named), another count than slices, z not finite or not monotonic.
+/// that is not one number (named), another count than slices, z not finite or not monotonic, a file whose mean step is
+/// below 0.001 um, which is one of another unit.
 [[nodiscard]] std::vector<double> slice_heights_um(const ZSource& source, const SliceList& list);
 
 /// Index of the height nearest to z_um; heights_um not empty.

@@ -166,6 +166,18 @@ TEST(RelationOfKeys, IsNotJudgedWhereOneOfThemIsWrong) {
   EXPECT_THAT(problems_of(R"({"low": "x", "high": 1})"), ElementsAre(problem("/low", "is not accepted")));
 }
 
+TEST(RelationOfKeys, IsJudgedBesideAProblemOfAnotherKey) {
+  EXPECT_THAT(problems_of(R"({"low": 9, "kind": 5})"),
+              ::testing::UnorderedElementsAre(problem("/kind", "not accepted"), problem("/low", "at most high - 3")));
+}
+
+TEST(AProblem, IsAboutItsValueAndAllWithinIt) {
+  const Problems problems{{"/a/b", "wrong"}, {"/c", "wrong"}};
+  for (const char* reported : {"/a/b", "/a/b/0", "/c", "/c/d/e"}) EXPECT_TRUE(is_reported(problems, reported));
+  for (const char* sound : {"/a", "/a/bc", "/a/d", "/cd", "/d", ""}) EXPECT_FALSE(is_reported(problems, sound));
+  EXPECT_TRUE(is_reported({{"", "is no JSON"}}, "/a"));
+}
+
 TEST(RelationOfKeys, HoldsAtItsBorderOnlyWhereItIsClosed) {
   const auto accepted = [](Relation relation, double value) {
     const json object = json::object();
@@ -182,6 +194,15 @@ TEST(RelationOfKeys, HoldsAtItsBorderOnlyWhereItIsClosed) {
   EXPECT_TRUE(accepted(Relation::kBelow, 4.5));
   EXPECT_FALSE(accepted(Relation::kAbove, 5.0));
   EXPECT_TRUE(accepted(Relation::kAbove, 5.5));
+}
+
+TEST(ARangeOfOneNumber, IsSaidAsThatNumber) {
+  Problems problems;
+  std::int64_t format = 2;
+  const auto describe_format = [&](Fields& fields) { fields.integer("format", format, {2, 2}, "of the document"); };
+  read_document(R"({"format": 3})", describe_format, problems);
+  EXPECT_THAT(problems, ElementsAre(Problem{"/format", "3 is not accepted; must be 2"}));
+  EXPECT_THAT(schema_to_table(fields_to_schema(describe_format, "t")), HasSubstr("| `format` | 2 | `2` |"));
 }
 
 TEST(WrittenFields, ReadBackAsTheSameStructure) {

@@ -243,5 +243,15 @@ TEST(ConfigFile, ReportsRangesAndCrossFieldProblemsTogether) {
   EXPECT_THAT(problems, Not(Contains(problem("/camera/address", "is empty")))) << "said once is enough";
 }
 
+TEST_F(AUsableConfig, IsNotJudgedByADefaultInPlaceOfARefusedValue) {
+  config_.stage.min = Micrometers{2000};
+  config_.stage.max = Micrometers{1000};
+  config_.camera.driver = "replay";
+  const Problems read{{"/stage/max_um", "\"x\" is not accepted"}, {"/camera", "5 is not an object { }"}};
+  EXPECT_THAT(check_config(config_, read), IsEmpty());
+  config_.rpc.address = "localhost";
+  EXPECT_THAT(check_config(config_, read), ElementsAre(problem("/rpc/address", "'localhost'")));
+}
+
 }  // namespace
 }  // namespace fvd

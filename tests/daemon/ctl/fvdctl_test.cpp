@@ -117,9 +117,28 @@ TEST(Fvdctl, ExitsWithOneWhenTheJobFailed) {
 }
 
 TEST(Fvdctl, PrintsTheResultInTheFormatAskedFor) {
-  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}})}});
+  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}, {"state", "completed"}})}});
   EXPECT_EQ(ask(server, {"result", "J7", "--format", "full"}).code, kExitOk);
   EXPECT_EQ(server.requests().at(0)["params"], json({{"job_id", "J7"}, {"format", "full"}}));
+}
+
+TEST(Fvdctl, ExitsWithOneForTheResultOfAJobThatFailed) {
+  json failed = status("failed", 2, "");
+  failed["error"] = "too_few_valid_points";
+  failed["error_message"] = "only 12 % of the points are valid";
+  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}, {"state", "failed"}})},
+                        {"job.wait", FakeRpcServer::result(failed)}});
+  const Outcome outcome = ask(server, {"result", "J7"});
+  EXPECT_EQ(outcome.code, kExitJobFailed);
+  EXPECT_EQ(json::parse(outcome.out)["state"], "failed");
+  EXPECT_EQ(outcome.err, "fvdctl: job J7 failed: too_few_valid_points: only 12 % of the points are valid\n");
+}
+
+TEST(Fvdctl, ExitsWithUnavailableWhereThereIsNoResultYet) {
+  FakeRpcServer server({{"result.get", FakeRpcServer::result({{"job_id", "J7"}, {"state", "processing"}})}});
+  const Outcome outcome = ask(server, {"result", "J7"});
+  EXPECT_EQ(outcome.code, kExitUnavailable);
+  EXPECT_THAT(outcome.err, HasSubstr("no result yet"));
 }
 
 TEST(Fvdctl, CallsAnyMethod) {
@@ -174,6 +193,16 @@ TEST(Fvdctl, ExitsWithUsageForWrongArguments) {
     EXPECT_EQ(outcome.code, kExitUsage) << testing::PrintToString(arguments);
     EXPECT_FALSE(outcome.err.empty());
   }
+}
+
+TEST(Fvdctl, NamesAnUnknownCommandAndTheNearest) {
+  const Outcome near = run({"--runtime-dir", "/r", "stat"});
+  EXPECT_EQ(near.code, kExitUsage);
+  EXPECT_THAT(near.err, HasSubstr("'stat' is not a command; expected one of state, start, "));
+  EXPECT_THAT(near.err, HasSubstr("did you mean 'state'?"));
+  const Outcome far = run({"bogus"});
+  EXPECT_EQ(far.code, kExitUsage);
+  EXPECT_THAT(far.err, HasSubstr("'bogus' is not a command"));
 }
 
 TEST(Fvdctl, PrintsHelpAndVersion) {

@@ -191,7 +191,8 @@ TEST_F(AProcessWithARecipe, TellsTheRecipeAndJudgesByIt) {
 TEST_F(AProcessWithARecipe, EndsAsFailedWhereTooFewPointsAreValid) {
   const Outcome outcome = run({"--min-significance", "1000000", "--out", scratch_ / "out"});
   EXPECT_EQ(outcome.code, kExitVerdictFail) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("verdict   fail"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("verdict   fail\nlimit     valid_fraction is 0, the recipe asks for at least 0.5"));
   EXPECT_EQ(result("out")["verdict"], "fail");
 }
 
@@ -216,6 +217,67 @@ TEST_F(AProcessWithARecipe, TakesHeightsFromTheSlicesOwnFileBeforeTheRecipes) {
   EXPECT_EQ(result("recorded")["slices"]["last_um"], 50.0);
   ASSERT_EQ(run({"--z-step-um", "3", "--out", scratch_ / "typed"}).code, kExitOk);
   EXPECT_EQ(result("typed")["slices"]["last_um"], 30.0);
+}
+
+TEST_F(AProcessWithARecipe, RefusesHeightsThatSeemToBeInAnotherUnit) {
+  std::string heights;
+  for (int i = 0; i < 11; ++i) heights += std::to_string(0.01 * i) + "\n";
+  test::write_text(scratch_ / "in/z.txt", heights);
+  const Outcome refused = run({"--out", scratch_ / "out"});
+  EXPECT_EQ(refused.code, kExitBadData);
+  EXPECT_THAT(refused.err, HasSubstr("z.txt: the step is 0.01 um, the recipe's is 10 um"));
+  EXPECT_THAT(refused.err, HasSubstr("--z-unit mm or m"));
+  EXPECT_FALSE(fs::exists(scratch_ / "out"));
+  ASSERT_EQ(run({"--z-file", scratch_ / "in/z.txt", "--z-unit", "mm", "--out", scratch_ / "mm"}).code, kExitOk);
+  EXPECT_EQ(result("mm")["slices"]["last_um"], 100.0);
+  EXPECT_TRUE(result("mm")["warnings"].empty());
+  ASSERT_EQ(run({"--z-file", scratch_ / "in/z.txt", "--z-unit", "um", "--out", scratch_ / "um"}).code, kExitOk)
+      << "the unit was said";
+  EXPECT_EQ(result("um")["warnings"][0]["code"], "step_differs");
+}
+
+TEST(Process, WarnsOfAUnitThatNobodySaidWithOddSteps) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 4, 2.0);
+  test::write_text(scratch / "z.txt", "0\n0.01\n0.02\n0.03\n");
+  const Outcome outcome = process({scratch / "in", "--z-file", scratch / "z.txt", "--out", scratch / "out"});
+  EXPECT_EQ(outcome.code, kExitOk) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("z.txt: the step is 0.01 um: if its numbers are not in um"));
+}
+
+TEST_F(AProcessWithARecipe, WarnsOfOtherSlicesThanTheRecipePlans) {
+  std::string recipe = kRecipe;
+  recipe.replace(recipe.find("11"), 2, "12");
+  test::write_text(scratch_ / "part.json", recipe);
+  ASSERT_EQ(run({"--z-step-um", "9", "--out", scratch_ / "out"}).code, kExitOk);
+  const auto warnings = result("out")["warnings"];
+  ASSERT_EQ(warnings.size(), 2U) << warnings;
+  EXPECT_EQ(warnings[0]["code"], "slices_differ");
+  EXPECT_EQ(warnings[0]["text"], "there are 11 slices, the recipe has 12");
+  EXPECT_EQ(warnings[1]["code"], "step_differs");
+  EXPECT_EQ(warnings[1]["text"], "the step is 9 um, the recipe's is 10 um");
+}
+
+TEST_F(AProcessWithARecipe, WarnsWhereTheSlicesSpanLessThanTheFocusCurve) {
+  std::string recipe = kRecipe;
+  recipe.replace(recipe.find("\"window_px\""), 0, "\"curve_width_um\": 200, \"bin_slices\": 1, ");
+  test::write_text(scratch_ / "part.json", recipe);
+  ASSERT_EQ(run({"--out", scratch_ / "out"}).code, kExitOk);
+  EXPECT_EQ(result("out")["warnings"][0]["code"], "range_short");
+}
+
+TEST(Process, RefusesFewerSlicesThanAPeakNeeds) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "two", "s", ".png", 2, 1.0);
+  const Outcome two = process({scratch / "two", "--z-step-um", "10", "--out", scratch / "out"});
+  EXPECT_EQ(two.code, kExitBadData);
+  EXPECT_THAT(two.err, HasSubstr("two has 2 slices; a peak needs at least 3"));
+  test::write_stack(scratch / "four", "s", ".png", 4, 1.0);
+  const Outcome four = process({scratch / "four", "--z-step-um", "10", "--bin", "2", "--out", scratch / "out"});
+  EXPECT_EQ(four.code, kExitBadData);
+  EXPECT_THAT(four.err, HasSubstr("four has 4 slices; a peak needs at least 5"));
+  EXPECT_THAT(four.err, HasSubstr("in bins of 2 slices"));
+  EXPECT_FALSE(fs::exists(scratch / "out"));
 }
 
 TEST_F(AProcessWithARecipe, RefusesABadRecipeAndLeavesNothing) {

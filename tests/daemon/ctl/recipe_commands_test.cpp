@@ -86,9 +86,19 @@ TEST_F(FvdctlRecipe, ShowsTheNotesOfAnAcceptedOne) {
 
 TEST_F(FvdctlRecipe, SavesAgainstTheBaseThatIsNamed) {
   answer("recipe.save", {{"id", "part"}, {"version", 4}});
-  EXPECT_EQ(run({"save", file("{}"), "--base", "3", "--author", "anna", "--comment", "c"}).code, kExitOk);
+  const Outcome outcome = run({"save", file("{}"), "--base", "3", "--author", "anna", "--comment", "c"});
+  EXPECT_EQ(outcome.code, kExitOk);
+  EXPECT_EQ(outcome.err, "fvdctl: recipe part: version 4 is in force now\n");
   EXPECT_EQ(server->requests().at(0)["params"],
             json({{"id", "part"}, {"text", "{}"}, {"base_version", 3}, {"author", "anna"}, {"comment", "c"}}));
+}
+
+TEST_F(FvdctlRecipe, SaysThatAnUnchangedRecipeWasNotSaved) {
+  answer("recipe.save", {{"id", "part"}, {"version", 3}});
+  const Outcome outcome = run({"save", file("{}"), "--base", "3", "--author", "anna"});
+  EXPECT_EQ(outcome.code, kExitOk);
+  EXPECT_EQ(json::parse(outcome.out)["version"], 3);
+  EXPECT_EQ(outcome.err, "fvdctl: recipe part: nothing changed, version 3 with this text is in force already\n");
 }
 
 TEST_F(FvdctlRecipe, SavesANewRecipeUnderItsFilesName) {
@@ -118,6 +128,12 @@ TEST_F(FvdctlRecipe, ConvertsWithoutADaemon) {
   EXPECT_EQ(outcome.err, "");
   EXPECT_THAT(run({"convert", file(std::string("// why\n") + kOld)}).err, HasSubstr("comments are not carried over"));
   EXPECT_EQ(run({"convert", file(outcome.out)}).code, kExitBadData) << "it is converted already";
+}
+
+TEST_F(FvdctlRecipe, NamesACommandThatItDoesNotHave) {
+  const Outcome outcome = run({"delete", "a"});
+  EXPECT_EQ(outcome.code, kExitUsage);
+  EXPECT_THAT(outcome.err, HasSubstr("'delete' is not a command of recipe; expected one of list, get"));
 }
 
 TEST_F(FvdctlRecipe, RefusesWrongArguments) {

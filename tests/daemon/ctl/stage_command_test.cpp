@@ -118,6 +118,7 @@ TEST_F(StageAccuracy, WritesReportPointsAndPicture) {
   ASSERT_EQ(run.code, kExitOk) << run.err;
   std::ifstream in(out() + "/stage_accuracy.json");
   const json report = json::parse(in);
+  EXPECT_EQ(report["provenance"]["simulated"], true);
   EXPECT_LT(report["error"]["sd_um"].get<double>(), 0.1);
   EXPECT_TRUE(std::filesystem::exists(out() + "/stage_accuracy.png"));
   std::ifstream csv(out() + "/stage_accuracy.csv");
@@ -127,6 +128,13 @@ TEST_F(StageAccuracy, WritesReportPointsAndPicture) {
   EXPECT_EQ(fvdctl({"stage", "accuracy"}).code, kExitUsage);
   const Ran again = measure({});
   EXPECT_NE(again.err.find("exists already"), std::string::npos) << "an old report is not overwritten";
+}
+
+TEST_F(StageAccuracy, DoesNotSayThatAStageIsRealForItCannotKnow) {
+  const Ran run = measure({"--home"});
+  ASSERT_EQ(run.code, kExitOk) << run.err;
+  std::ifstream in(out() + "/stage_accuracy.json");
+  EXPECT_FALSE(json::parse(in)["provenance"].contains("simulated"));
 }
 
 TEST_F(StageAccuracy, DoesNotHomeUnasked) {

@@ -264,6 +264,10 @@ TEST_F(ARecipeBook, ChecksWithoutKeepingAnything) {
   EXPECT_THAT(book_.check(recipe_of(2), "a").refusal, HasSubstr("recipe a: /acquire/scan/slices: 2 is not accepted"));
   EXPECT_THAT(book_.check(recipe_of(200), "a").refusal, HasSubstr("expected at most 100")) << "the stage ends there";
   EXPECT_EQ(book_.check(recipe_of(200), "a").sha256, "");
+  std::string two_mistakes = recipe_of(200);
+  two_mistakes.insert(1, R"("x": 1, )");
+  EXPECT_THAT(book_.check(two_mistakes, "a").refusal,
+              AllOf(HasSubstr("/x: unknown key"), HasSubstr("expected at most 100")));
   EXPECT_FALSE(std::filesystem::exists(edited_));
 }
 

@@ -17,6 +17,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kSmallest =
@@ -119,6 +120,12 @@ TEST(Recipe, HasTheDigestThatSha256sumTellsOfTheFile) {
   EXPECT_NE(parse_recipe(std::string(kSmallest) + "\n", "a").sha256, recipe_sha256(kSmallest));
 }
 
+TEST(Recipe, NamesTheFilesOfFurtherMapsOnlyWhereThereAreSome) {
+  const Recipe recipe =
+      parse_recipe(with_reconstruct(R"({"focus": {"extra_peaks": ["nearest"]}}, "export": ["height_*.tiff"])"), "r");
+  EXPECT_THAT(recipe.exports.value(), ElementsAre("height_*.tiff"));
+}
+
 TEST(OldRecipe, IsReadWithANote) {
   const Recipe old = parse_recipe(kSmallestOld, "r");
   EXPECT_EQ(values(old), values(parse_recipe(kSmallest, "r")));
@@ -174,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"", "", "line 1"}, BadRecipe{"{}", "/format", "is missing"},
         BadRecipe{"{}", "/acquire", "is missing"},
         BadRecipe{R"({"format": 2, "acquire": {}})", "/acquire/scan", "is missing"},
-        BadRecipe{R"({"format": 3, "acquire": {}})", "/format", "within 2..2"},
+        BadRecipe{R"({"format": 3, "acquire": {}})", "/format", "3 is not accepted; must be 2"},
         BadRecipe{R"({"format": 2, "scan": {"start_um": 0, "step_um": 1, "slices": 3}})", "/scan", "unknown key"},
         BadRecipe{with_scan(R"({"start_um": 0, "step_um": 1})"), "/acquire/scan/slices", "is missing"},
         BadRecipe{with_scan(R"({"start_um": 0, "step_um": 0, "slices": 3})"), "/acquire/scan/step_um", "above 0"},
@@ -198,6 +205,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "above 0"},
         BadRecipe{with_reconstruct(R"({"smooth_px": 2})"), "/reconstruct/smooth_px", "unknown key"},
         BadRecipe{with("", R"(, "export": ["height.csv"])"), "/export", "\"height.tiff\""},
+        BadRecipe{with("", R"(, "export": ["mask.png", "height_*.tiff"])"), "/export",
+                  "height_*.tiff stands for the maps of extra_peaks, which is empty, so it makes no file; expected "
+                  "extra_peaks at /reconstruct/focus/extra_peaks, or names that make files: height.tiff, sigma.tiff"},
         BadRecipe{with("", R"(, "keep": {"slices": "yes"})"), "/keep/slices", "true or false"},
         BadRecipe{with("", R"(, "evaluation": {})"), "/evaluation", "unknown key"},
         BadRecipe{with("", R"(, "report": {})"), "/report", "unknown key"},
@@ -210,6 +220,19 @@ TEST(Recipe, ReportsAllProblemsAtOnce) {
       kBadRecipe,
       (void)parse_recipe(R"({"format": 2, "acquire": {"scan": {"step_um": -1, "slices": 2}}, "x": 1})", "r"),
       AllOf(HasSubstr("/scan/start_um"), HasSubstr("/scan/step_um"), HasSubstr("/scan/slices"), HasSubstr("/x")));
+}
+
+TEST(Recipe, IsJudgedAsAWholeBesideProblemsOfSingleKeys) {
+  FVD_EXPECT_ERROR_SAYING(
+      kBadRecipe,
+      (void)parse_recipe(with_scan(R"({"start_um": "x", "step_um": 1, "slices": 5, "mode": "continuous",)"
+                                   R"( "trigger": "line", "allowed_lost_slices": 4})"),
+                         "r"),
+      AllOf(HasSubstr("/acquire/scan/start_um"), HasSubstr("/acquire/scan/trigger: line is for scan.mode step"),
+            HasSubstr("/acquire/scan/allowed_lost_slices")));
+  FVD_EXPECT_ERROR_SAYING(kBadRecipe,
+                          (void)parse_recipe(with_focus(R"({"peak": "gauss", "extra_peaks": ["five_sample"]})"), "r"),
+                          AllOf(HasSubstr("focus/peak: "), Not(HasSubstr("already"))));
 }
 
 TEST(Recipe, IsCheckedAgainstTheStageLimits) {
@@ -225,6 +248,8 @@ TEST(Recipe, IsCheckedAgainstTheStageLimits) {
   EXPECT_EQ(high[0].pointer, "/acquire/scan/slices");
   EXPECT_THAT(high[0].message, AllOf(HasSubstr("193"), HasSubstr("at most 192")));
   EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um), SizeIs(2));
+  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/acquire/scan/step_um", "is missing"}}), SizeIs(1));
+  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/scan/start_um", "is missing"}}), IsEmpty());
 }
 
 TEST(RecipeId, IsAPlainName) {

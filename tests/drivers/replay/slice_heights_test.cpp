@@ -54,6 +54,16 @@ TEST(SliceHeights, ComeFromAFileInItsUnit) {
               ElementsAre(0.001, 0.003, 0.01));
 }
 
+TEST(SliceHeights, AreNotTakenFromNumbersOfAnotherUnit) {
+  const ScratchDir scratch;
+  test::write_text(scratch / "z.txt", "0\n1e-5\n2e-5\n");
+  expect_error(ErrorCode::kBadInput, {"z.txt", "the mean step is 1e-05 um", "--z-unit", "stage.replay_z_unit"}, [&] {
+    (void)slice_heights_um(ZFile{scratch / "z.txt", LengthUnit::kMicrometre}, list_of(3));
+  });
+  EXPECT_THAT(slice_heights_um(ZFile{scratch / "z.txt", LengthUnit::kMetre}, list_of(3)),
+              ElementsAre(0.0, testing::DoubleEq(10.0), testing::DoubleEq(20.0)));
+}
+
 TEST(SliceHeights, NameTheFileAndTheLineThatIsWrong) {
   const ScratchDir scratch;
   const auto expect_refused = [&](const std::string& text, std::initializer_list<std::string> words) {

@@ -1,0 +1,15 @@
+#pragma once
+
+/// What somebody may have meant by an unknown name.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fvd {
+
+/// "; did you mean 'NAME'?" with the known name that takes the fewest letters changed, added or left out; empty where
+/// all are too different.
+[[nodiscard]] std::string did_you_mean(std::string_view name, const std::vector<std::string>& known);
+
+}  // namespace fvd

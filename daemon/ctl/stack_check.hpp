@@ -1,0 +1,17 @@
+#pragma once
+
+/// Whether recorded slices and their heights can be what their recipe, or a microscope, would give.
+
+#include <vector>
+
+#include "daemon/ctl/process_stack.hpp"
+#include "daemon/result/result.hpp"
+
+namespace fvd::ctl {
+
+/// z_um: of each slice. Returns what the result should warn of: another number of slices or another step than the
+/// recipe's, a range within the width of the focus curve, a unit that may be wrong. Throws Error kBadInput for fewer
+/// slices than a peak needs, and for a file whose unit nobody said with steps far from the recipe's.
+[[nodiscard]] std::vector<Warning> check_stack(const ProcessOptions& options, const std::vector<double>& z_um);
+
+}  // namespace fvd::ctl
