@@ -16,7 +16,7 @@ enum class ErrorCode {
   kUnknownRecipe,
   kUnknownJob,
   kNotReady,     ///< the machine is in a state that does not take jobs
-  kBusy,         ///< another job is running
+  kBusy,         ///< another job or command is running; may succeed later
   kSeqConflict,  ///< same sequence number, different request
   kSeqStale,     ///< sequence number older than the window that is remembered
   kJobFailed,    ///< reserved, never raised: a job tells its own error
@@ -25,7 +25,7 @@ enum class ErrorCode {
   kInterrupted,  ///< the daemon stopped or died while the job ran
   kShuttingDown,
   kCameraDisconnected,  ///< no reply from the camera, control lost, or not open
-  kCameraFramesLost,    ///< a slice could not be had within the retries
+  kCameraFramesLost,    ///< no good frame within the retries, for more slices than the recipe allows
   kCameraTimeout,       ///< reserved, never raised: kCameraFramesLost
   kCameraSettings,      ///< the camera refused a setting or reads back another value
   kStageDisconnected,   ///< no reply from the drive, or the link is gone
@@ -47,7 +47,7 @@ inline constexpr ErrorCode kLastErrorCode = ErrorCode::kRecipeConflict;
 
 /// The stable name of a code, e.g. "camera_disconnected".
 [[nodiscard]] std::string_view error_name(ErrorCode code) noexcept;
-/// The code of a name; kInternal for one that is none.
+/// The code that has this name; kInternal for a name that no code has.
 [[nodiscard]] ErrorCode error_from_name(std::string_view name) noexcept;
 
 /// what() says what failed, where, and what to do. A caller that knows more catches it and throws one that says more.

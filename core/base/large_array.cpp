@@ -56,12 +56,12 @@ void release_large(void* memory, std::size_t bytes, KeptPages* pages) noexcept {
 }  // namespace detail
 
 namespace {
-constexpr std::size_t kMostBlocks = 64;
+constexpr std::size_t kMaxBlocks = 64;
 }
 
 KeptPages::KeptPages(std::size_t most_kept_bytes) : most_kept_bytes_(most_kept_bytes) {
   const MutexLock lock(mutex_);
-  blocks_.reserve(kMostBlocks);  // keep() may not throw
+  blocks_.reserve(kMaxBlocks);  // keep() may not throw
 }
 
 KeptPages::~KeptPages() { release(); }

@@ -18,7 +18,7 @@ namespace fvd {
 /// as resident. context: thread-safe.
 class KeptPages {
  public:
-  /// most_kept_bytes: more than that is not kept; the oldest go first.
+  /// most_kept_bytes: limit of the sum; beyond it the oldest blocks are released first.
   explicit KeptPages(std::size_t most_kept_bytes);
   ~KeptPages();
   KeptPages(const KeptPages&) = delete;
@@ -29,8 +29,10 @@ class KeptPages {
   /// Gives the operating system back what is kept.
   void release() noexcept;
 
-  /// As many bytes that were kept, a multiple of the page's size; nullptr if there are none of that size.
+  /// A kept block of exactly this size, which the caller now owns; nullptr if there is none. bytes: a multiple of the
+  /// page size, 4096.
   [[nodiscard]] void* take(std::size_t bytes);
+  /// Takes over a block that was mapped with mmap(2). bytes: as in take().
   void keep(void* memory, std::size_t bytes) noexcept;
 
  private:
@@ -55,9 +57,10 @@ namespace detail {
 void release_large(void* memory, std::size_t bytes, KeptPages* pages) noexcept;
 }  // namespace detail
 
-/// A fixed number of plain values, unset at first, aligned to 64 bytes. From 2 MiB up the kernel is asked for huge
-/// pages (madvise(2), MADV_HUGEPAGE), and a page costs nothing until the first thread writes to it. A surface of 5
-/// million points is 30 000 ordinary pages: to get them takes as long as to compute the heights.
+/// A fixed number of plain values, uninitialised, aligned to 64 bytes. From 2 MiB up the kernel is asked for huge pages
+/// (madvise(2), MADV_HUGEPAGE), and a page costs nothing until the first thread writes to it. A surface of 5 million
+/// points takes 30 000 ordinary pages; to get these takes as long as to compute the heights.
+/// context: one thread at a time; several may write to different elements.
 template <typename T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -90,7 +93,7 @@ class LargeArray {
   [[nodiscard]] std::span<const T> values() const noexcept { return {data_, size_}; }
 
  private:
-  KeptPagesPtr pages_;  // of which the memory came and to which it goes; may be null
+  KeptPagesPtr pages_;  // where the memory came from and goes back to; may be null
   std::size_t size_ = 0;
   T* data_ = nullptr;
 };

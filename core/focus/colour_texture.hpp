@@ -1,6 +1,6 @@
 #pragma once
 
-/// The all-in-focus image in colour, beside a stack that measures with grey slices.
+/// The all-in-focus image in colour, for a stack that measures with grey slices.
 
 #include <span>
 
@@ -9,18 +9,18 @@
 
 namespace fvd {
 
-/// Keeps the colour of each pixel's peak: 3 bytes per pixel, with bins 6. Nothing at all for a grey stack.
+/// Keeps the colour of each pixel's peak: 3 bytes per pixel, 6 with bins, 0 for a grey stack.
 /// context: rows from many threads, each row from one.
 class ColourTexture {
  public:
   /// For a grey stack: width and height 0.
   ColourTexture(int width, int height, int bin_slices);
 
-  /// After the samples of these slices were taken in: peak_index as it is now, shape [width].
+  /// To be called after the accumulator has taken in these slices. peak_index: its present state, shape [width].
   void add_row(int y, const std::uint16_t* peak_index, std::span<const ZSlice> slices, int first_slice) noexcept;
 
-  /// Colours of row y, shape [width][3]; pixels whose peak is sample `pending`, an incomplete bin, get that bin's.
-  /// -1 = there is none.
+  /// Writes the colours of row y to `out`, shape [width][3]. pending: number of the incomplete bin, -1 = none; pixels
+  /// whose peak is that sample get the colour of that bin.
   void copy_row(int y, const std::uint16_t* peak_index, int pending, std::uint8_t* out) const noexcept;
 
   [[nodiscard]] bool empty() const noexcept { return peak_.empty(); }

@@ -16,11 +16,11 @@ namespace fvd {
 
 namespace {
 
-constexpr double kEnough = 0.5;        // of the largest response
-constexpr double kTargetNoise = 0.01;  // of the peak
-constexpr int kLeastWindow = 5;
-constexpr int kLargestWindow = 31;
-constexpr int kLeastSide = 32;
+constexpr double kMinResponseShare = 0.5;  // of the largest response
+constexpr double kMaxNoiseShare = 0.01;    // of the peak
+constexpr int kMinWindow_px = 5;
+constexpr int kMaxWindow_px = 31;
+constexpr int kMinSide_px = 32;
 
 template <typename Pixel>
 double mean_laplacian(PlaneView<const Pixel> image, int distance) {
@@ -40,7 +40,7 @@ double mean_laplacian(PlaneView<const Pixel> image, int distance) {
 }  // namespace
 
 FocusSuggestion suggest_focus(const ImageView& sharp) {
-  if (sharp.width < kLeastSide || sharp.height < kLeastSide) {
+  if (sharp.width < kMinSide_px || sharp.height < kMinSide_px) {
     throw Error(ErrorCode::kBadInput, "an image of " + std::to_string(sharp.width) + " x " +
                                           std::to_string(sharp.height) + " pixels: at least 32 x 32 are needed");
   }
@@ -64,8 +64,8 @@ FocusSuggestion suggest_focus(const ImageView& sharp) {
                                           std::to_string(suggestion.noise_grey) +
                                           " grey levels: is it in focus, and lit so that the surface shows?");
   }
-  const auto enough =
-      std::find_if(response.begin(), response.end(), [&](double value) { return value >= kEnough * largest; });
+  const auto enough = std::find_if(response.begin(), response.end(),
+                                   [&](double value) { return value >= kMinResponseShare * largest; });
   suggestion.distance_px = static_cast<int>(enough - response.begin()) + 1;
   suggestion.response_grey = *enough;
   FocusSettings settings;
@@ -73,8 +73,8 @@ FocusSuggestion suggest_focus(const ImageView& sharp) {
     settings.window_px = window;
     return sample_noise(settings, suggestion.noise_grey, 0.0) / (window * window * suggestion.response_grey);
   };
-  suggestion.window_px = kLeastWindow;
-  while (suggestion.window_px < kLargestWindow && noise_over_peak(suggestion.window_px) > kTargetNoise) {
+  suggestion.window_px = kMinWindow_px;
+  while (suggestion.window_px < kMaxWindow_px && noise_over_peak(suggestion.window_px) > kMaxNoiseShare) {
     suggestion.window_px += 2;
   }
   suggestion.sample_noise = noise_over_peak(suggestion.window_px);

@@ -8,9 +8,9 @@ namespace fvd {
 
 namespace {
 
-constexpr double kSaturatedMuch = 0.001;
-constexpr double kLargestFactor = 8.0;
-constexpr double kBlindFactor = 0.25;
+constexpr double kMaxSaturatedShare = 0.001;  // above it the true brightness cannot be computed
+constexpr double kMaxExposureFactor = 8.0;
+constexpr double kSaturatedExposureFactor = 0.25;  // of an image that is more saturated than that
 
 template <typename Pixel>
 std::vector<std::uint64_t> histogram(PlaneView<const Pixel> image, int levels) {
@@ -51,8 +51,8 @@ GreyStatistics grey_statistics(const ImageView& image) {
 }
 
 double exposure_factor(const GreyStatistics& grey, PixelFormat format, double target) {
-  if (grey.saturated_fraction > kSaturatedMuch) return kBlindFactor;
-  return std::min(kLargestFactor, target * max_grey_level(format) / std::max(grey.p999, 1));
+  if (grey.saturated_fraction > kMaxSaturatedShare) return kSaturatedExposureFactor;
+  return std::min(kMaxExposureFactor, target * max_grey_level(format) / std::max(grey.p999, 1));
 }
 
 }  // namespace fvd

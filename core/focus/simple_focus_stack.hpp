@@ -1,7 +1,7 @@
 #pragma once
 
-/// The streaming stack's obviously correct twin: keeps every slice's sharpness and looks at the whole curve at the end.
-/// Memory grows with the number of slices; for tests.
+/// The streaming stack's obviously correct twin: keeps every slice's sharpness and evaluates the whole curve at the
+/// end. Memory grows with the number of slices; for tests.
 
 #include <vector>
 

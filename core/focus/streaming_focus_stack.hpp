@@ -27,8 +27,8 @@ struct ZSlice {
 class StreamingFocusStack {
  public:
   static constexpr int kMaxSlices = 65535;
-  static constexpr int kMaxBatch = 8;           ///< slices that go through the cache together
-  static constexpr double kMaxHeight_um = 1e9;  ///< a kilometre: a z beyond it is no stage position
+  static constexpr int kMaxBatch = 8;           ///< slices that are processed together, row by row
+  static constexpr double kMaxHeight_um = 1e9;  ///< one kilometre: a larger z is no stage position
 
   /// Allocates everything it will ever need. width, height >= 1. pool outlives the stack.
   /// colour: every slice comes with its colours, and the map gets an all-in-focus image in colour.
@@ -41,12 +41,11 @@ class StreamingFocusStack {
   StreamingFocusStack& operator=(StreamingFocusStack&&) noexcept;
 
   /// Adds one slice at its measured z. Throws Error kBadSlice if size or format differ, colours are missing, z is not a
-  /// number within
-  /// +-kMaxHeight_um, or the stack is full; the stack is unchanged then. Allocates nothing.
+  /// number within +-kMaxHeight_um, or the stack is full; the stack is unchanged then. Allocates nothing.
   void push(const ImageView& slice, double z_um);
 
-  /// The same for successive slices at once, to the same bits: faster, for each row's state passes the memory once for
-  /// up to kMaxBatch of them.
+  /// Adds successive slices, with the same result to the bit; faster, because each row's state is loaded and stored
+  /// once for up to kMaxBatch of them.
   void push(std::span<const ZSlice> slices);
 
   [[nodiscard]] int slices() const noexcept;
@@ -54,11 +53,11 @@ class StreamingFocusStack {
   /// Bytes of per-pixel state; the same before the first and after the last slice.
   [[nodiscard]] double state_bytes_per_pixel() const noexcept;
 
-  /// Bytes a scan of this size will need in all: state, scratch and one height map. Known before the scan.
+  /// Bytes that a scan of this size needs: state, scratch and one height map; without the colours of a stack in colour.
   [[nodiscard]] static std::size_t memory_bytes(int width, int height, PixelFormat format,
                                                 const FocusSettings& settings, int threads);
 
-  /// Heights from the state; may be called with several methods. Throws Error kBadSlice with fewer than one slice.
+  /// Heights from the state; may be called with several methods. Throws Error kBadSlice if no slice was pushed.
   [[nodiscard]] HeightMap finish(PeakMethod method) const;
 
  private:

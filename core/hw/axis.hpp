@@ -1,7 +1,7 @@
 #pragma once
 
 /// The Z stage as the scan needs it: absolute moves that end settled, and the position measured over an exposure.
-/// No word of any fieldbus here; high-end stages speak other protocols.
+/// Nothing here depends on a fieldbus: high-end stages speak other protocols.
 
 #include <chrono>
 #include <cstdint>
@@ -27,9 +27,9 @@ struct StageInfo {
   Micrometers min;                      ///< lowest target allowed, take-up included
   Micrometers max;                      ///< highest target allowed
   Micrometers take_up;                  ///< overshoot below the first target that loads the backlash
-  Micrometers lead{};                   ///< of the screw, the period of its error; 0 = unknown
-  double speed_um_per_s = 0.0;          ///< of moves, and the fastest a sweep may be
-  double acceleration_um_per_s2 = 0.0;  ///< of both
+  Micrometers lead{};                   ///< lead of the screw, which is the period of its error; 0 = unknown
+  double speed_um_per_s = 0.0;          ///< speed of moves, and the highest speed of a sweep
+  double acceleration_um_per_s2 = 0.0;  ///< acceleration of moves and sweeps
   bool simulated = false;
 };
 
@@ -44,9 +44,9 @@ enum class AxisState {
   kMoving,
   kSettling,  ///< the drive has stopped, the settle criterion is not met yet
   kAlarm,
-  kCommLost,  ///< stopped answering; its position is unknown until it is opened anew
+  kCommLost,  ///< the drive stopped answering; the position is unknown until the axis is opened anew
 };
-/// "NotHomed" and so on.
+/// The state's name in logs and messages: "NotHomed" for kNotHomed.
 [[nodiscard]] const char* axis_state_name(AxisState state) noexcept;
 
 struct StageTemperature {
@@ -54,16 +54,16 @@ struct StageTemperature {
   double celsius = 0.0;
 };
 
-/// How the line to the drive does.
+/// Communication statistics of the line to the drive, since the axis was opened.
 struct StageLinkStats {
   std::uint64_t requests = 0;
   std::uint64_t retries = 0;
-  std::uint64_t unanswered = 0;  ///< no answer, or none that could be used
-  std::uint64_t refused = 0;     ///< by the drive
+  std::uint64_t unanswered = 0;  ///< requests without an answer that could be used
+  std::uint64_t refused = 0;     ///< requests that the drive refused
   std::uint64_t reconnects = 0;
-  std::uint64_t discarded_bytes = 0;  ///< late or garbled
-  std::uint64_t implausible = 0;      ///< positions no axis could have reached, read again
-  double latency_p50_us = 0.0;
+  std::uint64_t discarded_bytes = 0;  ///< bytes of late or garbled answers
+  std::uint64_t implausible = 0;      ///< positions that no axis could have reached, and that were read again
+  double latency_p50_us = 0.0;        ///< request to answer: median, 99th percentile, maximum
   double latency_p99_us = 0.0;
   double latency_max_us = 0.0;
 };
@@ -90,22 +90,22 @@ struct SettleCriterion {
   std::chrono::milliseconds timeout{3000};  ///< from the start of the move
 };
 
-/// How one move went.
+/// Targets, times and end position of one move.
 struct MoveRecord {
   Micrometers target;            ///< as asked for
   Micrometers target_quantised;  ///< as the drive can represent it
   StageCounts target_counts;
   Micrometers position;  ///< measured, last sample of the settle criterion
   HostTime started{};
-  HostTime halted{};  ///< first sample after the commanded motion had ended
-  HostTime settled{};
-  int polls = 0;
+  HostTime halted{};   ///< first sample after the commanded motion had ended
+  HostTime settled{};  ///< last sample of the settle criterion
+  int polls = 0;       ///< queries of the drive from start to settled
 };
 
 /// Mean of the measured positions inside a time window.
 struct PositionMean {
   Micrometers mean;
-  Micrometers sd;   ///< 0 with fewer than two samples
+  Micrometers sd;   ///< sample standard deviation; 0 with fewer than two samples
   int samples = 0;  ///< samples inside the window; 0 = interpolated from the nearest before and after it
 };
 
@@ -129,17 +129,18 @@ class Axis {
   /// kStageDisconnected, kAborted.
   virtual MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) = 0;
 
-  /// Moves to an absolute position at a speed of its own, so that positions may be taken on the way; returns when at
-  /// rest. Throws as move_to does; kStageLimit also for a speed that is not above 0 or above that of moves.
+  /// Moves to an absolute position at the given speed, so that positions may be taken on the way; returns when at rest.
+  /// speed_um_per_s: above 0, at most StageInfo::speed_um_per_s, else Error kStageLimit. Throws as move_to() does.
   virtual MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) = 0;
 
   /// The measured position over [from, to]; waits at most for one sample at or after `to`.
   /// Throws Error kStageDisconnected.
   [[nodiscard]] virtual PositionMean mean_position(HostTime from, HostTime to) = 0;
 
-  /// The measured position of a moving axis: a line through the samples from `reach` before to `reach` after `at`, read
-  /// at `at`. sd is that of the samples about the line, samples their number; 0 = none there, the position is
-  /// extrapolated. Waits at most for one sample at or after at + reach. Throws Error kStageDisconnected.
+  /// The measured position of a moving axis: the value at `at` of a line through the samples from `at` - reach to
+  /// `at` + reach. `sd` is the standard deviation of these samples about the line, `samples` their number; 0 = none
+  /// lies there, the position is extrapolated. Waits at most for one sample at or after at + reach. Throws Error
+  /// kStageDisconnected.
   [[nodiscard]] virtual PositionMean position_at(HostTime at, std::chrono::microseconds reach) = 0;
 
   /// Halts the axis ahead of everything else that is queued. context: any thread.
@@ -147,7 +148,7 @@ class Axis {
 
   [[nodiscard]] virtual bool connected() const noexcept = 0;
 
-  /// Nothing where there is no line.
+  /// Nothing for an axis without a communication line (replay, fakes).
   [[nodiscard]] virtual std::optional<StageLinkStats> link_stats() const { return std::nullopt; }
 };
 

@@ -23,10 +23,10 @@ enum class TriggerMode {
 /// What the recipe asks of the camera. SFNC names in the comments.
 struct CameraSettings {
   SensorFormat pixel_format = SensorFormat::kMono8;  ///< PixelFormat
-  int significant_bits = 0;  ///< of a 16-bit format whose values fill the upper bits: 10 or 12; 0 = as its name says
-  BayerUse bayer = BayerUse::kGreen;  ///< what of a colour mosaic is measured
-  int width = 0;                      ///< Width in pixels, 0 = all the sensor has
-  int height = 0;                     ///< Height in pixels, 0 = all the sensor has
+  int significant_bits = 0;  ///< 10 or 12 for a 16-bit format whose values fill the upper bits; 0 = as its name says
+  BayerUse bayer = BayerUse::kGreen;  ///< which values of a colour mosaic are measured
+  int width = 0;                      ///< Width in pixels, 0 = the sensor's
+  int height = 0;                     ///< Height in pixels, 0 = the sensor's
   int offset_x = 0;                   ///< OffsetX in pixels
   int offset_y = 0;                   ///< OffsetY in pixels
   double exposure_us = 5000.0;        ///< ExposureTime, > 0
@@ -36,7 +36,7 @@ struct CameraSettings {
   double frame_rate_hz = 0.0;          ///< kFreeRun: AcquisitionFrameRate, 0 = as fast as the camera can
   int pool_frames = 8;                 ///< slots of the frame pool, >= 3
 
-  /// The format of the slices that come out.
+  /// Pixel format of the slices that these settings give.
   [[nodiscard]] PixelFormat slice_format() const { return fvd::slice_format(pixel_format, significant_bits); }
 
   bool operator==(const CameraSettings&) const = default;
@@ -46,8 +46,8 @@ struct CameraInfo {
   std::string vendor;
   std::string model;
   std::string serial;
-  std::string address;
-  int sensor_width = 0;  ///< pixels, what a region of 0 x 0 means
+  std::string address;   ///< IP address, or vendor-model-serial
+  int sensor_width = 0;  ///< pixels; the width that CameraSettings::width 0 stands for
   int sensor_height = 0;
   bool simulated = false;
 };
@@ -55,11 +55,11 @@ struct CameraInfo {
 /// Counters since the camera was opened.
 struct CameraHealth {
   std::uint64_t frames_complete = 0;
-  std::uint64_t frames_failed = 0;
-  std::uint64_t underruns = 0;
+  std::uint64_t frames_failed = 0;  ///< delivered, but incomplete or of the wrong geometry
+  std::uint64_t underruns = 0;      ///< frames lost because no slot of the pool was free
   std::uint64_t packets_resent = 0;
   std::uint64_t packets_missing = 0;
-  std::uint64_t ids_skipped = 0;  ///< gaps in the frame ids: frames the camera took and nobody saw
+  std::uint64_t ids_skipped = 0;  ///< frame ids that were skipped: frames that the camera took and did not deliver
 };
 
 /// An open camera. Constructing one opens it (throws Error kCameraDisconnected), destroying it closes it; destruction
@@ -73,22 +73,22 @@ class Camera {
   [[nodiscard]] virtual CameraInfo info() const = 0;
 
   /// Applies and reads back every setting, (re)builds the pool where its shape changed, and acquires from then on:
-  /// triggered, or at once if free-running. Frames of the settings before are gone when it returns. Cheap when the
-  /// settings have not changed. Returns what is in force. Throws Error kCameraSettings, kCameraDisconnected.
+  /// triggered, or at once if free-running. Frames of the previous settings are gone when it returns. Cheap when the
+  /// settings have not changed. Returns the settings in force. Throws Error kCameraSettings, kCameraDisconnected.
   virtual CameraSettings configure(const CameraSettings& settings) = 0;
 
-  /// Starts one exposure; only with TriggerMode::kSoftware. Throws Error kCameraDisconnected; blocks half a second at
-  /// most.
+  /// Starts one exposure; only with TriggerMode::kSoftware. Throws Error kCameraDisconnected. Blocks half a second at
+  /// most, longer only while a driver repeats the command before and the camera answers otherwise.
   virtual void trigger() = 0;
 
-  /// The next frame in order of arrival, good or bad, or nothing by `deadline` or after interrupt(). A deadline in the
-  /// past only looks. Throws Error kCameraDisconnected once the connection is known to be gone.
+  /// The next frame in order of arrival, good or bad; nothing if none came by `deadline`, or after interrupt(). Does
+  /// not wait if the deadline is in the past. Throws Error kCameraDisconnected once the connection is known to be gone.
   [[nodiscard]] virtual std::optional<Frame> next_frame(HostTime deadline) = 0;
 
   /// Longest time from the start of an exposure to the arrival of its frame with the settings in force.
   [[nodiscard]] virtual std::chrono::microseconds frame_deadline() const = 0;
 
-  /// Ends the wait of next_frame(), now or at its next call; configure() forgets it. context: any thread.
+  /// Ends the wait of next_frame(), now or at its next call; configure() cancels the request. context: any thread.
   virtual void interrupt() noexcept = 0;
 
   [[nodiscard]] virtual bool connected() const noexcept = 0;

@@ -11,10 +11,10 @@
 
 namespace fvd {
 
-/// Takes back what a frame borrowed. Outlives every frame it lent.
+/// Owner of the slots that frames borrow. Outlives every frame it lent.
 class FrameRecycler {
  public:
-  /// context: thread-safe, never blocks for long.
+  /// Takes a slot back. context: thread-safe; never waits for a device.
   virtual void recycle(void* slot) noexcept = 0;
 
  protected:
@@ -32,10 +32,11 @@ using FrameLease = std::unique_ptr<void, FrameSlotDeleter>;
 
 enum class FrameStatus {
   kOk,             ///< complete, of the configured geometry
-  kIncomplete,     ///< packets missing, timed out or cut short; the pixels must not be looked at
+  kIncomplete,     ///< packets missing, timed out or cut short; the pixels must not be read
   kWrongGeometry,  ///< complete but not of the configured format or size
 };
 
+/// context: one thread at a time; it may be handed to another thread.
 struct Frame {
   FrameStatus status = FrameStatus::kIncomplete;
   ImageView image;            ///< valid while the lease is held and status is kOk

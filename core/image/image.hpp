@@ -13,7 +13,7 @@
 
 namespace fvd {
 
-/// A borrowed plane of shape [height][width]. Does not own; the owner outlives it.
+/// A view of a plane of shape [height][width]. Does not own the elements; their owner outlives it.
 template <typename T>
 struct PlaneView {
   T* data = nullptr;
@@ -86,7 +86,8 @@ class Plane {
   LargeArray<T> data_;
 };
 
-/// GenICam PFNC names of the formats fvd measures with. More than 8 bits means 16-bit little-endian, LSB aligned.
+/// Formats that fvd measures with, by their GenICam PFNC names. Formats of more than 8 bits take 16 bits per pixel,
+/// little-endian, the value in the lower bits.
 enum class PixelFormat { kMono8, kMono10, kMono12, kMono16 };
 
 [[nodiscard]] constexpr int significant_bits(PixelFormat format) {
@@ -105,7 +106,7 @@ enum class PixelFormat { kMono8, kMono10, kMono12, kMono16 };
 [[nodiscard]] constexpr int bytes_per_pixel(PixelFormat format) { return format == PixelFormat::kMono8 ? 1 : 2; }
 [[nodiscard]] constexpr int max_grey_level(PixelFormat format) { return (1 << significant_bits(format)) - 1; }
 
-/// A borrowed grey image of either depth; the form in which slices travel.
+/// A view of a grey image of 8 or 16 bits per pixel; the form in which slices are passed. Does not own the pixels.
 struct ImageView {
   PixelFormat format = PixelFormat::kMono8;
   int width = 0;

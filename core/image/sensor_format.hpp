@@ -10,7 +10,7 @@
 
 namespace fvd {
 
-/// PFNC formats fvd takes. Bayer names tell the colours of the first two pixels of row 0.
+/// PFNC formats that fvd accepts. The two letters after Bayer are the colours of the first two pixels of row 0.
 enum class SensorFormat {
   kMono8,
   kMono10,  ///< 16 bit per pixel, values at the lower end
@@ -34,17 +34,17 @@ inline constexpr std::array kAllSensorFormats{
     SensorFormat::kBayerGR8,  SensorFormat::kBayerGB8,  SensorFormat::kBayerBG8,     SensorFormat::kBayerRG12,
     SensorFormat::kBayerGR12, SensorFormat::kBayerGB12, SensorFormat::kBayerBG12};
 
-/// What of a colour mosaic is measured; every pixel of the slice gets a value.
+/// Which values of a colour mosaic are measured; every pixel of the slice gets one.
 enum class BayerUse {
-  kGreen,      ///< green as it is, elsewhere the mean of the four green neighbours: the sharpest, and one wavelength
-  kLuminance,  ///< mean of the 2 x 2 pixels to the right and below: (R + 2 G + B) / 4, more light, half a pixel off
+  kGreen,      ///< green pixels unchanged, others the mean of their four green neighbours: sharpest, one wavelength
+  kLuminance,  ///< (R + 2 G + B) / 4 of the pixel and those right and below: more light; shifted by half a pixel
 };
 
 struct SensorFormatInfo {
   std::string_view name;  ///< PFNC
   unsigned pfnc;          ///< PFNC value
-  int bits_per_pixel;     ///< on the wire
-  int bits;               ///< of a value
+  int bits_per_pixel;     ///< on the wire, padding included
+  int bits;               ///< significant bits of a value
   bool bayer;
 };
 
@@ -91,8 +91,8 @@ struct SensorFormatInfo {
   return (pixels * static_cast<std::size_t>(sensor_format_info(format).bits_per_pixel) + 7) / 8;
 }
 
-/// The format of the slices made of it. significant_bits: of a 16-bit format whose values fill the upper bits, 10 or
-/// 12; 0 = as the format says.
+/// The format of the slices made of `format`. significant_bits: 10 or 12 for a 16-bit format whose values fill the
+/// upper bits; 0 = as the format says.
 [[nodiscard]] constexpr PixelFormat slice_format(SensorFormat format, int significant_bits) {
   const SensorFormatInfo info = sensor_format_info(format);
   switch (info.bits == 16 && significant_bits != 0 ? significant_bits : info.bits) {

@@ -20,7 +20,7 @@ struct WireImage {
   std::span<const std::byte> bytes;  ///< sensor_image_bytes() at least, aligned to 2
 };
 
-/// False where the bytes on the wire are the slice.
+/// False if the bytes on the wire already are the slice.
 [[nodiscard]] bool needs_unpacking(SensorFormat format, int significant_bits);
 
 /// Writes width * height pixels of slice_format(), rows contiguous, aligned to 2. Of a mosaic: green as it is and
@@ -30,7 +30,7 @@ struct WireImage {
 /// if either side is too short. context: thread-safe.
 void unpack(const WireImage& image, std::span<std::byte> slice);
 
-/// The same, one pixel at a time.
+/// The same result as unpack(), one pixel at a time, for tests; throws as it does. context: thread-safe.
 void unpack_reference(const WireImage& image, std::span<std::byte> slice);
 
 }  // namespace fvd

@@ -20,8 +20,8 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) : ring_(capacity) { assert(capacity > 0); }
 
-  /// Waits for room. False, and `item` untouched, when there is none by the deadline, the queue is closed or stop is
-  /// requested: the caller decides what a loss means.
+  /// Waits for room. False, and `item` untouched, if there is no room by the deadline, the queue is closed or stop is
+  /// requested; the caller decides what a loss means.
   template <typename Clock>
   [[nodiscard]] bool push_until(T&& item, std::chrono::time_point<Clock> deadline, std::stop_token stop) {
     MutexLock lock(mutex_);
@@ -36,7 +36,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item. Nothing once the queue is closed and empty, or as soon as stop is requested.
+  /// Waits for an item. Returns nothing once the queue is closed and empty, or as soon as stop is requested.
   [[nodiscard]] std::optional<T> pop(std::stop_token stop) {
     MutexLock lock(mutex_);
     changed_.wait(lock, stop, [this] {

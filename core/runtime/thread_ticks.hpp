@@ -1,6 +1,6 @@
 #pragma once
 
-/// Threads that show that they get on, and those that do not.
+/// Detects threads that hang in a piece of work.
 
 #include <atomic>
 #include <chrono>
@@ -11,9 +11,9 @@
 
 namespace fvd {
 
-/// One thread's ticks; makes the thread known to stalled_threads() for as long as it lives. A thread ticks when it
+/// One thread's ticks; stalled_threads() watches the thread for as long as this object lives. A thread ticks when it
 /// begins a piece of work, and rests while it waits for the next one, which may take for ever.
-/// context: the thread itself.
+/// context: the thread itself; age() and the accessors any thread.
 class ThreadTicks {
  public:
   /// allowed: longest time from one tick to the next or to rest(). The thread rests until its first tick.
@@ -46,7 +46,7 @@ struct StalledThread {
   bool operator==(const StalledThread&) const = default;
 };
 
-/// The threads of the process that ticked last longer ago than they may, in the order in which they began.
+/// The threads of the process whose last tick is older than allowed, in the order in which their ThreadTicks were made.
 /// context: thread-safe.
 [[nodiscard]] std::vector<StalledThread> stalled_threads(HostTime now);
 

@@ -12,9 +12,9 @@ namespace fvd {
 
 namespace {
 
-constexpr double kFinePart = 0.25;
+constexpr double kFineStepShare = 0.25;
 /// A maximum that stands out less over the lowest value is noise.
-constexpr double kLeastRise = 1.05;
+constexpr double kMinPeakOverLowest = 1.05;
 
 template <typename Pixel>
 double mean_laplacian(PlaneView<const Pixel> image, const Region& region) {
@@ -123,7 +123,7 @@ AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const Autof
   const std::size_t best = sharpest(result.curve);
   const auto lowest =
       std::min_element(result.curve.begin(), result.curve.end(), [](auto& a, auto& b) { return a.focus < b.focus; });
-  if (best == 0 || best + 1 == result.curve.size() || result.curve[best].focus < kLeastRise * lowest->focus) {
+  if (best == 0 || best + 1 == result.curve.size() || result.curve[best].focus < kMinPeakOverLowest * lowest->focus) {
     std::ostringstream message;
     message << "the region is nowhere sharpest between " << plan.from.value << " and " << plan.to.value
             << " um: move or widen the range, and check light and texture";
@@ -131,7 +131,7 @@ AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const Autof
   }
   std::vector<FocusSample> fine;
   const Micrometers middle{result.curve[best].z_um};
-  searcher.scan(middle - plan.step, middle + plan.step, plan.step * kFinePart, fine);
+  searcher.scan(middle - plan.step, middle + plan.step, plan.step * kFineStepShare, fine);
   const std::size_t top = std::clamp<std::size_t>(sharpest(fine), 1, fine.size() - 2);
   result.focus = fine[top].focus;
   result.z_um = vertex_um(fine[top - 1], fine[top], fine[top + 1]);

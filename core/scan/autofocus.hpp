@@ -28,25 +28,27 @@ struct Region {
 struct AutofocusPlan {
   Micrometers from;
   Micrometers to;          ///< > from
-  Micrometers step{10.0};  ///< of the coarse scan, > 0; the fine one has a quarter
-  int frame_retries = 3;
+  Micrometers step{10.0};  ///< step of the coarse scan, > 0; that of the fine scan is a quarter of it
+  int frame_retries = 3;   ///< further triggers for a frame that was lost, >= 0
   SettleCriterion settle;
 };
 
 struct FocusSample {
-  double z_um = 0.0;  ///< measured
-  double focus = 0.0;
+  double z_um = 0.0;   ///< measured
+  double focus = 0.0;  ///< mean_focus() of the central region, grey levels
 };
 
 struct AutofocusResult {
-  double z_um = 0.0;               ///< where it is sharpest; the stage stands there
-  double focus = 0.0;              ///< largest value seen
-  std::vector<FocusSample> curve;  ///< by height
+  double z_um = 0.0;               ///< height at which the region is sharpest; the stage stands there
+  double focus = 0.0;              ///< largest measured value of the fine scan, grey levels
+  std::vector<FocusSample> curve;  ///< samples of both scans, in ascending order of z
 };
 
-/// The camera is configured and triggered by software, the stage homed. Every move arrives from below. Throws Error
-/// kBadInput for a range without three steps, kStageLimit, kStageNotHomed, kCameraFramesLost, kFocusRange if it is
-/// sharpest at an end of the range or nowhere, kAborted, and what camera and stage throw. context: the scan's thread.
+/// Finds the height at which the central region is sharpest and moves the stage there. The camera must be configured
+/// and triggered by software, the stage homed. Every move arrives from below. Throws Error kBadInput for a range of
+/// less than three steps, kStageLimit, kStageNotHomed, kCameraFramesLost, kFocusRange if the sharpest sample lies at an
+/// end of the range or is less than 5 % above the lowest, kAborted, and what camera and stage throw. context: the
+/// scan's thread.
 [[nodiscard]] AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan,
                                         std::stop_token stop);
 

@@ -20,13 +20,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Longest wait for a frame before the stage is looked at.
+/// Longest wait for a frame before the state of the stage is checked.
 constexpr milliseconds kFrameWait{20};
 /// How much wider or closer than planned the slices may lie throughout: cameras keep a frame rate within 2 %, and a
 /// drive rounds a low speed to whole units, by up to 3.2 %.
 constexpr double kPaceTolerance = 0.05;
-/// So many steps behind its way the scan has lost frames: half a step of phase, and one that the ends may cost.
-constexpr double kFramesBehind = 1.5;
+/// Number of steps by which the frames may lag behind the position before frames count as lost: half a step of phase,
+/// and one that the ends may cost.
+constexpr double kMaxFramesBehind = 1.5;
 /// Give up if the slice queue stays full this long.
 constexpr std::chrono::seconds kQueueTimeout{10};
 
@@ -138,7 +139,7 @@ class SliceSorter {
   [[nodiscard]] int lost() const { return lost_; }
   /// More slices than a camera that is a little faster than asked takes on the whole way.
   [[nodiscard]] bool far_too_many() const {
-    return taken_ + lost_ > plan_.slices * (1.0 + kPaceTolerance) + kFramesBehind;
+    return taken_ + lost_ > plan_.slices * (1.0 + kPaceTolerance) + kMaxFramesBehind;
   }
   /// How far the slices reach, from the first target on.
   [[nodiscard]] double reach_um() const { return last_way_um_; }
@@ -154,7 +155,7 @@ class SliceSorter {
   /// And they reach the end: a camera that is faster than asked takes more than were planned on the same way.
   [[nodiscard]] bool covered() const { return full() && last_way_um_ >= last_target_um() - plan_.step.value; }
   /// The camera is faster than asked, by so much that more slices than planned may come.
-  [[nodiscard]] bool ahead() const { return taken_ + lost_ - 1 - last_way_um_ / plan_.step.value > kFramesBehind; }
+  [[nodiscard]] bool ahead() const { return taken_ + lost_ - 1 - last_way_um_ / plan_.step.value > kMaxFramesBehind; }
 
   /// A camera that exposes too seldom counts on without a gap: what it left out shows in the positions alone. One frame
   /// more or less at the ends is no loss, as frames lie anywhere between two targets; nor are slices evenly a little
@@ -174,7 +175,7 @@ class SliceSorter {
     } else {
       const double behind = way_um / step_um - (taken_ + lost_ + missed);  // -0.5..0.5 if every frame came
       const double allowed =
-          places_missed_ > 0 ? kFramesBehind : std::max(kFramesBehind, kPaceTolerance * way_um / step_um);
+          places_missed_ > 0 ? kMaxFramesBehind : std::max(kMaxFramesBehind, kPaceTolerance * way_um / step_um);
       if (behind >= allowed) missed += static_cast<int>(behind);
       if (!ahead()) missed = std::min(missed, open - 1);  // this frame is a slice
     }

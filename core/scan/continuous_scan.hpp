@@ -10,11 +10,12 @@
 
 namespace fvd {
 
-/// Frames are taken as they come; one whose position is not known yet waits for it while the next are taken. Slices are
-/// the frames exposed from half a step before the first target to half a step after the last; all others belong to
-/// the ramps. A gap in the frame ids between them is a lost slice, and so is a place that no frame was exposed at, but
-/// for one at the ends. A camera that is up to 5 % faster than asked gives more slices than planned, which cover the
-/// same way. context: run() on one thread; stop requests from any. The stage is moved by a thread of its own meanwhile.
+/// Frames are accepted in order of arrival; a frame whose position is not known yet is kept while the next arrive.
+/// Slices are the frames exposed from half a step before the first target to half a step after the last; all others
+/// belong to the ramps. Lost slices are gaps in the frame ids between the first and the last slice, and places at which
+/// no frame was exposed, except one at either end. Slices that lie evenly up to 5 % further apart than planned are no
+/// loss; a camera that is up to 5 % faster than asked gives more slices than planned, over the same distance.
+/// context: run() on one thread; stop requests from any thread. Another thread moves the stage meanwhile.
 class ContinuousScan {
  public:
   /// The camera is configured with `settings` already, but triggered by software.

@@ -14,20 +14,20 @@
 
 namespace fvd {
 
-/// context: push from the scan's thread; finish from the thread that made it.
+/// context: push() from the scan's thread; finish() from the thread that made the worker.
 class FocusWorker final : public SliceSink {
  public:
   /// Called with every slice on the worker's thread before it is computed, e.g. to record it.
   using Tap = std::function<void(const ImageView& pixels, double z_um)>;
 
-  /// queue_slices >= 1: how far the computation may fall behind. The stack outlives the worker.
+  /// queue_slices: how many slices the computation may fall behind, >= 1. The stack outlives the worker.
   FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, Tap tap = {});
-  /// Drops what is still queued.
+  /// Drops the slices that are still queued.
   ~FocusWorker() override = default;
 
   [[nodiscard]] bool push(Slice&& slice, HostTime deadline, std::stop_token stop) override;
 
-  /// Waits until every slice pushed is computed. Rethrows the first error of the worker's thread.
+  /// Waits until every pushed slice is computed. Rethrows the first error of the worker's thread.
   void finish();
 
  private:

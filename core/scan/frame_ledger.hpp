@@ -6,7 +6,7 @@
 
 namespace fvd {
 
-/// expected == ok + incomplete + missing + stale + underrun, whenever it can be looked at.
+/// expected == ok + incomplete + missing + stale + underrun after every call of the ledger.
 struct FrameCounts {
   std::uint64_t expected = 0;    ///< triggers sent, plus frames that came without one
   std::uint64_t ok = 0;          ///< accepted as a slice
@@ -28,12 +28,12 @@ class FrameLedger {
   void missing() { close(counts_.missing); }
   void underrun() { close(counts_.underrun); }
 
-  /// A good frame turned up that no open trigger is waiting for: the late frame of a trigger that was booked as
-  /// missing, or one that nobody asked for.
+  /// A good frame arrived that no open trigger is waiting for: the late frame of a trigger that was booked as missing,
+  /// or a frame without a trigger.
   void stale() { late(counts_.stale); }
 
-  /// A damaged frame turned up while a trigger booked as missing has not been explained. False if there is none: the
-  /// damaged frame then belongs to the open trigger.
+  /// Books a damaged frame on a trigger that was booked as missing. False, and nothing is booked, if there is no such
+  /// trigger: the damaged frame then belongs to the open one.
   [[nodiscard]] bool explain_missing_by_incomplete() {
     if (counts_.missing == 0) return false;
     late(counts_.incomplete);

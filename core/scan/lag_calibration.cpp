@@ -10,7 +10,7 @@ namespace fvd {
 
 namespace {
 
-constexpr std::size_t kLeastPoints = 100;
+constexpr std::size_t kMinPoints = 100;
 /// Standard deviation of a normal distribution over its median absolute deviation, and of the median over that of the
 /// mean.
 constexpr double kSdOverMad = 1.4826;
@@ -39,10 +39,10 @@ LagResult measure_lag(const HeightMap& upwards, const HeightMap& downwards, doub
       differences_um.push_back((static_cast<double>(down[i]) - static_cast<double>(up[i])) * 1e6);
     }
   }
-  if (differences_um.size() < kLeastPoints) {
+  if (differences_um.size() < kMinPoints) {
     throw Error(ErrorCode::kTooFewValid, "only " + std::to_string(differences_um.size()) +
                                              " points are valid in both scans; a lag calibration needs " +
-                                             std::to_string(kLeastPoints) + ": use a surface with texture");
+                                             std::to_string(kMinPoints) + ": use a surface with texture");
   }
   const double to_us = 1e6 / (2.0 * speed_um_per_s);
   LagResult result;

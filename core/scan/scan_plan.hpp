@@ -1,6 +1,6 @@
 #pragma once
 
-/// Where the slices of a scan lie, and what may go wrong before it fails.
+/// Where the slices of a scan lie, how many may be lost, and the checks of both before anything moves.
 
 #include <chrono>
 
@@ -22,16 +22,16 @@ struct ScanPlan {
   int slices = 0;          ///< >= 1
   SettleCriterion settle;
   int frame_retries = 3;        ///< further triggers for a slice whose frame was lost
-  int allowed_lost_slices = 0;  ///< more fail the scan
+  int allowed_lost_slices = 0;  ///< a scan that loses more slices fails
 
   bool line_trigger = false;  ///< kStep: the drive's in-position output triggers the camera
 
   double speed_um_per_s = 0.0;  ///< kContinuous: > 0
-  double max_blur_steps = 0.5;  ///< kContinuous: way during an exposure, in steps
+  double max_blur_steps = 0.5;  ///< kContinuous: largest travel during one exposure, in steps
   bool downwards = false;       ///< kContinuous: from the last slice to the first, for the calibration of the lag
   std::chrono::microseconds time_offset{0};  ///< kContinuous: of the stage's clock against the camera's, see LagResult
 
-  /// Frames per second at which they lie one step apart.
+  /// kContinuous: frames per second at which the slices lie one step apart.
   [[nodiscard]] double frame_rate_hz() const { return speed_um_per_s / step.value; }
 
   [[nodiscard]] Micrometers target(int index) const { return start + static_cast<double>(index) * step; }
@@ -44,11 +44,12 @@ struct ScanPlan {
 /// Run-out distance after its last slice, likewise.
 [[nodiscard]] Micrometers run_out(const ScanPlan& plan, const StageInfo& stage);
 
-/// Half the width of the window of samples from which the position of a moving axis at a moment is taken.
+/// Reach of Axis::position_at() in a continuous scan: half the width of its window of samples.
 inline constexpr std::chrono::microseconds kPositionReach{10000};
 
-/// Throws Error kBadRecipe if a continuous scan would blur its slices, is faster than camera or stage, or the stage
-/// does not measure its position. settings: as they are in force, or as asked for.
+/// Throws Error kBadRecipe if a continuous scan would blur its slices or is faster than camera or stage, or if the
+/// stage does not measure its position. settings: those in force, or those of the recipe before the camera is
+/// configured.
 void check_continuous(const ScanPlan& plan, const CameraSettings& settings, const StageInfo& stage);
 
 /// Throws Error kStageLimit, with the values and the range, if the scan or its take-up move would leave the limits.

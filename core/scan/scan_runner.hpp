@@ -17,11 +17,11 @@
 
 namespace fvd {
 
-/// The books of a scan, complete up to the moment it ended, however it ended.
+/// Steps and frames of a scan, complete up to the moment at which it ended, also by an error.
 struct ScanReport {
   StepLog steps;
   FrameCounts frames;
-  int ramp_frames = 0;  ///< of a continuous scan, taken before its first slice and after its last; not in `frames`
+  int ramp_frames = 0;  ///< frames of a continuous scan before its first slice and after its last; not in `frames`
 };
 
 struct ScanDependencies {
@@ -31,7 +31,7 @@ struct ScanDependencies {
   SliceSink& sink;
 };
 
-/// context: run() on one thread; stop requests from any.
+/// context: run() on one thread; stop requests from any thread.
 class ScanRunner {
  public:
   explicit ScanRunner(const ScanDependencies& dependencies) : deps_(dependencies) {}

@@ -6,8 +6,8 @@
 
 namespace fvd {
 
-/// Pure: fed by a driver, one detector a move. The criterion is that of SettleCriterion; one sample outside it starts
-/// the count anew, because the first entry into the window is not the end of the ringing.
+/// A driver feeds it with samples; one detector per move. One sample that does not meet the criterion restarts the
+/// count, because the first entry into the window is not the end of the ringing. context: one thread.
 class SettleDetector {
  public:
   SettleDetector(Micrometers target, const SettleCriterion& criterion) : target_(target), criterion_(criterion) {}

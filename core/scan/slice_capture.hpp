@@ -12,18 +12,18 @@
 
 namespace fvd {
 
-/// A frame that was exposed after the stage settled, and what it took to get it.
+/// A frame that was exposed after the stage settled, and the number of triggers that it took.
 struct CapturedFrame {
   Frame frame;
   int triggers = 1;
 };
 
-/// Never takes "the next buffer" for the answer to its trigger: a frame counts only if it is complete, newer than every
-/// frame accepted before, and exposed after the stage settled. All others are booked and given back.
+/// The next buffer is not assumed to be the answer to the trigger: a frame counts only if it is complete, newer than
+/// every frame accepted before, and exposed after the stage settled. All others are booked and given back.
 /// context: the scan's thread.
 class SliceCapture {
  public:
-  /// References outlive the capture.
+  /// camera, clock and ledger outlive the capture.
   SliceCapture(Camera& camera, Clock& clock, FrameLedger& ledger) : camera_(camera), clock_(clock), ledger_(ledger) {}
 
   /// The first acceptable frame exposed at or after `settled`, within 1 + retries triggers; nothing if all were lost.
@@ -33,8 +33,8 @@ class SliceCapture {
   /// Judges whether the stage stood where it should while a frame was exposed.
   using AtTarget = std::function<bool(const Frame& frame)>;
 
-  /// The frame that a trigger line made the camera expose in the move that has just ended: the first newer one that was
-  /// exposed at the target. Nothing by the camera's deadline; gaps in the ids are pulses whose frames were lost.
+  /// The frame that the trigger line started in the move that has just ended: the first newer one that was exposed at
+  /// the target; nothing if none came by the camera's deadline. Gaps in the ids are pulses whose frames were lost.
   /// Throws as capture().
   [[nodiscard]] std::optional<CapturedFrame> await_line(const AtTarget& at_target, std::stop_token stop);
 

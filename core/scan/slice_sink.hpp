@@ -1,6 +1,6 @@
 #pragma once
 
-/// Where the scan hands its slices to.
+/// The consumer of the slices of a scan.
 
 #include <stop_token>
 
@@ -11,14 +11,14 @@ namespace fvd {
 /// One frame with its measured height.
 struct Slice {
   Frame frame;
-  double z_um = 0.0;
+  double z_um = 0.0;  ///< stage position measured over the exposure, um
 };
 
 class SliceSink {
  public:
   virtual ~SliceSink() = default;
-  /// Waits for room until the deadline or until stop is requested. False = not taken; the scan fails then, because a
-  /// silent gap would falsify heights.
+  /// Waits for room until the deadline or until stop is requested. False if the slice was not accepted; the scan then
+  /// fails, because a silent gap would falsify heights. context: the scan's thread.
   [[nodiscard]] virtual bool push(Slice&& slice, HostTime deadline, std::stop_token stop) = 0;
 };
 

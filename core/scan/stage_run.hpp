@@ -18,13 +18,13 @@ struct StageRunPlan {
   int steps = 100;      ///< >= 1; steps + 1 positions
   int repeats = 3;      ///< >= 1; each up and down
   SettleCriterion settle;
-  std::chrono::milliseconds average{20};  ///< the measured position is the mean over so long after settling
+  std::chrono::milliseconds average{20};  ///< time after settling over which the measured position is averaged
 };
 
 /// Each pass starts with a move beyond its first position by the stage's take-up distance, so that every position of an
-/// upward pass is approached from below and of a downward one from above. on_point: after each, with the number of
-/// points so far. Throws Error kBadInput (the plan), kStageLimit before anything moves if take-up does not fit, and as
-/// Axis::move_to. The stage must be homed. context: blocks.
+/// upward pass is approached from below and of a downward one from above. on_point: called after each point with the
+/// number of points so far and of all. Throws Error kBadInput for a plan out of its ranges, kStageLimit before anything
+/// moves if the take-up does not fit, and as Axis::move_to(). The stage must be homed. context: blocks.
 [[nodiscard]] std::vector<StagePoint> run_stage(Axis& stage, Clock& clock, const StageRunPlan& plan,
                                                 const std::function<void(int done, int all)>& on_point,
                                                 std::stop_token stop);

@@ -10,7 +10,7 @@ namespace fvd {
 namespace {
 
 constexpr double kMaxExplained = 0.99;
-constexpr double kLeastRms = 1e-6;  // of a column of the order of 1: less is rounding
+constexpr double kMinRms = 1e-6;  // of a column of the order of 1: less is rounding
 
 void append(Eigen::MatrixXd& matrix, const Eigen::VectorXd& column) {
   matrix.conservativeResize(Eigen::NoChange, matrix.cols() + 1);
@@ -32,7 +32,7 @@ Eigen::VectorXd DesignMatrix::remainder(const Eigen::VectorXd& column) const {
 double DesignMatrix::explained(const Eigen::VectorXd& column) const {
   const double total = (column.array() - column.mean()).square().sum();
   const double rest = remainder(column).squaredNorm();
-  if (rest <= kLeastRms * kLeastRms * static_cast<double>(rows())) return 1.0;
+  if (rest <= kMinRms * kMinRms * static_cast<double>(rows())) return 1.0;
   return 1.0 - rest / total;
 }
 

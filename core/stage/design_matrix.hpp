@@ -1,6 +1,6 @@
 #pragma once
 
-/// A least-squares problem that takes a column only where the data can tell it from those it has.
+/// A least-squares problem that accepts a column only if the data can tell it from the columns before it.
 
 #include <optional>
 
@@ -17,8 +17,8 @@ class DesignMatrix {
   /// The part of the column's variance that the columns so far explain, 0..1; 1 for a constant column.
   [[nodiscard]] double explained(const Eigen::VectorXd& column) const;
 
-  /// The column's place where it is taken; nothing where it is explained by more than 0.99 or would leave no degree of
-  /// freedom (the second column excepted: two points make a line).
+  /// The column's index if it is accepted; nothing if the columns before explain more than 0.99 of it, or if it would
+  /// leave no degree of freedom (except the second column: two points make a line).
   std::optional<Eigen::Index> add(const Eigen::VectorXd& column);
 
   [[nodiscard]] Eigen::Index columns() const { return columns_.cols(); }

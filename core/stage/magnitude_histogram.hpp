@@ -9,12 +9,12 @@
 namespace fvd {
 
 /// Counts in bins of equal ratio, 16 to an octave from 1e-5 to about 5.5e6 of the caller's unit. A percentile is exact
-/// to half a bin: within 2.2 % of the value. Less than 1e-5 counts as 0, more than the range as its end. A plain struct
-/// of 5 kB: also its own stored state. context: one thread at a time.
+/// to half a bin: within 2.2 % of the value. A value below 1e-5 counts as 0, one above the range as the end of the
+/// range. A plain struct of 5 kB, which is stored as it is. context: one thread at a time.
 struct MagnitudeHistogram {
   static constexpr int kBinsPerOctave = 16;
   static constexpr int kOctaves = 39;
-  static constexpr double kLowest = 1e-5;
+  static constexpr double kLowest = 1e-5;                                           ///< lower end of the range
   static constexpr std::size_t kBins = std::size_t{kBinsPerOctave} * kOctaves + 1;  ///< the first holds the zeros
 
   std::array<std::uint64_t, kBins> counts{};

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The errors of the points gathered by position: what reversal, repeatability and linearity are made of.
+/// The errors of the points grouped by position, from which reversal, repeatability and linearity are computed.
 
 #include <optional>
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace fvd {
 
-/// Visits of one position from one side. Lengths in um.
+/// Visits of one position from one side.
 struct Approach {
   int visits = 0;
   double mean_error_um = 0.0;
-  double sum_of_squares_um2 = 0.0;  ///< about the mean
+  double sum_of_squares_um2 = 0.0;  ///< of the deviations from the mean
 };
 
 struct PositionResponse {
@@ -22,10 +22,11 @@ struct PositionResponse {
   Approach above;  ///< approached from above, direction -1
 };
 
-/// Quantised positions not further apart are one position: half a quantum, 1e-6 um where it is unknown (0).
+/// Largest distance of quantised positions that count as one position: half a quantum, 1e-6 um if it is unknown (0).
+/// context: pure.
 [[nodiscard]] double same_position_um(double step_quantum_um);
 
-/// error_um: one a point, as large as points. Ascending. context: pure.
+/// One entry per position, in ascending order. error_um: one value per point, same size as `points`. context: pure.
 [[nodiscard]] std::vector<PositionResponse> responses(const std::vector<StagePoint>& points,
                                                       const std::vector<double>& error_um, double step_quantum_um);
 
@@ -44,7 +45,7 @@ struct ReversalFigures {
 struct RepeatabilityFigures {
   int groups = 0;             ///< position and side with at least two visits
   double pooled_sd_um = 0.0;  ///< root of the sum of squares over the degrees of freedom of all groups
-  double max_sd_um = 0.0;     ///< the largest of a group
+  double max_sd_um = 0.0;     ///< largest standard deviation of a group
 };
 /// Nothing where no position was visited twice from a side. context: pure.
 [[nodiscard]] std::optional<RepeatabilityFigures> repeatability_figures(const std::vector<PositionResponse>& responses);

@@ -8,8 +8,8 @@
 namespace fvd {
 
 /// Welford's recurrence ("Note on a method for calculating corrected sums of squares and products", Technometrics 4,
-/// 1962); merged as Chan, Golub and LeVeque (1983). A plain struct: also its own stored state. context: one thread at a
-/// time.
+/// 1962); merged as in Chan, Golub and LeVeque (1983). A plain struct, which is stored as it is. context: one thread at
+/// a time.
 struct RunningMoments {
   std::uint64_t n = 0;
   double mean = 0.0;

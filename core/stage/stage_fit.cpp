@@ -15,9 +15,9 @@ namespace {
 
 using Index = Eigen::Index;
 constexpr double kPi = std::numbers::pi;
-constexpr double kCollinear = 0.99;
-constexpr double kLeastTemperatureSpanK = 0.5;  // sensors of drives resolve 0.1 to 1 K
-constexpr double kNearlyALead = 0.999;          // quantisation takes something off a range of whole leads
+constexpr double kMaxRSquared = 0.99;
+constexpr double kMinTemperatureSpan_K = 0.5;  // sensors of drives resolve 0.1 to 1 K
+constexpr double kMinRange_leads = 0.999;      // nearly 1: quantisation shortens a range of whole leads
 constexpr double kSecondsPerMinute = 60.0;
 
 /// Centred and divided by the span, so that the columns of the fit are of one size.
@@ -79,7 +79,7 @@ void add_lead(DesignMatrix& design, Places& places, const Scaled& z, const std::
     caveats.emplace_back("the screw lead is unknown: a periodic error is not told from noise and can bias alpha_z");
     return;
   }
-  if (z.span < kNearlyALead * *lead_um) {
+  if (z.span < kMinRange_leads * *lead_um) {
     caveats.emplace_back("the range is shorter than one screw lead: the lead error is not resolved and biases alpha_z");
     return;
   }
@@ -111,11 +111,11 @@ void add_time(DesignMatrix& design, Places& places, const Scaled& time, std::vec
 /// Fits the temperature where it is known, moves enough and moves otherwise than time. True: it moves with time.
 bool add_temperature(DesignMatrix& design, Places& places, const Scaled& temperature, const Scaled& time,
                      std::vector<std::string>& caveats) {
-  if (temperature.span < kLeastTemperatureSpanK) {
+  if (temperature.span < kMinTemperatureSpan_K) {
     caveats.emplace_back("the temperature moved by less than 0.5 K: no drift per kelvin");
     return false;
   }
-  const bool with_time = r_squared(time.values, temperature.values) > kCollinear;
+  const bool with_time = r_squared(time.values, temperature.values) > kMaxRSquared;
   if (with_time && places.time) {
     caveats.emplace_back(
         "temperature is collinear with time: the drift per kelvin is the drift rate over the temperature rate, not a "

@@ -10,14 +10,14 @@
 
 namespace fvd {
 
-/// A fitted value and its standard error, which is empty without a degree of freedom left. The standard error takes the
-/// residuals for independent.
+/// A fitted value and its standard error, which is empty if no degree of freedom is left. The standard error assumes
+/// independent residuals.
 struct Estimate {
   double value = 0.0;
   std::optional<double> standard_error;
 };
 
-/// Once a turn of the screw: error = A sin(2 pi z / lead + phase), z = quantised position.
+/// The error that repeats with every turn of the screw: A sin(2 pi z / lead + phase), z = quantised position.
 struct LeadTerm {
   double lead_um = 0.0;
   Estimate amplitude_um;   ///< A >= 0
@@ -29,7 +29,7 @@ struct LeadTerm {
 /// a straight line alone is biased by the lead error (see alpha_z_bias_bound), reversal and drift would hide in it too.
 /// A term is left out, with a caveat, where the points cannot tell it from the terms before it (r^2 > 0.99).
 struct StageFit {
-  double offset_um = 0.0;           ///< at z = 0, mean time and temperature, mean of both directions if both were
+  double offset_um = 0.0;           ///< at z = 0, mean time and temperature; mean of both directions if both occur
   std::optional<Estimate> alpha_z;  ///< amplification coefficient, slope of the response, 1 = ideal
   std::optional<LeadTerm> lead;
   std::optional<Estimate> reversal_um;       ///< from below minus from above, as a mean over the range
@@ -38,12 +38,13 @@ struct StageFit {
   /// drift_um_per_k is the drift rate over the rate of temperature, because time and temperature ran together.
   bool per_kelvin_from_rates = false;
   double residual_rms_um = 0.0;  ///< root of the sum of squares over the number of points
-  int parameters = 0;
+  int parameters = 0;            ///< number of fitted parameters
   double mean_time_s = 0.0;
   double mean_temperature_c = 0.0;  ///< 0 where no temperature was fitted
 };
 
-/// points: checked, at least one, measured positions known. Adds to `caveats` why a term is missing. context: pure.
+/// points: accepted by check_stage_points(), at least one, of a stage with feedback. Adds to `caveats` why a term is
+/// missing. context: pure.
 [[nodiscard]] StageFit fit_stage(const std::vector<StagePoint>& points, const StageReportOptions& options,
                                  std::vector<std::string>& caveats);
 
@@ -51,12 +52,12 @@ struct StageFit {
 /// of both. context: pure.
 [[nodiscard]] double fitted_error_um(const StageFit& fit, double quantised_um, int direction);
 
-/// What the fit says time and temperature have added to a point, in um. context: pure.
+/// The drift by time and temperature that the fit contains at a point, in um. context: pure.
 [[nodiscard]] double fitted_drift_um(const StageFit& fit, const StagePoint& point);
 
-/// The most that a sine of this amplitude, whatever its phase, can bend the slope of a least-squares straight line over
-/// range_um evenly covered: 12 A |2 sin(kL/2)/k^2 - L cos(kL/2)/k| / L^3 with k = 2 pi / lead; 6 A / (pi L) for L =
-/// lead. All lengths > 0. context: pure.
+/// Largest change, over all phases, that a sine of amplitude A makes to the slope of a least-squares straight line over
+/// an evenly covered range L: 12 A |2 sin(kL/2)/k^2 - L cos(kL/2)/k| / L^3 with k = 2 pi / lead; 6 A / (pi L) for
+/// L = lead. All lengths > 0. context: pure.
 [[nodiscard]] double alpha_z_bias_bound(double amplitude_um, double lead_um, double range_um);
 
 }  // namespace fvd

@@ -10,7 +10,7 @@
 namespace fvd {
 
 struct StagePoint {
-  double time_s = 0.0;        ///< when it was measured, from any origin
+  double time_s = 0.0;        ///< time of the measurement, from any origin
   int run = 0;                ///< 0-based pass over the range
   int direction = 1;          ///< +1 approached from below, -1 from above
   double commanded_um = 0.0;  ///< as asked for
@@ -29,12 +29,12 @@ struct StageReportOptions {
   std::optional<double> lead_um;        ///< travel per turn of the screw, from the drive profile
 };
 
-/// A kilometre: no stage is there.
+/// Largest position that is accepted, one kilometre: no stage is that long.
 inline constexpr double kLargestPositionUm = 1e9;
 
 /// Throws Error kBadInput naming the first point (0-based) or option that is not finite or out of its range: direction
-/// other than +1 and -1, a position beyond kLargestPositionUm, negative run, polls or time, a lead or a resolution that
-/// is no length. context: pure.
+/// other than +1 and -1, a position beyond kLargestPositionUm, a negative run, number of polls or time, a lead or a
+/// resolution that is no length. context: pure.
 void check_stage_points(const std::vector<StagePoint>& points, const StageReportOptions& options);
 
 }  // namespace fvd

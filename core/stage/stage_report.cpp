@@ -122,8 +122,8 @@ void judge_range(StageReport& report, const StageReportOptions& options) {
   const double range_um = report.range_um->high - report.range_um->low;
   report.linear->alpha_z_bias_bound =
       alpha_z_bias_bound(report.fit->lead->amplitude_um.value, *options.lead_um, range_um);
-  constexpr double kNearlyThree = 2.997;  // quantisation takes something off a range of whole leads
-  if (range_um < kNearlyThree * *options.lead_um) {
+  constexpr double kMinRange_leads = 2.997;  // nearly 3: quantisation shortens a range of whole leads
+  if (range_um < kMinRange_leads * *options.lead_um) {
     report.caveats.emplace_back(
         "the range is shorter than three screw leads: alpha_z of the straight line is biased by the lead error, by up "
         "to "

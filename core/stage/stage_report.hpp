@@ -15,7 +15,7 @@
 
 namespace fvd {
 
-/// Of signed differences, in um.
+/// Statistics of signed differences.
 struct ErrorFigures {
   double mean_um = 0.0;
   std::optional<double> sd_um;  ///< sample standard deviation, needs two values
@@ -23,13 +23,14 @@ struct ErrorFigures {
   double p95_um = 0.0;          ///< 95th percentile of the magnitude
 };
 
-/// Straight line through measured against quantised positions alone, all points alike, drift and all.
+/// Straight line through measured over quantised positions, without the other terms of StageFit: drift, reversal and
+/// lead error remain in it.
 struct LinearFit {
   Estimate alpha_z;                          ///< slope; the lead error can bias it, see StageFit::alpha_z
   double offset_um = 0.0;                    ///< measured position where the line passes z = 0
   double l_z_um = 0.0;                       ///< linearity deviation: largest |mean response of a position - line|
-  double residual_rms_um = 0.0;              ///< of the points, over their number
-  std::optional<double> alpha_z_bias_bound;  ///< what the fitted lead error can have added to alpha_z at most
+  double residual_rms_um = 0.0;              ///< root of the sum of squares over the number of points
+  std::optional<double> alpha_z_bias_bound;  ///< largest bias of alpha_z by the fitted lead error
 };
 
 struct TimeFigures {
@@ -43,9 +44,9 @@ struct Span {
   double high = 0.0;
 };
 
-/// Empty = not observable or not enough points; `caveats` says why.
+/// A figure is empty if it is not observable or has too few points; `caveats` says why.
 struct StageReport {
-  int n = 0;
+  int n = 0;  ///< number of points
   FeedbackSource feedback = FeedbackSource::kNone;
   bool observable = false;  ///< false: step counting, no measured position
 
@@ -66,15 +67,15 @@ struct StageReport {
   std::optional<TimeFigures> settle;
   std::optional<TimeFigures> move;
 
-  /// Uncertainty floors: what rounding to one step leaves of standard uncertainty, step / sqrt(12), the rectangular
-  /// distribution of JCGM 100:2008 (GUM), F.2.2.1. Empty where the step is unknown.
+  /// Uncertainty floors: standard uncertainty of rounding to one step, step / sqrt(12), by the rectangular distribution
+  /// of JCGM 100:2008 (GUM), F.2.2.1. Empty if the step is unknown.
   std::optional<double> step_quantum_um, step_quantum_floor_um;
   std::optional<double> feedback_resolution_um, feedback_floor_um;
 
-  std::vector<std::string> caveats;  ///< what the figures do not say, as sentences in English
+  std::vector<std::string> caveats;  ///< limits of the figures, as sentences in English
 };
 
-/// points: in any order, none allowed. Throws Error kBadInput as check_stage_points. context: pure.
+/// points: in any order, may be empty. Throws Error kBadInput as check_stage_points(). context: pure.
 [[nodiscard]] StageReport make_stage_report(const std::vector<StagePoint>& points, const StageReportOptions& options);
 
 }  // namespace fvd

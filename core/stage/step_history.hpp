@@ -1,6 +1,6 @@
 #pragma once
 
-/// What all scans so far say of the stage, in constant memory: for a daemon that runs for years.
+/// The step errors of all scans so far, in constant memory: for a daemon that runs for years.
 
 #include <cstdint>
 #include <optional>
@@ -12,15 +12,15 @@
 
 namespace fvd {
 
-/// Everything a history knows, to be stored and given back. Lengths in um, times in ms.
+/// The whole state of a history, to be stored and restored. Lengths in um, times in ms.
 struct StepHistoryState {
   FeedbackSource feedback = FeedbackSource::kNone;
   std::uint64_t scans = 0;
   std::uint64_t steps = 0;         ///< measured slices
-  std::uint64_t lost_steps = 0;    ///< slices that were lost and the recipe allowed it
+  std::uint64_t lost_steps = 0;    ///< slices that were lost as the recipe allowed
   RunningMoments error;            ///< measured - quantised
   MagnitudeHistogram error_sizes;  ///< |error|
-  RunningMoments increment_error;  ///< between neighbouring measured slices of a scan
+  RunningMoments increment_error;  ///< measured - quantised distance of neighbouring measured slices of a scan
   RunningMoments move;             ///< start of the move to settled
   MagnitudeHistogram move_times;
 };
@@ -40,7 +40,7 @@ struct StepHistorySummary {
 /// context: one thread at a time.
 class StepHistory {
  public:
-  /// A history is of one kind of feedback: without it the errors of the log are not measured and are left out.
+  /// A history belongs to one kind of feedback. With kNone the errors of the logs are not measured and are left out.
   explicit StepHistory(FeedbackSource feedback) { state_.feedback = feedback; }
   /// Throws Error kBadInput for a state that no scans can have led to.
   explicit StepHistory(const StepHistoryState& state);

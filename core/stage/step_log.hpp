@@ -1,6 +1,6 @@
 #pragma once
 
-/// What is known of every slice's height: commanded, measured, and how the axis got there.
+/// Per slice: the commanded and the measured height, and how the axis got there.
 
 #include <chrono>
 #include <cstdint>
@@ -14,15 +14,15 @@ namespace fvd {
 /// One slice. Positions in um.
 struct StepRecord {
   int index = 0;              ///< 0-based slice of the plan
-  bool measured = true;       ///< false: the slice was lost and the recipe allowed it
+  bool measured = true;       ///< false: the slice was lost, as the recipe allowed
   double commanded_um = 0.0;  ///< as planned
   double quantised_um = 0.0;  ///< as the drive can represent it
   std::int32_t commanded_counts = 0;
-  double measured_um = 0.0;  ///< mean over the exposure; the z the slice was used with
-  double measured_sd_um = 0.0;
-  int position_samples = 0;  ///< encoder samples inside the exposure; 0 = interpolated
-  double error_um = 0.0;     ///< measured - quantised
-  double move_ms = 0.0;      ///< start of the move to settled
+  double measured_um = 0.0;     ///< mean over the exposure; the z that the slice was used with
+  double measured_sd_um = 0.0;  ///< standard deviation of the encoder samples inside the exposure
+  int position_samples = 0;     ///< encoder samples inside the exposure; 0 = interpolated
+  double error_um = 0.0;        ///< measured - quantised
+  double move_ms = 0.0;         ///< start of the move to settled
   int settle_polls = 0;
   std::uint64_t frame_id = 0;
   int triggers = 1;  ///< 1 = the first frame was good

@@ -17,8 +17,8 @@ struct HeightValues {
   double max_um = 0.0;
   double mean_um = 0.0;
   double median_um = 0.0;
-  double low_um = 0.0;   ///< 0.5 % of the points lie below: the limits of a picture that outliers must not darken
-  double high_um = 0.0;  ///< 0.5 % lie above
+  double low_um = 0.0;   ///< 0.5 % of the points lie below; with high_um the range of a picture's colours
+  double high_um = 0.0;  ///< 0.5 % of the points lie above
 };
 
 /// Points that carry a reason; a point with two reasons counts in both.
@@ -45,8 +45,8 @@ struct HeightSummary {
   }
 };
 
-/// height_m, sigma_m: metres, NaN exactly where mask != 0. mask: 0 valid, else mask_reason bits. All of one shape
-/// [height][width]. Needs 4 bytes per pixel for the time of the call.
+/// height_m, sigma_m: metres, NaN exactly where mask != 0. mask: 0 valid, else mask_reason bits. All have the same
+/// shape [height][width]. Allocates 4 bytes per pixel for the time of the call. context: pure.
 [[nodiscard]] HeightSummary summarize_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
                                               const Plane<MaskReasons>& mask);
 

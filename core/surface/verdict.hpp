@@ -14,14 +14,14 @@ enum class Verdict {
   kInvalid,  ///< there is no value to judge
 };
 
-/// In the value's unit; an absent side is open.
+/// Limits in the unit of the value; an absent limit does not limit.
 struct Limits {
   std::optional<double> lower;
   std::optional<double> upper;
   bool operator==(const Limits&) const = default;
 };
 
-/// Absent and not finite values are kInvalid.
+/// kInvalid for a value that is absent or not finite. context: pure, as the next.
 [[nodiscard]] Verdict judge(std::optional<double> value, const Limits& limits) noexcept;
 
 /// The verdict on all of them: kFail where one failed, else kInvalid where one is invalid, else kPass; nothing where

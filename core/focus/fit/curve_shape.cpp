@@ -14,13 +14,13 @@ namespace fvd {
 
 namespace {
 
-constexpr std::size_t kMostCurves = 4000;   // that are looked at; their mean is good to 0.02 in p
-constexpr std::size_t kLeastCurves = 500;   // below which p stays that of the fit
-constexpr double kFitExponent = 2.0;        // of the five-sample fit
-constexpr double kOtherExponent = 1.5;      // the excess is taken to be linear in p between these two and beyond
-constexpr double kSmallestExponent = 1.25;  // of curves that the scenes of RESULTS.md show
-constexpr double kLargestExponent = 2.2;
-constexpr double kLeastNeighbour = 0.02;  // share of the peak: a smaller one tells more of noise than of the curve
+constexpr std::size_t kMaxCurves = 4000;  // that are evaluated; their mean is good to 0.02 in p
+constexpr std::size_t kMinCurves = 500;   // with fewer, p stays that of the fit
+constexpr double kFitExponent = 2.0;      // of the five-sample fit
+constexpr double kSecondExponent = 1.5;   // the excess is taken to be linear in p between these two and beyond
+constexpr double kMinExponent = 1.25;     // of curves that the scenes of RESULTS.md show
+constexpr double kMaxExponent = 2.2;
+constexpr double kMinNeighbourShare = 0.02;  // share of the peak: a smaller one tells more of noise than of the curve
 
 /// G = F^(-1/p) as a parabola through the peak, where it is 1 and u is 0, and both its neighbours.
 struct Parabola {
@@ -39,13 +39,13 @@ struct Parabola {
 
 double raised(double share, double p) {
   if (p == kFitExponent) return 1.0 / std::sqrt(share);
-  return p == kOtherExponent ? 1.0 / std::cbrt(share * share) : std::pow(share, -1.0 / p);
+  return p == kSecondExponent ? 1.0 / std::cbrt(share * share) : std::pow(share, -1.0 / p);
 }
 
 std::optional<Parabola> parabola(const CurveTuple& tuple, const HeightEntry& at, double p) {
   const auto left = static_cast<double>(tuple.share[1]);
   const auto right = static_cast<double>(tuple.share[3]);
-  if (at.mask != 0 || !(left > kLeastNeighbour && right > kLeastNeighbour)) return std::nullopt;
+  if (at.mask != 0 || !(left > kMinNeighbourShare && right > kMinNeighbourShare)) return std::nullopt;
   const auto u_left = static_cast<double>(at.u_left);
   const auto u_right = static_cast<double>(at.u_right);
   const double rise_left = (raised(left, p) - 1.0) / u_left;
@@ -84,15 +84,15 @@ std::vector<double> joined(const Pieces& pieces) {
 /// What the fit makes of curves (1 + bend u^2)^-p: of two, the vertex a fifth of a step from the peak's sample and
 /// almost half a step.
 VertexBias bias_of_fit(double bend, double p) {
-  constexpr std::array kPlaces{0.2, 0.45};
-  constexpr int kCurves = static_cast<int>(kPlaces.size());
+  constexpr std::array kVertices_steps{0.2, 0.45};
+  constexpr int kCurves = static_cast<int>(kVertices_steps.size());
   constexpr double kPeakCode = 60000.0;
   std::array<std::array<std::uint16_t, kCurves>, 9> columns{};
   std::array<std::uint8_t, kCurves> saturated{};
   auto& [previous, previous2, peak, left, left2, right, right2, minimum, index] = columns;
-  for (std::size_t x = 0; x < kPlaces.size(); ++x) {
+  for (std::size_t x = 0; x < kVertices_steps.size(); ++x) {
     const auto code = [&](double u) {
-      const double away = u - kPlaces[x];
+      const double away = u - kVertices_steps[x];
       return static_cast<std::uint16_t>(std::lround(kPeakCode * std::pow(1.0 + bend * away * away, -p)));
     };
     left2[x] = code(-2.0);
@@ -118,10 +118,10 @@ VertexBias bias_of_fit(double bend, double p) {
                            {height_m.data(), variance_m2.data(), prominence.data(), mask.data()});
   std::array<double, kCurves> u{};
   std::array<double, kCurves> error{};
-  for (std::size_t x = 0; x < kPlaces.size(); ++x) {
+  for (std::size_t x = 0; x < kVertices_steps.size(); ++x) {
     if (mask[x] != 0) return {};
     u[x] = static_cast<double>(height_m[x]) * 1e6;  // the scale is 1 um
-    error[x] = (u[x] - kPlaces[x]) / (std::sqrt(static_cast<double>(variance_m2[x])) * 1e6);
+    error[x] = (u[x] - kVertices_steps[x]) / (std::sqrt(static_cast<double>(variance_m2[x])) * 1e6);
   }
   const double determinant = u[0] * u[1] * (u[1] * u[1] - u[0] * u[0]);
   VertexBias bias;
@@ -137,7 +137,7 @@ class Curves {
   static constexpr int kPieces = 8;
 
   Curves(std::span<const CurveTuple> tuples, const std::vector<double>& z_um)
-      : tuples_(tuples), heights_(height_table(z_um)), count_(std::min(tuples.size(), kMostCurves)) {}
+      : tuples_(tuples), heights_(height_table(z_um)), count_(std::min(tuples.size(), kMaxCurves)) {}
 
   /// look(tuple, what is known of its peak's sample).
   template <typename Look>
@@ -167,7 +167,7 @@ std::optional<double> exponent_of(const Curves& curves, WorkerPool& pool) {
     Excess sum;  // not in the array: its pieces share cache lines
     curves.each(piece, [&](const CurveTuple& tuple, const HeightEntry& at) {
       const auto at_fit = excess(tuple, at, kFitExponent);
-      const auto at_other = excess(tuple, at, kOtherExponent);
+      const auto at_other = excess(tuple, at, kSecondExponent);
       if (!at_fit || !at_other) return;
       sum.at_fit += *at_fit;
       sum.at_other += *at_other;
@@ -181,9 +181,9 @@ std::optional<double> exponent_of(const Curves& curves, WorkerPool& pool) {
     total.at_other += piece.at_other;
     total.curves += piece.curves;
   }
-  if (total.curves < kLeastCurves || !(total.at_other < total.at_fit)) return std::nullopt;
-  const double slope = (total.at_fit - total.at_other) / (kFitExponent - kOtherExponent);
-  return std::clamp(kFitExponent - total.at_fit / slope, kSmallestExponent, kLargestExponent);
+  if (total.curves < kMinCurves || !(total.at_other < total.at_fit)) return std::nullopt;
+  const double slope = (total.at_fit - total.at_other) / (kFitExponent - kSecondExponent);
+  return std::clamp(kFitExponent - total.at_fit / slope, kMinExponent, kMaxExponent);
 }
 
 }  // namespace

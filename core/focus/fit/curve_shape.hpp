@@ -1,13 +1,14 @@
 #pragma once
 
-/// What the focus curves of a scan look like, as against what the five-sample fit takes them for.
+/// The shape of a scan's focus curves, and the error that the five-sample fit makes because of it.
 ///
 /// The fit is exact for F = (1 + b u^2)^-2. Real curves are near to F = (1 + b u^2)^-p, with p from 1.3 for coarse
 /// grain to 2.2 where noise fills the tails. The fit's vertex then lies too near to the peak's sample or too far from
-/// it, by what follows the fraction of a step: slopes get a ripple ("pixel locking" in z).
+/// it, by an amount that depends on the fraction of a step: slopes get a ripple ("pixel locking" in z).
 ///
-/// A scan tells p: with the right one, peak and neighbours foretell the samples two steps away, in the mean over some
-/// thousand curves. What the fit makes of a curve of that p is then computed, and taken off every vertex.
+/// p is estimated from the scan: with the right p, the peak and its neighbours predict the samples two steps away, in
+/// the mean over some thousand curves. The fit's error for a curve of that p is computed and subtracted from every
+/// vertex.
 
 #include <span>
 #include <vector>
@@ -19,12 +20,13 @@
 namespace fvd {
 
 struct CurveShape {
-  double exponent = 2.0;  ///< p; 2 where too few curves tell
+  double exponent = 2.0;  ///< p; 2 if there are too few curves to estimate it
   double width_um = 0.0;  ///< full width at half maximum, median; 0 unknown
   VertexBias bias;        ///< of the five-sample fit
 };
 
-/// Tuples: spread over the image, their indices within z_um. z_um: of the samples. context: computes on the pool too.
+/// tuples: spread over the image, their indices within z_um. z_um: measured z of each sample. context: computes on the
+/// caller's thread and on the pool.
 [[nodiscard]] CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um,
                                      WorkerPool& pool);
 

@@ -1,9 +1,8 @@
 #pragma once
 
-/// The five-sample fit of one curve in double precision, written from the
-/// formula in five_sample_fit.hpp as a least-squares problem with a matrix:
-/// what the kernels, which take its sums apart for speed, are tested against.
-/// No product code uses it.
+/// The five-sample fit of one curve in double precision, written from the formula in five_sample_fit.hpp as a
+/// least-squares problem with a matrix. The kernels, which split its sums for speed, are tested against it. No product
+/// code uses it.
 
 #include <array>
 #include <optional>
@@ -34,8 +33,8 @@ struct ReferencePeak {
   double sigma_um = 0.0;
 };
 
-/// Nothing where the parabola has no vertex between the neighbours. Needs
-/// peak.share > 0.9 minimum, and left and right on two sides of the peak.
+/// Nothing if the parabola has no vertex between the neighbours. Needs peak.share > 0.9 minimum, and left and right on
+/// two sides of the peak. context: pure.
 [[nodiscard]] std::optional<ReferencePeak> fit_reference(const ReferenceCurve& curve);
 
 }  // namespace fvd

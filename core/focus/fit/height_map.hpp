@@ -19,13 +19,13 @@ struct HeightMap {
   PixelFormat texture_format = PixelFormat::kMono8;
   Plane<std::uint16_t> texture;  ///< all-in-focus: grey level at the peak slice, 0..max_grey_level(texture_format)
   Plane<std::uint8_t> colour;  ///< shape [height][3 * width]: blue, green, red at the peak slice; empty for grey slices
-  StageCorrection stage;       ///< what the scan says about the stage, and whether heights were corrected by it
+  StageCorrection stage;       ///< the stage's errors as seen in the curves, and whether heights were corrected by them
   double noise_grey = 0.0;     ///< standard deviation of a pixel in grey levels, median over the image
-  double curve_width_um =
-      0.0;  ///< full width at half maximum of the focus curve, median of points over the image; 0 unknown
+  /// Full width at half maximum of the focus curve, median over points of the image; 0 = unknown.
+  double curve_width_um = 0.0;
 };
 
-/// All planes allocated, contents to be written.
+/// All planes but `colour` allocated and uninitialised; the caller must write every element.
 [[nodiscard]] inline HeightMap empty_map(int width, int height, PixelFormat format,
                                          const KeptPagesPtr& pages = nullptr) {
   HeightMap map;

@@ -19,12 +19,12 @@ namespace fvd {
 
 namespace {
 
-/// The texture of a window has its weight not quite in the middle; on a slope that is an error of height: so many
-/// windows beside the middle, standard deviation. Measured on the chapter's ramp.
-constexpr float kWeightOffset = 0.038F;
+/// Offset of the texture's centroid from the middle of the window, in windows (standard deviation); on a slope it is an
+/// error of height. Measured on the chapter's ramp.
+constexpr float kCentroidOffset_windows = 0.038F;
 
-/// About how many points are looked at first: what the curves are like, and where the stage was off.
-constexpr double kSpotChecks = 10000.0;
+/// Approximate number of points that are fitted first, to find the shape of the curves and the offsets of the stage.
+constexpr double kSubsetPoints = 10000.0;
 
 /// The share of the full window that is left about a pixel near the border: its sums are smaller by as much, their
 /// noise by its root.
@@ -153,7 +153,7 @@ class MapFinish {
 
   /// Points spread over the image, in the order of rows.
   std::vector<CurveTuple> look_around(const RowFit& fit) {
-    const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSpotChecks)));
+    const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSubsetPoints)));
     const int rows = (height_ - every / 2 + every - 1) / every;
     const int bands = pool_.threads();
     std::vector<std::vector<CurveTuple>> found(static_cast<std::size_t>(bands));
@@ -229,7 +229,8 @@ class MapFinish {
     const bool inside = reach > 0 && y >= reach && y < height_ - reach;
     focus_kernels().finish_sigma(map_.height_m.row(y), inside ? map_.height_m.row(y - reach) : nullptr,
                                  inside ? map_.height_m.row(y + reach) : nullptr, reach,
-                                 kWeightOffset * static_cast<float>(settings_.window_px), width_, map_.sigma_m.row(y));
+                                 kCentroidOffset_windows * static_cast<float>(settings_.window_px), width_,
+                                 map_.sigma_m.row(y));
   }
 
   const CurveSource& curves_;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// From the condensed curves of a whole image to its height map: the steps that look beyond a single row. Shared by
-/// both stacks, so that they differ in how a curve is condensed and in nothing else.
+/// From the condensed curves of a whole image to its height map: the steps that need more than one row. Both stacks use
+/// them, so that they differ only in how a curve is condensed.
 
 #include <functional>
 
@@ -12,11 +12,12 @@
 
 namespace fvd {
 
-/// The condensed curves of row y. It may show them in memory of the calling thread, good until the next call; `texture`
-/// is where the row's grey levels go, or nullptr.
+/// Returns the condensed curves of row y, which may lie in memory of the calling thread and are valid until its next
+/// call. Writes the row's grey levels to `texture`, shape [width], unless it is nullptr.
 using CurveSource = std::function<CurveRow(int thread, int y, std::uint16_t* texture)>;
 
-/// Fills all planes and figures of an empty_map. z_um: of the samples.
+/// Fills all planes and figures of an empty_map(). z_um: measured z of each sample. context: computes on the caller's
+/// thread and on the pool.
 void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
                 PeakMethod method, const NoiseProbe& noise, WorkerPool& pool, HeightMap& map);
 

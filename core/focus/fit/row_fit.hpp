@@ -11,33 +11,35 @@
 
 namespace fvd {
 
-/// What the noise of a pixel makes of a sample of the focus measure.
+/// Standard deviation of a sample of the focus measure that a pixel noise of noise_grey grey levels causes.
 ///
 /// Modified Laplacian: the noise of the window's pixels adds up with random signs, sigma_F = c * window * sigma. With
-/// independent signs c is sqrt(12), the weights 2, 2, 1, 1, 1, 1 squared; neighbours that share theirs make it more.
-/// Tenengrad: the same of 2 g dg, so it grows with the root of F. Intensity: sigma_F = window * sigma.
+/// independent signs c is sqrt(12), from the squares of the weights 2, 2, 1, 1, 1, 1; neighbours share pixels, which
+/// raises it to 4.0, measured. Tenengrad: the same for 2 g dg, so it grows with the root of F. Intensity: sigma_F =
+/// window * sigma.
 [[nodiscard]] double sample_noise(const FocusSettings& settings, double noise_grey, double sharpness) noexcept;
 
 /// context: const members from many threads.
 class RowFit {
  public:
-  /// z of the samples. bias: what is taken off the vertices of kFiveSample.
+  /// z_um: measured z of each sample. bias: subtracted from the vertices of kFiveSample.
   RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
          VertexBias bias = {});
 
-  /// Standard deviation of a sample at the peak, as shares, from that of each pixel. Shape [width] each.
+  /// Writes the standard deviation of a sample at the peak, as shares of full scale. noise_grey: standard deviation of
+  /// each pixel in grey levels. Shape [width] each.
   void find_noise(const CurveRow& row, const float* noise_grey, int width, float* noise) const noexcept;
-  /// Whether it depends on the row's sharpness, and not on noise_grey alone.
+  /// True if find_noise() depends on the row's sharpness, and not on noise_grey alone.
   [[nodiscard]] bool noise_follows_sharpness() const noexcept {
     return settings_.focus_operator == FocusOperator::kTenengrad;
   }
 
-  /// noise: of find_noise(). least_amplitude: of peak less minimum as shares, below which a point is edge bleeding.
-  /// Shape [width] each.
+  /// noise: from find_noise(). least_amplitude: peak minus minimum, as a share of full scale, below which a point is
+  /// edge bleeding. Shape [width] each.
   void fit(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
            const FitRow& out) const noexcept;
 
-  /// A code's share of full scale.
+  /// The share of full scale that a code stands for.
   [[nodiscard]] double share(std::uint16_t code) const noexcept {
     const double value = code * SharpnessCode::kUnit;
     return code_.root ? value * value : value;

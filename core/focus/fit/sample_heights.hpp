@@ -11,13 +11,13 @@ namespace fvd {
 /// context: one thread.
 class SampleHeights {
  public:
-  /// Takes memory for max_slices. bin_slices >= 1.
+  /// Allocates memory for max_slices. bin_slices >= 1.
   SampleHeights(int bin_slices, int max_slices);
 
   void push(double z_um);
 
   [[nodiscard]] int slices() const noexcept { return slices_; }
-  /// Complete bins and the one that is being filled.
+  /// Number of complete bins, plus one if a bin is being filled.
   [[nodiscard]] int samples() const noexcept { return (slices_ + bin_slices_ - 1) / bin_slices_; }
   /// Slices in the last, incomplete bin; 0 where there is none.
   [[nodiscard]] int pending() const noexcept { return slices_ % bin_slices_; }
@@ -27,10 +27,10 @@ class SampleHeights {
  private:
   int bin_slices_;
   int slices_ = 0;
-  std::vector<double> sums_um_;  // one a sample
+  std::vector<double> sums_um_;  // one per sample
 };
 
-/// One entry a sample, at least one.
+/// One entry per sample. z_um: at least one.
 [[nodiscard]] std::vector<HeightEntry> height_table(const std::vector<double>& z_um);
 
 }  // namespace fvd

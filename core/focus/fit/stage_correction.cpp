@@ -16,18 +16,18 @@ namespace {
 
 constexpr int kMaxSamples = 512;  // the offsets' covariance is a full matrix
 constexpr std::size_t kMinTuples = 1000;
-constexpr int kFractions = 4;         // of a step, each to be seen
-constexpr int kMinInFraction = 10;    // tuples
-constexpr double kMinCoverage = 0.9;  // of the fractions between the lowest and the highest peak
-constexpr int kMinSteps = 6;          // between these
-constexpr double kPrior = 0.2;        // of a step: what a stage's error is thought to be at the most
-constexpr double kMinErrors = 3.0;    // standard errors that the offsets must exceed
+constexpr int kFractionsPerStep = 4;        // bins of a step; peaks must lie in nearly all of them
+constexpr int kMinTuplesPerFraction = 10;   // for such a bin to count as covered
+constexpr double kMinCoverage = 0.9;        // share of the bins between the lowest and the highest peak
+constexpr int kMinSteps = 6;                // between the lowest and the highest peak
+constexpr double kPriorError_steps = 0.2;   // expected size of a stage's errors
+constexpr double kMinStandardErrors = 3.0;  // that the offsets must exceed
 constexpr int kIterations = 3;
-constexpr double kMostLeftOver = 0.6;  // of the curves' departure from a parabola: the stage must be to blame for more
-constexpr std::size_t kFirstLook = 6;  // of so many curves one, to see whether the stage may be to blame at all
-constexpr double kHopeless = 0.85;     // foreseen then to be left over: nothing brings it below kMostLeftOver
-constexpr double kMinInformation = 50.0;  // over that of the prior, for a sample to count as seen
-constexpr double kLeastOffset = 0.015;    // of a step: below it the shape of the curves is to blame
+constexpr double kMaxResidualShare = 0.6;  // of the curves' departure from a parabola that the offsets may leave
+constexpr std::size_t kSubsetDivisor = 6;  // a sixth of the curves is fitted first, to see whether offsets explain any
+constexpr double kMaxSubsetResidualShare = 0.85;  // above it, all curves would not come below kMaxResidualShare either
+constexpr double kMinInformation = 50.0;          // over that of the prior, for a sample to count as measured
+constexpr double kMinOffset_steps = 0.015;        // smaller offsets come from the shape of the curves
 
 StageCorrection off(const std::string& reason) {
   StageCorrection correction;
@@ -60,13 +60,14 @@ Coverage coverage(std::span<const CurveTuple> tuples, const std::vector<double>&
   const double high = ordered(places.size() - 1 - places.size() / 50);
   Coverage result;
   result.steps = high - low;
-  const int bins = std::max(1, static_cast<int>(result.steps * kFractions));
+  const int bins = std::max(1, static_cast<int>(result.steps * kFractionsPerStep));
   std::vector<int> counts(static_cast<std::size_t>(bins));
   for (const double place : places) {
     const int bin = static_cast<int>((place - low) / result.steps * bins);
     if (bin >= 0 && bin < bins) ++counts[static_cast<std::size_t>(bin)];
   }
-  const auto seen = std::count_if(counts.begin(), counts.end(), [](int count) { return count >= kMinInFraction; });
+  const auto seen =
+      std::count_if(counts.begin(), counts.end(), [](int count) { return count >= kMinTuplesPerFraction; });
   result.share = static_cast<double>(seen) / bins;
   return result;
 }
@@ -259,7 +260,7 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   }
   const auto count = static_cast<Eigen::Index>(z_um.size());
   const double step = std::abs(z_um.back() - z_um.front()) / static_cast<double>(z_um.size() - 1);
-  constexpr double kPriorWeight = 1.0 / (kPrior * kPrior);
+  constexpr double kPriorWeight = 1.0 / (kPriorError_steps * kPriorError_steps);
   std::vector<double> corrected = z_um;
   Equations equations(z_um.size());
   BandSolver solver;
@@ -280,13 +281,13 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   const auto correct = [&](const Eigen::VectorXd& change) {
     for (Eigen::Index k = 0; k < count; ++k) corrected[static_cast<std::size_t>(k)] += step * change(k);
   };
-  Eigen::VectorXd change = solve(tuples.size() / kFirstLook);
+  Eigen::VectorXd change = solve(tuples.size() / kSubsetDivisor);
   left_over_before = left_over;
   const double foreseen = left_over - equations.right.dot(change);
-  if (foreseen > kHopeless * left_over_before) {
+  if (foreseen > kMaxSubsetResidualShare * left_over_before) {
     correct(change);
     left_over = foreseen;
-    least_information /= kFirstLook;
+    least_information /= kSubsetDivisor;
   } else {
     change = solve(tuples.size());
     left_over_before = left_over;
@@ -320,17 +321,17 @@ StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples, const
   StageCorrection correction;
   correction.standard_error_um = step * std::sqrt(std::max(0.0, fast.trace()) / static_cast<double>(rows));
   correction.rms_um = std::sqrt(offsets.squaredNorm() / static_cast<double>(rows));
-  const double least = std::max(kMinErrors * correction.standard_error_um, kLeastOffset * step);
+  const double least = std::max(kMinStandardErrors * correction.standard_error_um, kMinOffset_steps * step);
   if (correction.rms_um < least) {
     why << "offsets of " << correction.rms_um << " um rms are within what curves of another shape and noise make, "
         << least << " um";
     correction.reason = why.str();
     return correction;
   }
-  if (left_over > kMostLeftOver * left_over_before) {
+  if (left_over > kMaxResidualShare * left_over_before) {
     why << "offsets of " << correction.rms_um << " um rms would explain only "
         << std::round(100.0 * (1.0 - left_over / left_over_before)) << " % of what the curves leave over, "
-        << 100.0 * (1.0 - kMostLeftOver) << " % are needed";
+        << 100.0 * (1.0 - kMaxResidualShare) << " % are needed";
     correction.reason = why.str();
     return correction;
   }

@@ -2,15 +2,16 @@
 
 /// The stage's errors, seen in the focus curves themselves.
 ///
-/// A slice whose z is wrong is wrong for every pixel alike: five samples of a curve lie on one parabola of G = -F^-1/2,
-/// see five_sample_fit.hpp, and what is left over shows by how much each slice is off, in units of the parabola's slope
-/// there. Thousands of curves whose peaks cover the range give one linear system for the offsets of all slices. What
-/// grows with z or its square is taken out: a shift and a stretch leave no trace, and curves that lean look like the
-/// rest. After G. Zhukova, C. Artigas, G. Carles, "Computational self-corrected quantitative 3D topographic imaging"
-/// (the idea, for confocal stacks); here with five samples per pixel instead of the stack.
+/// An error of a slice's z is the same for every pixel. Five samples of a curve lie on one parabola of G = -F^-1/2, see
+/// five_sample_fit.hpp; the residuals show the error of each slice, in units of the parabola's slope there. Thousands
+/// of curves whose peaks cover the range give one linear system for the offsets of all slices. Components that grow
+/// with z or its square are removed: a shift and a stretch leave no residuals, and curves that lean to one side look
+/// like an offset that grows with the square of z. The idea, for confocal stacks: G. Zhukova, C. Artigas, G. Carles,
+/// "Computational self-corrected quantitative 3D topographic imaging"; here with five samples per pixel instead of the
+/// stack.
 ///
-/// What curves of another shape leave over follows the fraction of a step and averages out only where peaks lie at all
-/// fractions: so the system is solved only where they do, and used only where the offsets stand out of their error.
+/// Residuals of curves of another shape depend on the fraction of a step and average out only if peaks lie at all
+/// fractions. The system is therefore solved only if they do, and used only if the offsets exceed their standard error.
 
 #include <span>
 #include <string>
@@ -21,18 +22,18 @@
 
 namespace fvd {
 
-/// Stage health as a scan shows it.
+/// The stage's errors as found in a scan.
 struct StageCorrection {
   bool applied = false;
-  std::string reason;              ///< why not; empty where applied
-  double rms_um = 0.0;             ///< of the offsets found, 0 where none were sought
+  std::string reason;              ///< why the correction was not applied; empty if it was
+  double rms_um = 0.0;             ///< RMS of the offsets found; 0 if the system was not solved
   double standard_error_um = 0.0;  ///< of one offset
-  std::vector<double> offsets_um;  ///< to be added to each sample's z; empty where not applied
+  std::vector<double> offsets_um;  ///< to be added to each sample's z; empty if not applied
 };
 
-/// z_um: measured z of the samples, at least one. Tuples: some thousand spread over the image, their indices within
-/// z_um. If a sixth of the curves already shows no gain, the figures use that subset.
-/// context: computes on the pool too.
+/// tuples: some thousand, spread over the image, their indices within z_um. z_um: measured z of the samples, at least
+/// one. If a sixth of the curves already shows no gain, the figures use that subset. context: computes on the caller's
+/// thread and on the pool.
 [[nodiscard]] StageCorrection solve_stage_correction(std::span<const CurveTuple> tuples,
                                                      const std::vector<double>& z_um, WorkerPool& pool);
 

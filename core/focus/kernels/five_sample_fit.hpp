@@ -4,21 +4,21 @@
 ///
 /// F = 1 / (a + b u^2)^2 makes G a parabola exactly; the focus curve of a blurred texture is near to it, with tails
 /// heavier than a Gaussian's. With additive noise of one size on F, G has the variance F^-3 / 4, so F^3 would be the
-/// weight of least variance; F^4 trusts the tails a little less, where real curves leave the shape. From every sample
-/// comes off kFloorShare of the curve's minimum, which is mostly the focus measure's response to noise.
+/// weight of least variance; F^4 gives less weight to the tails, where real curves depart from the shape. kFloorShare
+/// of the curve's minimum, which is mostly the focus measure's response to noise, is subtracted from every sample.
 ///
-/// What the curves of the scan have in common against that shape is taken off the vertex, see curve_shape.hpp.
+/// The common departure of the scan's curves from that shape is subtracted from the vertex, see curve_shape.hpp.
 ///
-/// sigma: the noise of each sample carried through the fit to first order, and what is left of the shape: curves differ
-/// from place to place, which makes an error that follows the fraction of a step. As a share of the step it grows with
-/// b, the curvature of G in steps, as b / (1 + 0.9 b), measured on four textures; summing slices to bins smooths most
-/// of it away.
+/// sigma: the noise of each sample propagated through the fit to first order, and the remaining error of the shape:
+/// curves differ from place to place, which makes an error that depends on the fraction of a step. As a share of the
+/// step it grows with b, the curvature of G in steps, as b / (1 + 0.9 b), measured on four textures; summing slices to
+/// bins smooths most of it away.
 
 namespace fvd {
 
-inline constexpr float kFloorShare = 0.9F;
-inline constexpr float kSmallestShare = 1e-3F;       ///< of the peak: what a sample at the floor counts as
-inline constexpr float kShapeError = 0.0335F;        ///< standard deviation over b / (1 + 0.9 b), in sample distances
+inline constexpr float kFloorShare = 0.9F;      ///< share of the curve's minimum that is subtracted
+inline constexpr float kSmallestShare = 1e-3F;  ///< share of the peak that a sample at or below the floor counts as
+inline constexpr float kShapeError = 0.0335F;   ///< standard deviation over b / (1 + 0.9 b), in sample distances
 inline constexpr float kBinnedShapeError = 0.0175F;  ///< the same where samples are bins
 
 }  // namespace fvd

@@ -1,6 +1,6 @@
 #pragma once
 
-// The kernels' one source: all fragments and the table of their functions. One file a target includes it, once, after
+// The kernels' one source: all fragments and the table of their functions. One file per target includes it, once, after
 // it has defined
 //   FVD_KERNEL_NAME       what FVD_FORCE_KERNEL calls it
 //   FVD_KERNEL_NAMESPACE  where its functions live, so that the four compilations do not meet in the linker
@@ -9,10 +9,10 @@
 //
 // A fragment includes what it needs and opens the namespace itself. Its functions are loops without branches over plain
 // arrays: the shape g++ turns into vector code, which a conditional too many undoes. The test kernels_are_vector_code
-// looks at the instructions.
+// checks the instructions.
 
-// The order is the target's: what goes over slices is compiled for AVX2 in any case, for it loses by AVX-512 on
-// processors that halve 512-bit instructions, and what makes the map gains a tenth by it.
+// The order decides the target: loops over slices are compiled for AVX2 even here, because AVX-512 slows them down on
+// processors that halve 512-bit instructions; the loops that make the map are a tenth faster with it.
 // clang-format off
 #include "core/focus/kernels/focus_kernels_common.hpp"
 #include "core/focus/kernels/kernel_operators-inl.hpp"

@@ -3,7 +3,7 @@
 /// The loops in which a scan spends its time, once for every kind of processor, chosen when the program starts.
 ///
 /// One source, focus_kernels-inl.hpp, is compiled four times: without vector code ("scalar"), for the processor every
-/// build may assume ("baseline"), for AVX2 and for AVX-512. All give the same bits; the tests hold them against each
+/// build may assume ("baseline"), for AVX2 and for AVX-512. All give the same bits; the tests compare them with each
 /// other. The environment variable FVD_FORCE_KERNEL names the one to use.
 ///
 /// Rows have shape [width] unless said otherwise, width >= 1; outputs do not overlap inputs. context: thread-safe.
@@ -17,19 +17,20 @@
 
 namespace fvd {
 
-/// One row's state of focus curves that pass by once, as columns. Sharpness is in codes, see sharpness_code.hpp.
+/// The state of one row of focus curves, one array per field, shape [width]. Sharpness is in codes, see
+/// sharpness_code.hpp.
 struct CurveRow {
   std::uint16_t* previous;         ///< the sample before
-  std::uint16_t* previous2;        ///< the one before that
+  std::uint16_t* previous2;        ///< the sample before `previous`
   std::uint16_t* peak;             ///< largest so far; of equal ones the first
   std::uint16_t* left;             ///< the sample before the peak, 0 where there is none
-  std::uint16_t* left2;            ///< the one before that
+  std::uint16_t* left2;            ///< the sample before `left`
   std::uint16_t* right;            ///< the sample after the peak, 0 while there is none
-  std::uint16_t* right2;           ///< the one after that
+  std::uint16_t* right2;           ///< the sample after `right`
   std::uint16_t* minimum;          ///< smallest so far
   std::uint16_t* peak_index;       ///< number of the peak's sample, 0-based
   std::uint8_t* saturated;         ///< 1 if a pixel of the window was saturated at the peak
-  std::ptrdiff_t pitch_bytes = 0;  ///< from each of these to the same of the next row; 0: unknown
+  std::ptrdiff_t pitch_bytes = 0;  ///< from each field to the same field of the next row; 0 = unknown
 };
 
 /// A row of one sample: codes, whether its window was saturated, pixels. Texture: std::uint8_t or std::uint16_t.
@@ -40,7 +41,7 @@ struct Sample {
   const Texture* pixels;
 };
 
-/// What a sample's number says about the heights about it; one entry a sample. u = (z - z of the sample) / scale.
+/// The heights of a sample and its neighbours; one entry per sample. u = (z - z of the sample) / scale.
 struct alignas(32) HeightEntry {
   float z_um = 0.0F;
   float scale_um = 1.0F;  ///< mean distance to the neighbours
@@ -52,24 +53,24 @@ struct alignas(32) HeightEntry {
 };
 using HeightTable = std::span<const HeightEntry>;
 
-/// What the vertex of a fit is off by, see curve_shape.hpp: (linear u + cubic u^3) b / (1 + 0.9 b) sample distances; u
-/// is where it lies, b the fit's curvature.
+/// Error of a fit's vertex, see curve_shape.hpp: (linear u + cubic u^3) b / (1 + 0.9 b) sample distances, u the
+/// position of the vertex, b the curvature of the fit.
 struct VertexBias {
   float linear = 0.0F;
   float cubic = 0.0F;
 };
 
-/// What a fit needs beside the curve.
+/// Parameters of a fit that are the same for all curves.
 struct FitParameters {
   float min_prominence;
   float min_significance;
   float shape_error;  ///< see five_sample_fit.hpp
   float code_unit;    ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
   bool root_code;
-  VertexBias bias;  ///< to be taken off
+  VertexBias bias;  ///< to be subtracted from the vertex
 };
 
-/// Where fits go, rows of planes without padding; NaN in height and variance exactly where mask is not 0.
+/// Output of the fits: rows of planes without padding; NaN in height and variance exactly where mask is not 0.
 struct FitRow {
   float* height_m;
   float* variance_m2;  ///< of the height
@@ -80,17 +81,18 @@ struct FitRow {
 struct FocusKernels {
   std::string_view name;
 
-  /// ML of the row from the rows `distance` above and below; columns within `distance` of an end are left alone.
+  /// Modified Laplacian of the row, from the rows `distance` above and below; columns within `distance` of an end are
+  /// left unchanged.
   void (*laplacian_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                         int distance, std::uint32_t* out) noexcept;
-  /// (gx^2 + gy^2) >> shift of the Sobel gradients; ends as above.
+  /// (gx^2 + gy^2) >> shift of the Sobel gradients; ends as for the Laplacian.
   void (*tenengrad_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
                        int distance, int shift, std::uint32_t* out) noexcept;
   void (*tenengrad_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                         int distance, int shift, std::uint32_t* out) noexcept;
 
-  /// The same of an 8-bit row, value by value, at once with the sums over the window's rows that it enters:
-  /// columns += value - slot; slot = value; scaled = columns / 2^shift, rounded. Ends as above.
+  /// Modified Laplacian of an 8-bit row in one pass with the sums over the window's rows that it enters:
+  /// columns += value - slot; slot = value; scaled = columns / 2^shift, rounded. Ends as for the Laplacian.
   void (*enter_laplacian_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
                              int distance, int shift, std::uint16_t* columns, std::uint16_t* slot,
                              std::uint16_t* scaled) noexcept;
@@ -108,11 +110,11 @@ struct FocusKernels {
   /// sums += codes / 2^shift, rounded.
   void (*add_to_bin)(std::uint16_t* sums, const std::uint16_t* codes, int shift, int width) noexcept;
 
-  /// out = values. The next row is pitch_bytes behind the values, width behind out.
+  /// out = values. The next row of values lies pitch_bytes behind `values`, that of out `width` elements behind `out`.
   void (*widen_u8)(const std::uint8_t* values, std::ptrdiff_t pitch_bytes, int width, std::uint16_t* out) noexcept;
 
-  /// Takes successive samples in, the first of number first_index >= 1; texture keeps the pixel of the peak's sample.
-  /// The rows of the state, and texture, have room for width rounded up to 16.
+  /// Takes successive samples in; the number of the first is first_index >= 1. texture keeps the pixel of the peak's
+  /// sample. The rows of the state and of texture have room for width rounded up to 16.
   void (*update_u8)(const CurveRow& row, const Sample<std::uint8_t>* samples, int count, std::uint8_t* texture,
                     int width, int first_index) noexcept;
   void (*update_u16)(const CurveRow& row, const Sample<std::uint16_t>* samples, int count, std::uint16_t* texture,
@@ -131,18 +133,18 @@ struct FocusKernels {
   /// highest = max(highest, peak less minimum), both codes squared first where they are roots. 0 <= minimum <= peak.
   void (*raise_amplitudes)(const std::uint16_t* peak, const std::uint16_t* minimum, bool root_code, int width,
                            std::uint32_t* highest) noexcept;
-  /// In place, sigma = sqrt(variance + (factor * gradient)^2), gradient from heights `reach` to either side; a missing
-  /// one is 0. upper, lower: rows of heights `reach` above and below; nullptr: there are none, as for the columns
-  /// within `reach` of an end: the root alone.
+  /// In place, sigma = sqrt(variance + (factor * gradient)^2). The gradient comes from the heights `reach` to either
+  /// side; a component with a missing height is 0. upper, lower: rows of heights `reach` above and below. sigma =
+  /// sqrt(variance) if they are nullptr, and for columns within `reach` of an end.
   void (*finish_sigma)(const float* height, const float* upper, const float* lower, int reach, float factor, int width,
                        float* sigma) noexcept;
 };
 
-/// The fastest this processor runs, or the one FVD_FORCE_KERNEL names. Throws Error kBadInput (once, at the first call)
-/// for a name that is none or that this processor cannot run.
+/// The fastest kernels that this processor runs, or those that FVD_FORCE_KERNEL names. Throws Error kBadInput for an
+/// unknown name, and for kernels that this processor cannot run.
 [[nodiscard]] const FocusKernels& focus_kernels();
 
-/// All this processor runs, slowest first.
+/// All kernels that this processor runs, slowest first.
 [[nodiscard]] std::span<const FocusKernels* const> all_focus_kernels() noexcept;
 
 }  // namespace fvd

@@ -2,19 +2,19 @@
 
 // From condensed curves to heights.
 //
-// Given: a row of the curves' state, the table of what each sample's number says of z, the noise. Left: height,
-// variance, prominence, mask of each point. The formula is in five_sample_fit.hpp; here its sums, Cramer's rule and
-// their derivatives are spread over short loops, see kFitPixels, each of which takes one stage for all the pixels.
+// In: a row of the curves' state, the table of heights by sample number, the noise. Out: height, variance, prominence,
+// mask of each point. The formula is in five_sample_fit.hpp; here its sums, Cramer's rule and their derivatives are
+// spread over short loops, see kFitPixels, each of which does one stage for all the pixels.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
 #include "core/focus/kernels/kernel_vectors-inl.hpp"
 
 namespace fvd::FVD_KERNEL_NAMESPACE {
 
-/// The fit goes over so many pixels at once, in short loops one after the other: one long loop would wait for its own
-/// divisions and roots, of short ones the processor has several passes under way. What they hand on stays in the
-/// nearest cache, all of it 32 bits wide: in a loop that also loads 8 and 16 bits g++ takes as many pixels at once as
-/// the narrowest fill a register, and spills.
+/// Number of pixels that the fit processes together, in short loops one after the other: one long loop would wait for
+/// its own divisions and roots; of short ones the processor has several iterations under way. The intermediate values
+/// stay in the nearest cache and are all 32 bits wide: in a loop that also loads 8 and 16 bits, g++ processes as many
+/// pixels together as fill a register with the narrowest type, and spills.
 constexpr int kFitPixels = 64;
 using FitFloats = float[kFitPixels];
 using FitFlags = std::int32_t[kFitPixels];
@@ -27,7 +27,7 @@ struct FitNeighbours {
   FitFloats right2;
 };
 
-/// What is known of the pixels so far; filled from top to bottom.
+/// Intermediate values of the pixels; filled from top to bottom.
 struct FitPixels {
   FitFloats peak;  // codes or, where these are roots, their squares
   FitFloats minimum;
@@ -94,7 +94,7 @@ inline __attribute__((always_inline)) void transpose(const float* row0, const fl
   store(__builtin_shufflevector(high01, high23, 2, 3, 6, 7), column3);
 }
 
-/// For 4 pixels from x on.
+/// Loads the entries of 4 pixels, x to x + 3.
 inline __attribute__((always_inline)) void look_up_four(const std::uint16_t* indices, HeightTable table, int x,
                                                         FitPixels& at) {
   const auto* const e0 = &table[indices[x]].z_um;
@@ -110,7 +110,8 @@ inline __attribute__((always_inline)) void look_up_four(const std::uint16_t* ind
 using Eight = float __attribute__((vector_size(32), may_alias));
 using EightFlags = std::int32_t __attribute__((vector_size(32), may_alias));
 
-/// One entry for 8 pixels from x on. Less a zero: that leaves every value as it is, and g++ makes a broadcast of it.
+/// Loads one entry for 8 pixels, x to x + 7. Subtracting a zero leaves every value unchanged; g++ makes a broadcast of
+/// it.
 inline __attribute__((always_inline)) void look_up_once(const HeightEntry& entry, int x, FitPixels& at) {
   const Eight z_um = entry.z_um - Eight{};
   const Eight scale_um = entry.scale_um - Eight{};
@@ -128,14 +129,14 @@ inline __attribute__((always_inline)) void look_up_once(const HeightEntry& entry
   store(known, at.known + x);
 }
 
-/// On most surfaces neighbours peak in one and the same slice: then one entry serves them all.
+/// On most surfaces neighbours peak in the same slice; one entry is then loaded for all of them.
 inline void look_up(const std::uint16_t* indices, HeightTable table, int count, FitPixels& at) {
   int x = 0;
   for (; x + 8 <= count; x += 8) {
     std::uint64_t four[2];
     __builtin_memcpy(four, indices + x, sizeof four);
-    constexpr std::uint64_t kEach = 0x0001000100010001;
-    if (four[0] == four[1] && four[0] == kEach * indices[x]) {
+    constexpr std::uint64_t kFourCopies = 0x0001000100010001;
+    if (four[0] == four[1] && four[0] == kFourCopies * indices[x]) {
       look_up_once(table[indices[x]], x, at);
     } else {
       look_up_four(indices, table, x, at);

@@ -1,9 +1,9 @@
 #pragma once
 
-// What points say of those near them.
+// Quantities of a point that need its neighbours.
 //
-// Given: rows of peaks, or of heights with those `reach` above and below. Left: the largest rise of a column so far,
-// and sigma with the slope's share in it. A missing neighbour (NaN) is a selection, not a branch: both sides are
+// In: rows of peaks, or rows of heights with those `reach` above and below. Out: the largest rise of a column so far,
+// and sigma with the contribution of the slope. A missing neighbour (NaN) is a selection, not a branch: both sides are
 // computed.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"

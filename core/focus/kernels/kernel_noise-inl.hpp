@@ -1,9 +1,9 @@
 #pragma once
 
-// What an image's second differences say of its noise.
+// The noise of an image from its second differences.
 //
-// Given: three neighbouring rows. Left: the sum over the row of the sizes of Immerkaer's operator. Partial sums are as
-// narrow as they can be without overflow, for the narrower the lane, the more of them are in a register.
+// In: three neighbouring rows. Out: the sum over the row of the absolute values of Immerkaer's operator. Partial sums
+// are as narrow as they can be without overflow: the narrower the lane, the more of them fit in a register.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
 #include "core/focus/kernels/kernel_vectors-inl.hpp"

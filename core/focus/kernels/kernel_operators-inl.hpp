@@ -1,11 +1,11 @@
 #pragma once
 
-// How sharp a pixel is.
+// The sharpness of a pixel.
 //
-// Given: the pixel's row and those `distance` above and below. Left: the operator's value of each pixel but those
-// within `distance` of an end. Plain loops in 32 bits, of which g++ makes vector code; the 8-bit Laplacian, which is
-// the one that is used by default, in 16-bit lanes and at once with the column sums, so that its values are never
-// stored to be loaded again.
+// In: the pixel's row and those `distance` above and below. Out: the operator's value of each pixel except those within
+// `distance` of an end. Plain loops in 32 bits, of which g++ makes vector code. The 8-bit Laplacian, which is the
+// default, runs in 16-bit lanes and in one pass with the column sums, so that its values are never stored and loaded
+// again.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
 #include "core/focus/kernels/kernel_vectors-inl.hpp"

@@ -1,11 +1,10 @@
 #pragma once
 
-// The condensed curve takes samples in.
+// Update of the condensed curves by samples.
 //
-// Given: a row of the curves' state and successive samples of it. Left: the state after these samples, as if they had
-// come one by one. 16 columns at a time, all samples after each other, so that the state is loaded and stored once;
-// that memory traffic is what the speed hangs on. Where no lane has a new peak, half of the work is passed over by
-// the only branch.
+// In: a row of the curves' state and successive samples of it. Out: the state after these samples, as if they had come
+// one by one. 16 columns at a time, all samples one after the other, so that the state is loaded and stored once; that
+// memory traffic limits the speed. If no lane has a new peak, the only branch skips half of the work.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
 #include "core/focus/kernels/kernel_vectors-inl.hpp"

@@ -1,12 +1,11 @@
 #pragma once
 
-// 16 pixels at once, and fetching ahead: what the other fragments are made of where a loop over plain arrays does not
-// do.
+// Vectors of 16 pixels, and prefetching, for the fragments in which a loop over plain arrays is not fast enough.
 //
-// Given: pointers to at least 16 values, of any alignment. Left: vectors of 16 lanes, by reference, for a vector wider
-// than the target's own is not to be returned. Lanes are 16 bits wide, as codes are; what is 8 bits wide is widened
-// when it is loaded. Written in the vectors that g++ and clang share, which work on every target, in two halves where
-// its registers are narrower; as intrinsics only where g++ 12 makes more instructions than one of the operator.
+// In: pointers to at least 16 values, of any alignment. Out: vectors of 16 lanes, by reference, because a vector wider
+// than the target's own must not be returned. Lanes are 16 bits wide, as codes are; 8-bit values are widened when they
+// are loaded. Written in the vectors that g++ and clang share, which work on every target, in two halves where its
+// registers are narrower; intrinsics only where g++ 12 makes more than one instruction of an operator.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
 
@@ -71,9 +70,9 @@ inline std::uint16_t rounded_shift(std::uint16_t value, int shift) {
   return static_cast<std::uint16_t>((value >> shift) + ((value >> (shift - 1)) & 1));
 }
 
-/// What lies `pitch_bytes` behind `from`, so that it is there when its turn comes: a row's fields are far apart, and
-/// the processor's own prefetcher needs some misses in each to notice. Always inline: g++ takes a function that does
-/// nothing but this for one that does nothing, and drops its call.
+/// Prefetches kBytes that lie `pitch_bytes` behind `from`: a row's fields are far apart, and the processor's own
+/// prefetcher needs some misses in each to notice. Always inline: g++ treats a function that only prefetches as one
+/// without effect, and drops its call.
 template <int kBytes, typename T>
 inline __attribute__((always_inline)) void fetch(const T* from, std::ptrdiff_t pitch_bytes, bool to_write) {
   constexpr int kCacheLine = 64;

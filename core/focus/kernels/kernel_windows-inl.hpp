@@ -2,9 +2,9 @@
 
 // From operator values to window sums and codes.
 //
-// Given: rows of operator values or of column sums. Left: column sums moved on by a row, sums over a window of columns,
-// codes. A running sum would make every pixel wait for the one before; here a window is put together from sums over
-// powers of three, each an addition of whole rows.
+// In: rows of operator values or of column sums. Out: column sums advanced by one row, sums over a window of columns,
+// codes. A running sum would make every pixel wait for the one before; here a window is composed of sums over powers of
+// three, each an addition of whole rows.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
 
@@ -66,11 +66,11 @@ inline __attribute__((always_inline)) void add_terms(const T* const* terms, int 
 }
 
 /// A window in powers of three: sums of 3, then of 9 values, each from three of the level below, and at last the
-/// window from what is largest. 9 takes 4 additions, 31 takes 8, 63 takes 10. count: windows, up to kWindowsAtOnce.
-constexpr int kWindowsAtOnce = 1280;  // two of these halve a row of 2448
+/// window from what is largest. 9 takes 4 additions, 31 takes 8, 63 takes 10. count: windows, up to kWindowsPerPass.
+constexpr int kWindowsPerPass = 1280;  // two of these halve a row of 2448
 template <typename T>
 inline __attribute__((always_inline)) void window_sums_at(const T* values, int window, int count, T* out) {
-  T scratch[2][kWindowsAtOnce + 64];
+  T scratch[2][kWindowsPerPass + 64];
   const T* level = values;
   const T* levels[3] = {values, values, values};
   int power = 1;
@@ -95,12 +95,12 @@ inline __attribute__((always_inline)) void window_sums_at(const T* values, int w
   add_terms(terms, number, count, out);
 }
 
-/// So many windows at once that the sums between stay in the nearest cache.
+/// In passes of kWindowsPerPass windows, so that the intermediate sums stay in the nearest cache.
 template <typename T>
 inline __attribute__((always_inline)) void window_sums(const T* values, int window, int width, T* out) {
   const int windows = width - window + 1;
-  for (int first = 0; first < windows; first += kWindowsAtOnce) {
-    const int count = windows - first < kWindowsAtOnce ? windows - first : kWindowsAtOnce;
+  for (int first = 0; first < windows; first += kWindowsPerPass) {
+    const int count = windows - first < kWindowsPerPass ? windows - first : kWindowsPerPass;
     window_sums_at(values + first, window, count, out + first);
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a recipe may choose about the focus core.
+/// The settings of the focus core that a recipe may choose.
 
 #include <array>
 #include <optional>
@@ -8,13 +8,13 @@
 
 namespace fvd {
 
-/// How a sub-slice height is taken from the peak triple.
+/// How a sub-slice height is computed from the samples about the peak.
 enum class PeakMethod {
   kNearest,      ///< z of the sharpest slice
   kParabola,     ///< vertex of the parabola through the triple
   kLogParabola,  ///< vertex of the parabola through the logarithms (Gaussian peak; Nayar and Nakagawa 1994)
   kInverseRoot,  ///< vertex of the parabola through F^-1/2: exact for 1 / (a + b u^2)^2, a peak with heavy tails
-  kFiveSample,   ///< the same by least squares over five samples; see five_sample_fit.hpp
+  kFiveSample,   ///< the same parabola by least squares over five samples; see five_sample_fit.hpp
 };
 inline constexpr std::array kAllPeakMethods{PeakMethod::kNearest, PeakMethod::kParabola, PeakMethod::kLogParabola,
                                             PeakMethod::kInverseRoot, PeakMethod::kFiveSample};
@@ -23,7 +23,7 @@ inline constexpr std::array kAllPeakMethods{PeakMethod::kNearest, PeakMethod::kP
 [[nodiscard]] std::string_view peak_method_name(PeakMethod method) noexcept;
 [[nodiscard]] std::optional<PeakMethod> peak_method_from_name(std::string_view name) noexcept;
 
-/// What is summed over the window.
+/// The operator whose values are summed over the window.
 enum class FocusOperator {
   kModifiedLaplacian,  ///< absolute second differences along x and y (Nayar and Nakagawa 1994)
   kTenengrad,          ///< squared Sobel gradients (Tenenbaum 1970)
@@ -52,9 +52,9 @@ struct FocusSettings {
   bool stage_correction = true;   ///< see stage_correction.hpp; with the five-sample peak only
 };
 
-/// The bin that puts samples about 0.4 of the curve's full width at half maximum apart, where a peak is placed best: a
-/// finer step needs more slices a sample, for with each its neighbours differ by less, by more noise than curve.
-/// 1 where the width is unknown, 0.
+/// The number of slices per bin with which samples lie about 0.4 of the curve's full width at half maximum apart. There
+/// the peak is located best: closer samples differ by more noise than signal. 1 if the width is unknown (0).
+/// context: pure.
 [[nodiscard]] int choose_bin_slices(double step_um, double curve_width_um) noexcept;
 
 /// Throws Error kBadInput with the value and its range.

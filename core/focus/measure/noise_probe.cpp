@@ -11,10 +11,10 @@ namespace fvd {
 namespace {
 
 constexpr int kTile_px = 128;
-constexpr int kEveryRow = 16;
+constexpr int kRowStep = 16;
 constexpr double kRounding = 0.28867513459481287;  // 1 / sqrt(12) grey levels
-/// The least of some tens of estimates of 4 % standard error lies low by so much.
-constexpr double kLeastIsLow = 1.06;
+/// Correction of the least of some tens of estimates, each with a standard error of 4 %, which lies below their mean.
+constexpr double kMinimumBias = 1.06;
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void NoiseProbe::add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept 
   std::fill_n(sums, columns_, std::uint64_t{0});
   // Row by row, as the memory lies: the slice comes from far away.
   int rows = 0;
-  for (int y = first; y < end; y += kEveryRow, ++rows) {
+  for (int y = first; y < end; y += kRowStep, ++rows) {
     for (int column = 0; column < columns_; ++column) {
       const int left = tile_left(column);
       const int size = tile_right(column) - left;
@@ -73,7 +73,7 @@ void NoiseProbe::add(const ImageView& slice, WorkerPool& pool) noexcept {
 float NoiseProbe::sigma(int column, int tile_row) const noexcept {
   const double least = least_[static_cast<std::size_t>(tile_row * columns_ + column)];
   if (!std::isfinite(least)) return static_cast<float>(kRounding);  // too small an image to see noise in
-  return static_cast<float>(std::max(kRounding, kLeastIsLow * std::sqrt(std::numbers::pi / 2) / 6.0 * least));
+  return static_cast<float>(std::max(kRounding, kMinimumBias * std::sqrt(std::numbers::pi / 2) / 6.0 * least));
 }
 
 int NoiseProbe::tile_row(int y) const noexcept {

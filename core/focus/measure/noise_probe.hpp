@@ -1,11 +1,11 @@
 #pragma once
 
-/// The noise of the image, seen in the same scan: every part of it is out of focus in some slice, and what varies from
-/// pixel to pixel then is noise.
+/// The noise of the image, estimated in the same scan: every part of it is out of focus in some slice, and the
+/// variation from pixel to pixel is noise there.
 ///
 /// J. Immerkaer, "Fast noise variance estimation", CVIU 64(2), 1996: the mask [1 -2 1; -2 4 -2; 1 -2 1] does not see
 /// smooth images; of white noise it makes sigma = sqrt(pi / 2) / 6 * mean |response|. Here the mean is taken over tiles
-/// of about 128 x 128 pixels, every sixteenth row of them, and each tile keeps its least.
+/// of about 128 x 128 pixels, every sixteenth row of each, and each tile keeps its smallest mean of all slices.
 
 #include <cstdint>
 #include <vector>
@@ -16,21 +16,22 @@
 
 namespace fvd {
 
-/// context: one thread at a time; add() spreads its work over the pool. All memory is taken by the constructor.
+/// context: one thread at a time; add() spreads its work over the pool. The constructor allocates all memory.
 class NoiseProbe {
  public:
   NoiseProbe(int width, int height);
 
-  /// Looks at one slice of the constructor's size.
+  /// Takes in one slice of the constructor's size.
   void add(const ImageView& slice, WorkerPool& pool) noexcept;
 
+  /// The row of tiles that image row y lies in.
   [[nodiscard]] int tile_row(int y) const noexcept;
 
   /// Standard deviation in grey levels at each pixel of a row of tiles, at least that of rounding, 1 / sqrt(12).
   /// Shape [width].
   void noise_row(int tile_row, float* out) const noexcept;
 
-  /// Of the tiles, in grey levels.
+  /// Median and minimum over the tiles, in grey levels.
   [[nodiscard]] double median() const;
   [[nodiscard]] double least() const;
 

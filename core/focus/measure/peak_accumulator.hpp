@@ -1,7 +1,7 @@
 #pragma once
 
-/// What is kept per pixel of a focus curve that passes by once: its maximum so far with two neighbours on either side,
-/// where it was, and the minimum.
+/// The state per pixel of a focus curve whose samples are seen once: its maximum so far with two neighbours on either
+/// side, the number of the maximum's sample, and the minimum.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace fvd {
 
-/// Slices that are being summed to one sample; nullptr throughout where every slice is a sample.
+/// Slices that are being summed to one sample; all nullptr if every slice is a sample.
 template <typename Texture>
 struct BinRow {
   std::uint16_t* sums = nullptr;
@@ -28,14 +28,14 @@ struct StateRow {
 };
 
 /// 20 bytes per pixel for Mono8, 21 for 16 bit, with bins 24 and 26; rows padded to 16 pixels; never grows.
-/// Texture: std::uint8_t for Mono8, else std::uint16_t.
+/// Texture: std::uint8_t for Mono8, else std::uint16_t. context: several threads may use different rows.
 template <typename Texture>
 class PeakAccumulator {
  public:
   PeakAccumulator(int width, int height, bool binned, KeptPagesPtr pages = nullptr);
 
   [[nodiscard]] StateRow<Texture> row(int y) noexcept;
-  /// Writes rows first to end - 1: the memory is there when the first slice comes, and near to the thread that calls.
+  /// Writes rows first to end - 1, so that their pages exist before the first slice, near the thread that calls.
   void touch_rows(int first, int end) noexcept;
   /// Row 0 becomes a copy of row y of another accumulator of the same width and kind.
   void copy_row(const PeakAccumulator& from, int y) noexcept;
@@ -54,14 +54,15 @@ class PeakAccumulator {
   LargeArray<Block> storage_;
 };
 
-/// By how many bits the codes of a bin's slices are shifted so that their sum fits 16 bits: 0 for 1 slice, 6 for 64.
+/// Number of bits by which the codes of a bin's slices are shifted so that their sum fits 16 bits: 0 for 1 slice, 6 for
+/// 64.
 [[nodiscard]] int bin_shift(int bin_slices) noexcept;
 
 /// Takes sample 0 in: initialises the row.
 template <typename Texture>
 void start_peaks(const StateRow<Texture>& row, const Sample<Texture>& sample, int width) noexcept;
 
-/// Takes successive samples in, the first of number first_index >= 1.
+/// Takes successive samples in; the number of the first is first_index >= 1.
 template <typename Texture>
 void update_peaks(const FocusKernels& kernels, const StateRow<Texture>& row, std::span<const Sample<Texture>> samples,
                   int width, int first_index) noexcept;

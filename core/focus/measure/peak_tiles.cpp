@@ -7,8 +7,8 @@ namespace fvd {
 
 namespace {
 
-constexpr float kLeastShare = 0.1F;
-constexpr int kRowsOfTile = 5;  // that are looked at: within a fifth of its size a window's sum hardly changes
+constexpr float kMinAmplitudeShare = 0.1F;
+constexpr int kSampledRowsPerTile = 5;  // enough: within a fifth of its size a window's sum hardly changes
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void PeakTiles::look_at(int tile_row) {
   const float unit = root_code_ ? kUnit * kUnit : kUnit;  // a code's amplitude times this is a share
   std::fill(highest_.begin(), highest_.end(), 0U);
   const int end = std::min(height_, (tile_row + 1) * reach_px_);
-  for (int y = tile_row * reach_px_; y < end; y += std::max(1, reach_px_ / kRowsOfTile)) {
+  for (int y = tile_row * reach_px_; y < end; y += std::max(1, reach_px_ / kSampledRowsPerTile)) {
     const CurveRow curve = curves_(y);
     focus_kernels().raise_amplitudes(curve.peak, curve.minimum, root_code_, width_, highest_.data());
   }
@@ -59,7 +59,7 @@ void PeakTiles::least_amplitude(int tile_row, float* out) {
     const auto from = highest.begin() + std::max(0, column - 1);
     const auto end = highest.begin() + std::min(columns_, column + 2);
     std::fill(out + column * reach_px_, out + std::min(width_, (column + 1) * reach_px_),
-              kLeastShare * *std::max_element(from, end));
+              kMinAmplitudeShare * *std::max_element(from, end));
   }
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-/// How high the focus curves of a neighbourhood rise, to find points that see an edge's blur instead of a surface.
+/// The highest focus curve of a neighbourhood, to find points at which an edge's blur looks like a surface.
 ///
-/// Out of focus, light of a bright edge reaches windows beside it that hold no texture of their own. Their curves have
-/// a peak then, at a height where there is nothing. It is low beside the edge's own: a point whose curve rises less
-/// than a tenth of the highest within about a window from it is no surface.
+/// Out of focus, light of a bright edge reaches windows beside it that hold no texture of their own. Their curves then
+/// have a peak at a height where there is no surface. This peak is low compared with that of the edge: a point whose
+/// curve rises less than a tenth of the highest curve within about one window is a hole.
 
 #include <array>
 #include <cstdint>
@@ -16,11 +16,11 @@
 
 namespace fvd {
 
-/// Goes down the image just ahead of the fit, so that the rows it reads are still in a cache then. Not thread-safe; one
-/// instance per thread.
+/// To be used from the top row downwards, just ahead of the fit, which then finds the rows in a cache. Not thread-safe;
+/// one instance per thread.
 class PeakTiles {
  public:
-  /// The condensed curves of row y; good until the next call.
+  /// Returns the condensed curves of row y, valid until the next call.
   using CurveOfRow = std::function<CurveRow(int y)>;
 
   /// reach_px: side of a tile; a point is compared with its own tile and the eight about it.
@@ -28,7 +28,8 @@ class PeakTiles {
 
   [[nodiscard]] int tile_row(int y) const noexcept { return y / reach_px_; }
 
-  /// A tenth of the neighbourhood's highest amplitude at each pixel of a row of tiles, in shares. Shape [width].
+  /// Writes a tenth of the neighbourhood's highest amplitude at each pixel of a row of tiles, as shares of full scale,
+  /// shape [width].
   /// Reads the curves of that row of tiles and of its neighbours; reuses the tile rows that the previous call read.
   void least_amplitude(int tile_row, float* out);
 

@@ -7,8 +7,8 @@ namespace fvd {
 namespace {
 
 /// The largest code: roundings on the way up must not pass 65535.
-constexpr double kTop = 65000.0;
-constexpr double kLargestSum = 2147483000.0;  // the root is taken of a signed 32-bit integer
+constexpr double kMaxCode = 65000.0;
+constexpr double kMaxSum = 2147483000.0;  // the root is taken of a signed 32-bit integer
 
 double largest_value(FocusOperator op, int grey) {
   switch (op) {
@@ -29,7 +29,7 @@ SharpnessCode sharpness_code(const FocusSettings& settings, PixelFormat format) 
   const double window = settings.window_px;
   double largest = largest_value(settings.focus_operator, max_grey_level(format));
   if (format == PixelFormat::kMono8 && settings.focus_operator == FocusOperator::kModifiedLaplacian) {
-    while (window * (window * largest / (1 << code.shift) + 1.0) > kTop) ++code.shift;
+    while (window * (window * largest / (1 << code.shift) + 1.0) > kMaxCode) ++code.shift;
     code.gain = 1.0 / (1 << code.shift);
     return code;
   }
@@ -37,9 +37,9 @@ SharpnessCode sharpness_code(const FocusSettings& settings, PixelFormat format) 
   // The kernel for 16 bit drops 3 bits of each gradient before it squares.
   const int lost = settings.focus_operator == FocusOperator::kTenengrad && format != PixelFormat::kMono8 ? 6 : 0;
   largest = std::ldexp(largest, -lost);
-  while (window * window * std::ldexp(largest, -code.operator_shift) > kLargestSum) ++code.operator_shift;
+  while (window * window * std::ldexp(largest, -code.operator_shift) > kMaxSum) ++code.operator_shift;
   const double largest_sum = window * window * std::ldexp(largest, -code.operator_shift);
-  code.gain = kTop / std::sqrt(std::ldexp(largest_sum, lost + code.operator_shift));
+  code.gain = kMaxCode / std::sqrt(std::ldexp(largest_sum, lost + code.operator_shift));
   return code;
 }
 

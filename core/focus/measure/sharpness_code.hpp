@@ -1,6 +1,6 @@
 #pragma once
 
-/// How a window's sum becomes the 16 bits that are kept per sample.
+/// The 16-bit code of a window's sum, which is what is kept per sample.
 ///
 ///   linear:  code = F * gain               8-bit modified Laplacian; gain is a power of 1/2
 ///   root:    code = round(gain * sqrt(F))  everything wider: 16 bits keep the precision of small sums
@@ -17,13 +17,13 @@ namespace fvd {
 
 struct SharpnessCode {
   bool root = false;
-  int shift = 0;           ///< linear: of the sum over a column, 0..6
-  int operator_shift = 0;  ///< of an operator's value before it is summed
+  int shift = 0;           ///< linear: right shift of the sum over a column, 0..6 bits
+  int operator_shift = 0;  ///< right shift of an operator's value before it is summed, bits
   double gain = 1.0;       ///< from F, the sum of the operator's unshifted values, to the code
 
   static constexpr double kUnit = 1.0 / 65535.0;  ///< a code times this is a share or the root of one
 
-  /// F of a code, for people and for tests.
+  /// The value F of a code, for messages and tests.
   [[nodiscard]] double decode(std::uint16_t code) const noexcept {
     const double value = code / gain;
     return root ? value * value : value;

@@ -1,12 +1,12 @@
 #pragma once
 
-/// The focus measure row by row: what a band of the image needs, in memory that does not grow with it.
+/// The focus measure row by row, in memory that does not grow with the image's height.
 ///
 ///   F(x,y) = sum of the operator's values over the window about (x,y)
 ///
 /// Outside the image the edge pixel is repeated. Near the image's border the window shrinks on both sides alike, to
-/// half its size at the least, so that it stays centred: a clipped one would look past the pixel into the image, which
-/// tilts every slope there. What still reaches beyond the border is cut off.
+/// half its size at the least, so that it stays centred: the centre of a clipped window would lie beside the pixel,
+/// which tilts every slope there. The part of the half window that still reaches beyond the border is clipped.
 ///
 /// Operators, with neighbours at distance d:
 ///   modified Laplacian (Nayar and Nakagawa, IEEE PAMI 16(8), 1994): |2 I - I(x-d) - I(x+d)| + |2 I - I(y-d) - I(y+d)|;
@@ -37,8 +37,8 @@ struct WindowReach {
   int last;
 };
 
-/// Pixel: std::uint8_t or std::uint16_t. All memory is taken by the constructor.
-/// Not thread-safe; one scanner per thread and slice.
+/// Pixel: std::uint8_t or std::uint16_t. The constructor allocates all memory.
+/// Not thread-safe; one instance per thread and slice.
 template <typename Pixel>
 class SharpnessRows {
  public:
@@ -114,7 +114,7 @@ class SharpnessRows {
   bool saturated_clear_ = true;
 };
 
-/// The same for a whole image, obviously correct: every window summed anew. Shape of the image.
+/// The same codes for a whole image, obviously correct: every window is summed anew. Shape of the image. For tests.
 [[nodiscard]] Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings);
 
 extern template class SharpnessRows<std::uint8_t>;

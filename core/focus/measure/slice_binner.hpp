@@ -12,8 +12,8 @@
 namespace fvd {
 
 /// Summing successive sharpness rows uses every slice of a finely stepped scan without keeping any: the noise of a
-/// sample falls with the root of the bin, and the samples get the distance at which a peak is placed best.
-/// Texture and saturation: the pixel of the bin's middle slice, any saturated window of the bin.
+/// sample falls with the root of the bin, and the samples get the distance at which a peak is located best.
+/// Texture: the pixel of the bin's middle slice. Saturation: set if any slice of the bin has a saturated window.
 /// Not thread-safe; one instance per thread.
 template <typename Texture>
 class SliceBinner {
@@ -25,7 +25,7 @@ class SliceBinner {
         shift_(bin_shift(bin_slices)),
         scaled_(static_cast<std::size_t>(bin_slices > 1 ? width : 0)) {}
 
-  /// Takes a row of successive slices in, the first of number first_slice, 0-based.
+  /// Takes a row of successive slices in; the number of the first is first_slice, 0-based.
   void add(const StateRow<Texture>& row, std::span<const Sample<Texture>> slices, int first_slice) noexcept {
     if (bin_ == 1) {
       take(row, slices, first_slice);
