@@ -70,12 +70,12 @@ void check_together(const Recipe& recipe, const Places& places, Problems& proble
     refuse(extra_peaks, peak_method_name(recipe.peak), "is the peak already; expected others only");
   }
   if (!judged({"/export", extra_peaks}) || !recipe.extra_peaks.empty()) return;
-  for (const Exporter& exporter : chosen_exporters(recipe.exports.value_or(std::vector<std::string>{}))) {
-    if (exporter.need != ExportNeed::kEachExtraMap) continue;
-    refuse("/export", exporter.name,
-           "stands for the maps of extra_peaks, which is empty, so it makes no file; expected extra_peaks at " +
-               extra_peaks + ", or names that make files: " + names_of_single_files());
-  }
+  const auto chosen = chosen_exporters(recipe.exports.value_or(std::vector<std::string>{}));
+  const auto makes_none = [](const Exporter& exporter) { return exporter.need == ExportNeed::kEachExtraMap; };
+  if (chosen.empty() || !std::all_of(chosen.begin(), chosen.end(), makes_none)) return;
+  refuse("/export", chosen.front().name,
+         "stands for the maps of extra_peaks, which is empty, so no file is made; expected extra_peaks at " +
+             extra_peaks + ", or names that make files: " + names_of_single_files());
 }
 
 }  // namespace

@@ -205,8 +205,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "above 0"},
         BadRecipe{with_reconstruct(R"({"smooth_px": 2})"), "/reconstruct/smooth_px", "unknown key"},
         BadRecipe{with("", R"(, "export": ["height.csv"])"), "/export", "\"height.tiff\""},
-        BadRecipe{with("", R"(, "export": ["mask.png", "height_*.tiff"])"), "/export",
-                  "height_*.tiff stands for the maps of extra_peaks, which is empty, so it makes no file; expected "
+        BadRecipe{with("", R"(, "export": ["height_*.tiff"])"), "/export",
+                  "height_*.tiff stands for the maps of extra_peaks, which is empty, so no file is made; expected "
                   "extra_peaks at /reconstruct/focus/extra_peaks, or names that make files: height.tiff, sigma.tiff"},
         BadRecipe{with("", R"(, "keep": {"slices": "yes"})"), "/keep/slices", "true or false"},
         BadRecipe{with("", R"(, "evaluation": {})"), "/evaluation", "unknown key"},
