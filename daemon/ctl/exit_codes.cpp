@@ -27,7 +27,6 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kStageAlarm:
       return kExitUnavailable;
     case ErrorCode::kAborted:
-      return kExitJobFailed;
     case ErrorCode::kJobFailed:
       return kExitJobFailed;
     default:

@@ -43,7 +43,7 @@ RpcEndpoint read_endpoint(const std::filesystem::path& runtime_dir) {
   const auto json = nlohmann::json::parse(file, nullptr, false);
   if (json.is_object() && json.contains("address") && json["address"].is_string() && json.contains("port") &&
       json["port"].is_number_integer()) {
-    const RpcEndpoint endpoint{json["address"].get<std::string>(), json["port"].get<int>()};
+    RpcEndpoint endpoint{json["address"].get<std::string>(), json["port"].get<int>()};
     if (endpoint.port >= 1 && endpoint.port <= 65535) return endpoint;
   }
   throw Error(ErrorCode::kBadInput, path.string() + " is not of the form {\"address\": \"127.0.0.1\", \"port\": 7411}");

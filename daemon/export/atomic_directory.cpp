@@ -38,7 +38,7 @@ fs::path make_temporary(const fs::path& final_dir) {
   for (int attempt = 0;; ++attempt) {
     const std::string name = "." + final_dir.filename().string() + "." + std::to_string(::getpid()) + "-" +
                              std::to_string(attempt) + std::string(kTemporarySuffix);
-    const fs::path path = final_dir.parent_path() / name;
+    fs::path path = final_dir.parent_path() / name;
     if (::mkdir(path.c_str(), 0755) == 0) return path;
     if (errno != EEXIST) throw storage_error(errno, "create directory", path);
   }

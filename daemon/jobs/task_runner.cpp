@@ -6,7 +6,7 @@
 namespace fvd {
 
 std::shared_ptr<DeviceTask> TaskRunner::submit(DeviceTask::Work work, TaskMotion motion) {
-  const auto task = std::make_shared<DeviceTask>(std::move(work), motion);
+  auto task = std::make_shared<DeviceTask>(std::move(work), motion);
   const std::stop_source stop;
   bool posted = false;
   // In one piece: a job that is accepted later finds the command's stop in place and is behind it in the queue.

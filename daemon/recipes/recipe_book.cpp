@@ -140,7 +140,7 @@ RecipeVersion RecipeBook::current_locked(const std::string& id) const {
   if (latest && latest->text == text) return *latest;
   const RecipeVersion found{
       .id = id, .sha256 = recipe_sha256(text), .author = "unknown", .comment = kChangedByHand, .text = text};
-  const RecipeVersion added = versions_.add(found, kVersionsKept);
+  RecipeVersion added = versions_.add(found, kVersionsKept);
   spdlog::warn("recipe {}: {}; it is version {} now", id, kChangedByHand, added.version);
   return added;
 }

@@ -66,9 +66,9 @@ StoredJob read_row(const Statement& row) {
 using KeptEnds = std::map<std::string, StoredJob>;  // by job_id
 
 /// The row, or the job's end that the row does not have yet.
-StoredJob as_it_stands(StoredJob row, const KeptEnds& kept) {
+StoredJob as_it_stands(const StoredJob& row, const KeptEnds& kept) {
   const auto end = kept.find(row.status.job_id);
-  return end == kept.end() ? std::move(row) : end->second;
+  return end == kept.end() ? row : end->second;
 }
 
 std::optional<JobStatus> first_status(Statement& rows, const KeptEnds& kept) {

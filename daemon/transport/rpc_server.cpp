@@ -369,7 +369,7 @@ bool RpcServer::Impl::has_room() {
   const auto leaving = std::find_if(sessions.begin(), sessions.end(),
                                     [](const std::shared_ptr<Session>& session) { return session->is_half_closed(); });
   if (leaving == sessions.end()) return false;
-  const auto session = *leaving;  // closing takes it out of the set
+  const std::shared_ptr<Session> session(*leaving);  // closing takes it out of the set
   session->close();
   return true;
 }

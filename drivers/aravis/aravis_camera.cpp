@@ -106,7 +106,7 @@ class AravisCamera final : public Camera {
   CameraSettings configure(const CameraSettings& settings) override {
     check(settings);
     interrupted_ = false;  // that was for a wait of before
-    const CameraSettings in_force = command([this, settings] {
+    CameraSettings in_force = command([this, settings] {
       acquisition_.configure(settings);
       return acquisition_.in_force();
     });

@@ -116,7 +116,7 @@ class GcsPort final : public AxisPort {
   [[nodiscard]] CommandResult enable(const MotionLimits& limits, std::stop_token /*stop*/) override {
     speed_um_per_s_ = 0.0;
     for (const char* const command : {"ACC", "DEC"}) {
-      const CommandResult set = run(command, millimetres(limits.acceleration_um_per_s2), {kUnknownCommand});
+      CommandResult set = run(command, millimetres(limits.acceleration_um_per_s2), {kUnknownCommand});
       if (set.outcome != CommandOutcome::kDone) return set;
     }
     return run("SVO", "1");

@@ -102,10 +102,12 @@ class ProfileBuilder {
 
   DriveCondition condition(const std::string& pointer, const ConditionDocument& text) {
     if (text.kind != "register") {
+      const std::string all = pointer + "/" + text.kind;
       std::vector<DriveCondition> parts;
       for (std::size_t i = 0; i < text.parts.size(); ++i) {
-        const std::string place = text.kind == "not" ? "" : "/" + std::to_string(i);
-        parts.push_back(condition(pointer + "/" + text.kind + place, text.parts[i]));
+        std::string part = all;
+        if (text.kind != "not") part.append("/").append(std::to_string(i));
+        parts.push_back(condition(part, text.parts[i]));
       }
       const auto kind = text.kind == "not"   ? DriveCondition::Kind::kNot
                         : text.kind == "all" ? DriveCondition::Kind::kAll

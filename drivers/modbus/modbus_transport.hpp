@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-struct _modbus;  // libmodbus' modbus_t
+struct _modbus;  // libmodbus' modbus_t. NOLINT(bugprone-reserved-identifier): its name
 
 namespace fvd {
 

@@ -175,7 +175,6 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
     case feature::kTriggerMode:
     case feature::kFrameRateEnable:
     case feature::kParametersLocked:
-      return within(value, 0, 1);
     case feature::kTriggerSource:
       return within(value, 0, 1);
     case feature::kAcquisitionMode:

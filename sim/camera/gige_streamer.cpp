@@ -178,7 +178,7 @@ bool GigeStreamer::expose_one(const CameraState& state, HostTime start, std::uin
       ++dropped_;
       return false;
     }
-    exposed_.push_back(std::move(exposure));
+    exposed_.push_back(exposure);
   }
   changed_.notify_all();
   return true;
@@ -197,7 +197,7 @@ void GigeStreamer::read_out(std::stop_token stop) {
             return !exposed_.empty();
           }))
         return;
-      exposure = std::move(exposed_.front());
+      exposure = exposed_.front();
       exposed_.pop_front();
     }
     stand_still(stop);

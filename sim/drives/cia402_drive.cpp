@@ -161,7 +161,7 @@ void Cia402Drive::change_state(unsigned word, HostTime now) {
       state_ = State::kSwitchOnDisabled;
     }
   } else if (state_ == State::kQuickStopActive) {
-    return;  // on its way to "switch on disabled"
+    return;  // on its way to "switch on disabled" NOLINT(bugprone-branch-clone): the order is that of the standard
   } else if (!is(control::kSwitchOn)) {
     leave_operation(State::kReadyToSwitchOn, now);
   } else if (state_ == State::kSwitchOnDisabled) {

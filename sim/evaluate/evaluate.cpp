@@ -52,7 +52,7 @@ struct RegionFigures {
 using Figures = std::map<Region, RegionFigures>;
 
 cv::Mat read_image(const std::filesystem::path& file, int type, const Surface& surface) {
-  const cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
   if (image.empty()) throw Error(ErrorCode::kBadInput, file.string() + " is missing or no image");
   if (image.type() != type || image.cols != surface.height_um.width() || image.rows != surface.height_um.height()) {
     throw Error(ErrorCode::kBadInput, file.string() + " is " + std::to_string(image.cols) + " x " +

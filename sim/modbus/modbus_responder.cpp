@@ -101,7 +101,7 @@ ModbusBytes write_coils(RegisterBank& bank, Pdu pdu) {
 /// The registers of a write whose byte count stands at `at`; empty if the counts disagree.
 std::vector<std::uint16_t> words(Pdu pdu, std::size_t at, int count, int max) {
   std::vector<std::uint16_t> values;
-  const auto bytes = static_cast<std::size_t>(2 * count);
+  const auto bytes = 2 * static_cast<std::size_t>(std::max(count, 0));
   if (count < 1 || count > max || pdu.size() != at + 1 + bytes || pdu[at] != bytes) return values;
   for (std::size_t i = at + 1; i < pdu.size(); i += 2) values.push_back(word_at(pdu, i));
   return values;

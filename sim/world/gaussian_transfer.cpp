@@ -35,8 +35,8 @@ TransferWeights TransferNodes::at(double sigma) const {
     double weight = 1.0;
     for (int j = 0; j < 4; ++j) {
       if (j == i) continue;
-      const double ti = t_[static_cast<std::size_t>(result.first + i)];
-      const double tj = t_[static_cast<std::size_t>(result.first + j)];
+      const double ti = t_[static_cast<std::size_t>(result.first) + static_cast<std::size_t>(i)];
+      const double tj = t_[static_cast<std::size_t>(result.first) + static_cast<std::size_t>(j)];
       weight *= (t - tj) / (ti - tj);
     }
     result.weight[static_cast<std::size_t>(i)] = static_cast<float>(weight);

@@ -53,8 +53,9 @@ Surface chapter(const WorldParameters& world) {
   Surface surface = blank(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
+      const int strip = x / kStrip;
       const double ramp = 100.0 + kRise_um * (x - 3 * kStrip) / (kStrip - 1);
-      surface.height_um.at(x, y) = static_cast<float>(x < 3 * kStrip ? 50.0 * (x / kStrip) : ramp);
+      surface.height_um.at(x, y) = static_cast<float>(x < 3 * kStrip ? 50.0 * strip : ramp);
     }
   }
   const Rectangle poor{150, 125, 60, 110};
