@@ -17,13 +17,13 @@ enum class LengthUnit { kMicrometre, kMillimetre, kMetre };
 /// "um", "mm", "m".
 [[nodiscard]] std::optional<LengthUnit> length_unit_from_name(std::string_view name) noexcept;
 
-/// z = start_um + index * step_um; a negative step is a stack recorded downwards.
+/// z = start_um + index * step_um; the step is negative for a stack recorded downwards.
 struct ZSpacing {
   double start_um = 0.0;
   double step_um = 0.0;
 };
 
-/// A text file: one number a line in `unit`, decimal point; '#' starts a comment, empty lines are skipped.
+/// A text file: one number per line in `unit`, decimal point; '#' starts a comment, empty lines are skipped.
 struct ZFile {
   std::filesystem::path path;
   LengthUnit unit = LengthUnit::kMicrometre;
@@ -32,8 +32,9 @@ struct ZFile {
 using ZSource = std::variant<ZSpacing, ZFile>;
 
 /// z of each slice of the list in um, strictly rising or strictly falling.
-/// Throws Error kBadInput: a step of 0, a step for a list whose numbering has a gap, a file that cannot be read, a line
-/// that is not one number (named), another count than slices, z not finite or not monotonic.
+/// Throws Error kBadInput for a step of 0, a step for a list whose numbering has a gap, a file that cannot be read, a
+/// line that is not one number (named), a number of heights other than that of slices, a z that is not finite or not
+/// monotonic.
 [[nodiscard]] std::vector<double> slice_heights_um(const ZSource& source, const SliceList& list);
 
 /// Index of the height nearest to z_um; heights_um not empty.
