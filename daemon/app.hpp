@@ -17,13 +17,13 @@ class App {
  public:
   /// Opens the store, starts the engine and listens. Throws Error kDatabase, kStorageWrite, kBadConfig.
   explicit App(const Config& config);
-  /// Ordered stop: the job is aborted, the stage halted, devices are given up, replies that are owed are sent, then
-  /// connections close.
+  /// Ordered stop: aborts the job, halts the stage, gives the devices up, sends the replies to open requests, closes
+  /// the connections.
   ~App();
   App(const App&) = delete;
   App& operator=(const App&) = delete;
 
-  /// Where clients connect, e.g. 127.0.0.1:7411.
+  /// TCP port on which clients connect.
   [[nodiscard]] int rpc_port() const { return rpc_.port(); }
   [[nodiscard]] Engine& engine() { return engine_; }
 

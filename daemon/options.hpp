@@ -21,7 +21,7 @@ struct Options {
   bool print_drive_schema = false;
 };
 
-/// The options, or the exit code where the command line says it all (--help, --version) or is wrong.
+/// The options, or the exit code if the program ends after parsing: --help, --version, or a wrong command line.
 struct ParsedOptions {
   Options options;
   std::optional<int> exit;
@@ -29,12 +29,13 @@ struct ParsedOptions {
 /// Writes help and version to out, complaints to err.
 [[nodiscard]] ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
-/// Loads the configuration and does what the options ask for beyond running: prints every problem to err, or the
-/// effective configuration or a schema to out. Gives the exit code, or nothing and the configuration to run with.
+/// The configuration to run with, or the exit code if the program ends without running.
 struct StartUp {
   Config config;
   std::optional<int> exit;
 };
+/// Loads the configuration and does what the options ask for instead of running. Writes every problem to err, the
+/// effective configuration or a schema to out.
 [[nodiscard]] StartUp start_up(const Options& options, std::ostream& out, std::ostream& err);
 
 }  // namespace fvd

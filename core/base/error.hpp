@@ -9,7 +9,7 @@
 namespace fvd {
 
 enum class ErrorCode {
-  kInternal,   ///< a bug or an exception nobody translated
+  kInternal,   ///< a bug, or an exception that was not translated
   kBadInput,   ///< a file or argument the user gave cannot be used
   kBadConfig,  ///< the configuration was refused
   kBadRecipe,  ///< the recipe was refused

@@ -113,14 +113,14 @@ class TypedStack {
   struct Band {
     explicit Band(SliceBinner<Pixel> b) : binner(std::move(b)) {}
     SliceBinner<Pixel> binner;
-    std::vector<SharpnessRows<Pixel>> scanners;  // one a slice of a batch
+    std::vector<SharpnessRows<Pixel>> scanners;  // one per slice of a batch
   };
 
   int height_;
   PeakAccumulator<Pixel> peaks_;
   ColourTexture colour_;
   FocusSettings settings_;
-  std::vector<Band> bands_;  // one a thread
+  std::vector<Band> bands_;  // one per thread
 };
 
 std::string shape(int width, int height, PixelFormat format) {

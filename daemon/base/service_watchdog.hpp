@@ -13,11 +13,11 @@ namespace fvd {
 /// context: one thread, which calls look() for as long as the program serves.
 class ServiceWatchdog {
  public:
-  /// Time between two looks: a third of what systemd allows, 1 s where it watches nothing.
+  /// Time between two calls of look(): a third of systemd's watchdog time, 1 s if systemd does not watch the service.
   [[nodiscard]] static std::chrono::milliseconds interval();
 
-  /// Sends WATCHDOG=1 unless a thread has stalled (stalled_threads). Logs which thread stalls, and when it is over,
-  /// once each.
+  /// Sends WATCHDOG=1 unless a thread has stalled (stalled_threads()). Logs once when a thread stalls, and once when it
+  /// works again.
   void look(HostTime now);
 
  private:

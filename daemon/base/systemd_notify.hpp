@@ -1,6 +1,7 @@
 #pragma once
 
-/// Tells systemd how the service is doing (sd_notify(3)). Silent where systemd did not start it.
+/// State of the service for systemd (sd_notify(3)). Has no effect if systemd did not start the program.
+/// context: thread-safe.
 
 #include <string>
 

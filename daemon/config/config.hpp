@@ -14,7 +14,7 @@ struct RpcConfig {
   std::string address = "127.0.0.1";  ///< numeric address to listen on
   int port = 7411;                    ///< 0..65535, 0 = any free port, written to <runtime_dir>/rpc.json
   int max_connections = 16;           ///< 1..1000
-  int idle_timeout_s = 120;           ///< 1..86400; a connection that says nothing for so long is closed
+  int idle_timeout_s = 120;           ///< 1..86400; a connection that sends nothing for this long is closed
 };
 
 struct PathsConfig {
@@ -24,7 +24,7 @@ struct PathsConfig {
 };
 
 struct ComputeConfig {
-  int threads = 0;               ///< 0..256, 0 = one a core
+  int threads = 0;               ///< 0..256, 0 = one per core
   int memory_budget_mib = 4096;  ///< 16..1048576; a job that needs more is refused
   int queue_slices = 4;          ///< 1..64, slices between camera and computation
 };

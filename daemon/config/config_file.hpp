@@ -13,7 +13,7 @@
 
 namespace fvd {
 
-/// Every key with its range and meaning: the one place that defines them.
+/// Every key with its range and meaning; those of camera and stage by drivers/registry.
 void describe(Config& config, Fields& fields);
 
 /// Each "group.key=value" as given to --set; the value is JSON, or a text where that is no JSON.

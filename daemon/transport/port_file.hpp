@@ -1,6 +1,6 @@
 #pragma once
 
-/// Where clients on this machine find the server, whatever port it got.
+/// The file in which clients on this machine find the port of the server.
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-/// JSON-RPC over TCP, one JSON text a line: for PLCs, fvdctl and whoever can open a socket.
+/// JSON-RPC over TCP, one JSON text per line: for PLCs, fvdctl and any other client with a socket.
 
 #include <filesystem>
 #include <memory>
@@ -12,15 +12,16 @@ namespace fvd {
 
 /// Lines end with LF, CR, CRLF or NUL; replies end with LF. Requests of one connection are answered in their order.
 /// A connection is closed after a line over 64 KiB, one that begins as HTTP or TLS does (nothing behind it is read), or
-/// the third line in a row that is no JSON; also one too many, one that is silent for idle_timeout_s, and one that does
-/// not take its replies. Owns a network thread, which answers what the machine's snapshot tells, and one for requests
-/// that may block: nothing a client does keeps another from its ping. A client that has closed its sending side still
-/// gets the answers to what it asked, unless its connection is needed for another client.
+/// the third line in a row that is no JSON. So is a connection above max_connections, one that is silent for
+/// idle_timeout_s, and one that does not read its replies. Owns a network thread, which answers requests for which the
+/// machine's snapshot suffices, and a thread for requests that may block: no client can delay another's ping. A client
+/// that has closed its sending side still gets the answers to its requests, unless its connection is needed for another
+/// client.
 class RpcServer {
  public:
   /// Listens, and writes <runtime_dir>/rpc.json {"address","port","pid"}. Becomes the machine's change listener.
   /// Throws Error kBadConfig (address), kStorageWrite (rpc.json).
-  /// What services name outlives the server.
+  /// The objects in `services` outlive the server.
   RpcServer(const RpcConfig& config, const std::filesystem::path& runtime_dir, const Services& services);
   /// Closes all connections and removes rpc.json.
   ~RpcServer();

@@ -20,12 +20,13 @@
 
 namespace fvd {
 
-/// Acquires from the first configure() on. The device's thread changes it; the thread that uses the camera reads it
-/// when that command is done, renew_clock() excepted, which may run beside everything but clock_due().
+/// Acquires from the first configure() on. The device's thread changes the object; the thread that uses the camera
+/// reads it after that command has ended. Only renew_clock() may run at the same time as other functions, but not as
+/// clock_due().
 class Acquisition {
  public:
-  /// What the parameters refer to outlives the acquisition. clock_renewal: age at which what is known of the camera's
-  /// clock is renewed.
+  /// The referenced objects outlive the acquisition. clock_renewal: age at which the offset of the camera's clock is
+  /// measured again.
   Acquisition(ArvCamera* camera, const CameraConfig& config, const CameraFeatures& features,
               const CameraPresence& presence, std::chrono::milliseconds clock_renewal);
   /// Stops the camera unless it is lost. context: the device's thread has ended.
@@ -33,28 +34,28 @@ class Acquisition {
   Acquisition(const Acquisition&) = delete;
   Acquisition& operator=(const Acquisition&) = delete;
 
-  /// Puts the settings into force and knows the camera's clock afterwards. Only another format, region or pool rebuilds
-  /// the stream. Throws Error kCameraSettings, kCameraDisconnected. context: the device's thread.
+  /// Puts the settings into force and measures the camera's clock. Only another format, region or pool rebuilds the
+  /// stream. Throws Error kCameraSettings, kCameraDisconnected. context: the device's thread.
   void configure(const CameraSettings& settings);
   /// Throws Error kCameraSettings, kCameraDisconnected. context: the device's thread.
   void send_trigger();
-  /// Latches the camera's clock if what is known of it is old. context: the device's thread.
+  /// Latches the camera's clock if a latch is due. context: the device's thread.
   void renew_clock();
 
   /// Whether a latch is due. context: while no renew_clock() runs.
   [[nodiscard]] bool clock_due() const { return latches_ && clock_.due(HostClock::now()); }
 
   [[nodiscard]] const CameraSettings& in_force() const { return in_force_; }
-  /// The next buffer, waiting at most that long; nullptr if there is none, or no stream yet.
+  /// The next buffer; waits at most `timeout`; nullptr if none came, or there is no stream yet.
   [[nodiscard]] ArvBuffer* pop(std::chrono::microseconds timeout);
-  /// The frame of a buffer; nothing for one of the settings before.
+  /// The frame of a buffer; nothing for a buffer of the previous settings.
   [[nodiscard]] std::optional<Frame> take(ArvBuffer* buffer);
-  /// Follows a camera that began to count its frames anew: Aravis takes them for late ones and throws them away.
+  /// To be called when a camera has restarted its block ids: Aravis would discard its frames as late ones.
   void resynchronise();
 
-  /// From the moment that starts or may start an exposure until its frame is there, if nothing goes wrong.
+  /// Longest time from the event that starts an exposure to the arrival of its frame, without faults.
   [[nodiscard]] std::chrono::microseconds longest_frame_time() const;
-  /// The same with the configured margin: then the frame counts as missing.
+  /// longest_frame_time() plus the configured margin; after it the frame counts as missing.
   [[nodiscard]] std::chrono::microseconds frame_deadline() const;
   [[nodiscard]] CameraHealth health() const;
 

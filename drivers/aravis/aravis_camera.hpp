@@ -12,7 +12,7 @@ namespace fvd {
 
 /// Opens the camera and takes control of it. Throws Error kCameraDisconnected if it does not answer or another program
 /// controls it, kCameraSettings if it refuses the packet size.
-/// clock_renewal: age at which what is known of the camera's clock is renewed; tests make it short.
+/// clock_renewal: age at which the offset of the camera's clock is measured again; tests make it short.
 [[nodiscard]] std::unique_ptr<Camera> open_aravis_camera(
     const CameraConfig& config, std::chrono::milliseconds clock_renewal = std::chrono::seconds(5));
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The camera's clock seen from the host's.
+/// Conversion of the camera's clock to the host's.
 
 #include <chrono>
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace fvd {
 
-/// A moment on both clocks.
+/// The same moment on both clocks.
 struct ClockPair {
   std::int64_t camera_ns = 0;
   HostTime host{};
-  HostClock::duration bound{};  ///< the two differ by no more
+  HostClock::duration bound{};  ///< largest difference between the two moments
 };
 
 /// Latches the camera's clock some ten times and keeps the latch with the shortest round trip; nothing if the camera
 /// has no latch that works. Blocks for as many commands. context: the device's thread.
 [[nodiscard]] std::optional<ClockPair> latch_clock(ArvDevice* device);
 
-/// Offset and rate from pairs taken now and then: quartz clocks differ by up to 0.1 ms a second.
+/// Offset and rate from pairs taken every few seconds: quartz clocks differ by up to 0.1 ms per second.
 /// context: thread-safe.
 class CameraClock {
  public:
@@ -33,9 +33,9 @@ class CameraClock {
 
   void add(const ClockPair& pair);
   [[nodiscard]] bool known() const;
-  /// True before the first pair too.
+  /// Whether another pair should be added; true before the first.
   [[nodiscard]] bool due(HostTime now) const;
-  /// Nothing before the first pair.
+  /// Host time of a camera time; nothing before the first pair.
   [[nodiscard]] std::optional<HostTime> to_host(std::uint64_t camera_ns) const;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Settings into the camera's features, in the order that works, each checked and read back. Inside the driver only:
-/// this header brings in Aravis.
+/// Writes settings to the camera's features in the order that cameras accept, checks each and reads it back. Inside the
+/// driver only: this header includes Aravis.
 
 #include <string>
 
@@ -18,17 +18,18 @@ class CameraFeatures {
   /// where: for messages, e.g. the camera's address. The camera outlives this.
   CameraFeatures(ArvCamera* camera, std::string where) : camera_(camera), where_(std::move(where)) {}
 
-  /// What of the settings stands only while nothing is acquired: format and region. Returns what is in force.
-  [[nodiscard]] CameraSettings apply_shape(const CameraSettings& settings) const;
-  /// Exposure, gain, rate and trigger, the trigger last: Aravis switches it off when it sets the rate. Changes what is
+  /// Applies the settings that can be changed only while nothing is acquired: format and region. Returns the settings
   /// in force.
+  [[nodiscard]] CameraSettings apply_shape(const CameraSettings& settings) const;
+  /// Applies exposure, gain, rate and trigger; the trigger last, because Aravis switches it off when it sets the rate.
+  /// Updates in_force.
   void apply_timing(const CameraSettings& settings, CameraSettings& in_force) const;
 
-  /// Sensor's size in pixels.
+  /// Size of the sensor in pixels.
   void sensor_size(int& width, int& height) const;
   void set_integer(const char* feature, gint64 value) const;
   [[nodiscard]] gint64 integer(const char* feature) const;
-  /// Steps in which it may be set, from its minimum on.
+  /// Increment of the values that the feature accepts, counted from its minimum.
   [[nodiscard]] gint64 increment(const char* feature) const;
   [[nodiscard]] bool available(const char* feature) const;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Whether the camera is there and ours. Inside the driver only: this header brings in Aravis.
+/// Whether the camera answers and this program controls it. Inside the driver only: this header includes Aravis.
 
 #include <chrono>
 #include <optional>
@@ -14,16 +14,16 @@
 
 namespace fvd {
 
-/// Knows that a connection is lost from three sources: Aravis' heartbeat, a command that failed, and questions of its
-/// own to a GigE Vision camera that is silent. A lost connection stays lost. Outlives the Aravis camera.
-/// context: the thread that uses the camera; lost() and set_lost() any.
+/// Detects a lost connection from three sources: Aravis' heartbeat, a command that failed, and its own requests to a
+/// GigE Vision camera that is silent. A lost connection stays lost. Outlives the Aravis camera. context: the thread
+/// that uses the camera; lost() and set_lost() any.
 class CameraPresence {
  public:
   /// address: IP address, or vendor-model-serial.
   explicit CameraPresence(std::string address) : address_(std::move(address)) {}
 
-  /// Asks for the camera before it is opened, because Aravis looks for an absent one for seconds. Throws Error
-  /// kBadConfig for an empty address, kCameraDisconnected if it does not answer or another program controls it.
+  /// Checks that the camera answers before it is opened, because Aravis searches for an absent one for seconds. Throws
+  /// Error kBadConfig for an empty address, kCameraDisconnected if it does not answer or another program controls it.
   void require_free() const;
   /// Called once, with the device that was opened. Throws Error kCameraDisconnected if another program controls it.
   void watch(ArvDevice* device);
@@ -33,16 +33,18 @@ class CameraPresence {
   void set_lost() noexcept { control_.set_lost(); }
   /// Throws Error kCameraDisconnected once the connection is lost.
   void require_connected() const;
-  /// For commands that take too long: throws Error kCameraDisconnected if the camera does not answer either.
+  /// To be called when a command takes too long: throws Error kCameraDisconnected if the camera does not answer a
+  /// request either.
   void require_life();
 
-  /// The question whether a silent camera is alive, asked while its frames are waited for.
+  /// A pending request to a silent camera, used while waiting for its frames.
   struct Question {
     bool open = false;
     HostTime asked{};
   };
-  /// Asks, or looks for the answer to what was asked before. True if the camera is alive; false while there is no
-  /// answer yet, and always if the camera answers its controller only. Throws Error kCameraDisconnected if it is lost.
+  /// Sends the request, or checks for the answer to the pending one. True if the camera is alive; false while there is
+  /// no answer yet, and always if the camera answers its controller only. Throws Error kCameraDisconnected if it is
+  /// lost.
   [[nodiscard]] bool answers(Question& question);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Keeps an Aravis device and knows whether control of it was lost.
+/// Holds an Aravis device and detects the loss of control of it.
 
 #include <atomic>
 #include <memory>
@@ -17,7 +17,7 @@ namespace fvd {
 class ControlWatch {
  public:
   ControlWatch() = default;
-  /// Waits, 5 s at most, until nobody else holds the device.
+  /// Waits, 5 s at most, until nothing else holds a reference to the device.
   ~ControlWatch();
   ControlWatch(const ControlWatch&) = delete;
   ControlWatch& operator=(const ControlWatch&) = delete;

@@ -16,16 +16,16 @@
 namespace fvd {
 
 /// Aravis devices are not thread-safe, and a command to a camera that no longer answers blocks for 2.5 s: the caller
-/// waits on the future for as long as he chooses. context: thread-safe.
+/// decides how long to wait on the future. context: thread-safe.
 class DeviceThread {
  public:
   DeviceThread();
-  /// Waits for the command under way; those behind it are dropped, their futures broken.
+  /// Waits for the running command; drops those behind it, whose futures throw std::future_error.
   ~DeviceThread();
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
 
-  /// Commands run one after the other. What they throw, the future throws.
+  /// Appends a command; commands run one after the other. The future rethrows what the command throws.
   template <typename Command>
   [[nodiscard]] std::future<std::invoke_result_t<Command>> post(Command command) {
     auto task = std::make_shared<std::packaged_task<std::invoke_result_t<Command>()>>(std::move(command));

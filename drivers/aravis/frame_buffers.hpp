@@ -12,8 +12,9 @@
 
 namespace fvd {
 
-/// Owns the stream and one slab of page-aligned slots. Every buffer holds the slab, so the memory outlives whoever
-/// still writes to it or reads from it. Leases are given back before the pool goes.
+/// Owns the stream and one slab of page-aligned slots. Every buffer holds a reference to the slab, so the memory
+/// outlives every writer and reader. Leases must be given back before the pool is destroyed. context: recycle()
+/// thread-safe, the rest one thread at a time.
 class FrameBuffers final : public FrameRecycler {
  public:
   /// Takes the stream and hands it `count` buffers of `payload_bytes`.
@@ -22,14 +23,14 @@ class FrameBuffers final : public FrameRecycler {
   FrameBuffers(const FrameBuffers&) = delete;
   FrameBuffers& operator=(const FrameBuffers&) = delete;
 
-  /// The next buffer, waiting at most that long; nullptr if there is none. The caller owns it through lease().
+  /// The next buffer; waits at most `timeout`; nullptr if none came. The caller owns it through lease().
   [[nodiscard]] ArvBuffer* pop(std::chrono::microseconds timeout);
   [[nodiscard]] FrameLease lease(ArvBuffer* buffer) { return {buffer, FrameSlotDeleter{this}}; }
   void recycle(void* slot) noexcept override;
 
-  /// Forgets the numbers of the frames received so far, so that smaller ones are not taken for late. Some 60 ms.
+  /// Restarts Aravis' receiving thread, so that smaller block ids are not treated as late ones. Takes about 60 ms.
   void restart_thread();
-  /// Packets that Aravis threw away as belonging to late frames; 0 where there are no packets.
+  /// Number of packets that Aravis discarded as belonging to late frames; 0 for a stream without packets.
   [[nodiscard]] std::uint64_t ignored_packets() const;
 
   [[nodiscard]] ArvStream* stream() const { return stream_.get(); }

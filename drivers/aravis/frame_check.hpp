@@ -1,6 +1,6 @@
 #pragma once
 
-/// Is a buffer the image that was configured? Inside the driver only: this header brings in Aravis.
+/// Checks that a buffer is the configured image. Inside the driver only: this header includes Aravis.
 
 #include <span>
 
@@ -12,7 +12,7 @@
 namespace fvd {
 
 /// kOk: complete, one image, of the format and size of `settings`, whose width and height are > 0. Of an incomplete
-/// buffer nothing but the status is looked at: the rest may be left over from its last use.
+/// buffer only the status is read: the rest may be left over from its last use.
 [[nodiscard]] FrameStatus check_frame(ArvBuffer* buffer, const CameraSettings& settings);
 
 /// The image of a buffer that check_frame found kOk, as it came over the wire.

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Block numbers without end from the camera's, which wrap.
+/// Block ids that do not wrap, from the camera's, which do.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace fvd {
 /// USB3 Vision) are taken as they are. The result grows with every newer block, across wraps and restarts.
 class FrameCounter {
  public:
-  /// The next block begins a new count at the camera.
+  /// To be called before the first block of a new count of the camera.
   void restart() {
     base_ = last_;
     previous_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// From the buffers of a stream to frames: judged, counted, dated, unpacked. Inside the driver only: this header brings
-/// in Aravis.
+/// Converts the buffers of a stream to frames: checks, counts, dates and unpacks them. Inside the driver only: this
+/// header includes Aravis.
 
 #include <cstdint>
 #include <memory>
@@ -23,20 +23,21 @@ class FrameIntake {
   /// The clock outlives the intake.
   explicit FrameIntake(const CameraClock& clock) : clock_(clock) {}
 
-  /// A new stream with those settings in force: the camera counts anew, slices have another shape.
+  /// To be called for a new stream with these settings: the camera restarts its block ids, slices may have another
+  /// shape.
   void begin_stream(const CameraSettings& in_force);
-  /// The camera counts anew on the same stream.
+  /// To be called when the camera has restarted its block ids on the same stream.
   void restart_count() { counter_.restart(); }
 
-  /// The frame of a buffer; nothing for one exposed before `configured`, whose settings were others. The buffer goes
-  /// back with the frame's lease.
+  /// The frame of a buffer; nothing for a frame exposed before `configured`, with other settings. The buffer goes back
+  /// with the frame's lease.
   [[nodiscard]] std::optional<Frame> take(FrameBuffers& buffers, ArvBuffer* buffer, const CameraSettings& in_force,
                                           HostTime configured);
-  /// Counts a frame that nobody measures and gives its buffer back. Returns its time on the camera's clock in ns, 0 if
-  /// it is no good frame.
+  /// Counts a frame that is not measured and gives its buffer back. Returns its time on the camera's clock in ns, 0 if
+  /// the frame is incomplete or of the wrong geometry.
   std::uint64_t discard(FrameBuffers& buffers, ArvBuffer* buffer, const CameraSettings& in_force);
 
-  /// Adds what was counted here.
+  /// Adds the counters of this object to health.
   void count_into(CameraHealth& health) const;
 
  private:

@@ -37,7 +37,7 @@ class GErrorSlot {
   [[nodiscard]] bool failed() const { return error_ != nullptr; }
   [[nodiscard]] std::string message() const { return error_ == nullptr ? "" : error_->message; }
 
-  /// True where the device did not answer, as against refusing.
+  /// True if the device did not answer; false if it answered with a refusal.
   [[nodiscard]] bool is_connection_loss() const {
     return error_ != nullptr && error_->domain == ARV_DEVICE_ERROR &&
            (error_->code == ARV_DEVICE_ERROR_TIMEOUT || error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||

@@ -22,18 +22,18 @@ class GvcpProbe {
   GvcpProbe& operator=(const GvcpProbe&) = delete;
 
   enum class Answer {
-    kNone,        ///< silence so far
-    kAbsent,      ///< its host says that nobody listens there
-    kFree,        ///< there, and nobody holds control
-    kControlled,  ///< there, and somebody does
+    kNone,        ///< no answer so far
+    kAbsent,      ///< the host at that address reports that nothing listens there
+    kFree,        ///< the camera answers, and no program controls it
+    kControlled,  ///< the camera answers, and a program controls it
   };
 
   /// Interval at which an unanswered request is repeated.
   static constexpr std::chrono::milliseconds kRepeatInterval{50};
 
-  /// Forgets what was asked before and asks.
+  /// Sends a new request; answers to earlier ones are ignored from then on.
   void begin() noexcept;
-  /// The answer to the question, at once; asks again after kRepeatInterval. begin() came first.
+  /// The answer so far, without waiting; repeats the request after kRepeatInterval. begin() must come first.
   [[nodiscard]] Answer look() noexcept;
   /// begin(), and look() until there is an answer or `patience` is over.
   [[nodiscard]] Answer ask(std::chrono::milliseconds patience) noexcept;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Memory for slices that are not what came over the wire.
+/// Memory for slices that are converted from the bytes on the wire.
 
 #include <cstddef>
 #include <memory>
@@ -12,12 +12,12 @@
 
 namespace fvd {
 
-/// A fixed number of slots of one size. context: thread-safe. Leases are given back before the pool goes.
+/// A fixed number of slots of one size. Leases must be given back before the pool is destroyed. context: thread-safe.
 class SlicePool final : public FrameRecycler {
  public:
   SlicePool(int count, std::size_t slot_bytes);
 
-  /// An empty lease while all are lent.
+  /// An empty lease if all slots are lent.
   [[nodiscard]] FrameLease borrow();
   /// The memory of a lease of this pool.
   [[nodiscard]] std::span<std::byte> bytes(const FrameLease& lease) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Decoding of the image files that slices are recorded in, as they are: no gamma, no scaling of grey levels.
+/// Decoding of the image files in which slices are recorded, without gamma or scaling of grey levels.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,10 +17,10 @@ struct ImageFile {
   int channels = 1;                ///< 1 grey, 3 blue, green, red; transparency is dropped
   int bytes_per_sample = 1;        ///< 1 or 2
   int max_level = 0;               ///< largest grey level that the file declares; 0: it declares none
-  std::vector<std::byte> samples;  ///< shape [height][width][channels], rows contiguous; memory is used again
+  std::vector<std::byte> samples;  ///< shape [height][width][channels], rows contiguous; memory is reused
 
-  /// Makes room for the samples. Throws ImageFileError where no camera makes such an image: below 1 or above 65 535
-  /// pixels a side, above 2^28 pixels.
+  /// Allocates the samples. Throws ImageFileError for a size that no camera has: a side below 1 or above 65 535 pixels,
+  /// or more than 2^28 pixels.
   void resize(std::int64_t new_width, std::int64_t new_height, int new_channels, int new_bytes_per_sample);
 
   [[nodiscard]] std::size_t row_bytes() const {
@@ -30,14 +30,14 @@ struct ImageFile {
   [[nodiscard]] std::byte* row(int y) { return samples.data() + row_bytes() * static_cast<std::size_t>(y); }
 };
 
-/// Why a file could not be read, without its name.
+/// Reason why a file could not be read; without the file's name, which the caller adds.
 class ImageFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// All read into image, whose memory they use again, and throw ImageFileError: missing, truncated, damaged, of another
-// kind. What image holds after an error is not defined.
+// All read into `image`, whose memory they reuse, and throw ImageFileError if the file is missing, truncated, damaged
+// or of another kind. The content of `image` after an error is undefined. context: thread-safe for different images.
 
 /// Portable graymap, binary or in decimal numbers, 8 or 16 bit (netpbm's pgm(5), of 2013). Of several images in one
 /// file the first.
@@ -46,7 +46,7 @@ void read_pgm(const std::filesystem::path& file, ImageFile& image);
 /// PNG of any depth and colour type (ISO/IEC 15948:2004); below 8 bit and palettes become 8 bit.
 void read_png(const std::filesystem::path& file, ImageFile& image);
 
-/// JPEG, grey or colour. What libjpeg would fill up or guess is an error.
+/// JPEG, grey or colour. Data that libjpeg would fill in or guess is an error.
 void read_jpeg(const std::filesystem::path& file, ImageFile& image);
 
 /// One page of a TIFF (TIFF 6.0), 0-based: 8 or 16 bit unsigned grey or colour, strips or tiles; other encodings of 8

@@ -23,10 +23,10 @@ class RecordedStack {
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] int height() const noexcept { return height_; }
   [[nodiscard]] PixelFormat format() const noexcept { return format_; }
-  /// Whether the first slice has colours; others are not held to it.
+  /// Whether the first slice has colours; the others need not agree.
   [[nodiscard]] bool colour() const noexcept { return colour_; }
 
-  /// Decodes one slice, 0 <= index < slices(), into slice, whose memory it uses again. Throws Error kBadInput naming
+  /// Decodes one slice, 0 <= index < slices(), into `slice`, whose memory it reuses. Throws Error kBadInput naming
   /// the file: see read_slice(); also for another size or format than the first slice's.
   void read(int index, SliceImage& slice) const;
 

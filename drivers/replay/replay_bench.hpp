@@ -1,6 +1,6 @@
 #pragma once
 
-/// Where the replayed camera and the replayed stage meet: the slice the stage stands at.
+/// The state that the replayed camera and the replayed stage share: the slice at which the stage stands.
 
 #include <atomic>
 #include <filesystem>
@@ -13,8 +13,8 @@ struct ReplayBench {
   std::atomic<int> slice{0};  ///< index of the slice in focus
 };
 
-/// The bench of a recording: the same one for everybody who names the same folder while somebody holds it. Camera and
-/// stage are opened apart, in any order, and this is how they find each other.
+/// The bench of a recording; every caller that names the same folder gets the same object while anyone holds it. Camera
+/// and stage are opened separately, in any order, and find each other this way.
 /// context: thread-safe.
 [[nodiscard]] std::shared_ptr<ReplayBench> replay_bench(const std::filesystem::path& recording);
 

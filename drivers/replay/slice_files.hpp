@@ -9,20 +9,20 @@
 
 namespace fvd {
 
-/// Where one slice is: a file, and the page inside it for a multi-page TIFF.
+/// The location of one slice: a file, and the page in it for a multi-page TIFF.
 struct SliceLocation {
   std::filesystem::path file;
   std::optional<int> page;  ///< 0-based
 
-  [[nodiscard]] std::string name()
-      const;  ///< "slice_004.png" or "stack.tif page 4" (pages counted from 1 as viewers do)
+  /// "slice_004.png", or "stack.tif page 4" with pages counted from 1 as viewers do.
+  [[nodiscard]] std::string name() const;
 };
 
 struct SliceList {
   std::vector<SliceLocation> slices;  ///< in natural order: slice_2 before slice_10
   std::string description;            ///< e.g. "slice_*.png (31 files)"
-  /// Set where the numbers in the names leave a gap: "slice_007.png is followed by slice_009.png". Heights then cannot
-  /// come from a constant step.
+  /// Set if the numbers in the names have a gap: "slice_007.png is followed by slice_009.png". Heights then cannot come
+  /// from a constant step.
   std::string gap;
 };
 
@@ -30,8 +30,8 @@ struct SliceList {
 /// TIFF, JPEG, PGM) whose names differ in their last number only, or one multi-page TIFF if it has more pages than any
 /// family has files; other files are left alone. Two candidates of which the smaller has more than half the slices of
 /// the larger are ambiguous.
-/// Throws Error kBadInput: no such path, nothing that looks like a stack, only one slice, ambiguous, two files with the
-/// same number.
+/// Throws Error kBadInput if the path does not exist, holds no stack or only one slice, is ambiguous, or has two files
+/// with the same number.
 [[nodiscard]] SliceList find_slices(const std::filesystem::path& source);
 
 }  // namespace fvd

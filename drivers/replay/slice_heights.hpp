@@ -17,7 +17,7 @@ enum class LengthUnit { kMicrometre, kMillimetre, kMetre };
 /// "um", "mm", "m".
 [[nodiscard]] std::optional<LengthUnit> length_unit_from_name(std::string_view name) noexcept;
 
-/// z = start_um + index * step_um; a negative step is a stack recorded downwards.
+/// z = start_um + index * step_um; the step is negative for a stack recorded downwards.
 struct ZSpacing {
   double start_um = 0.0;
   double step_um = 0.0;

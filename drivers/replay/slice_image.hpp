@@ -24,11 +24,11 @@ struct SliceImage {
   }
 };
 
-/// Reads 8 or 16 bit, grey or colour, into slice, whose memory it uses again. Sharpness is that of the luminance:
+/// Reads 8 or 16 bit, grey or colour, into `slice`, whose memory it reuses. Sharpness is measured in the luminance:
 /// colour becomes Y = 0.299 R + 0.587 G + 0.114 B (ITU-R BT.601), an alpha channel is ignored. 16-bit files are Mono16,
-/// except a PGM, whose largest grey level may say Mono10 or Mono12. Throws Error kBadInput, naming the file:
-/// unreadable, corrupt or truncated, another kind of pixel, a multi-page file where one slice was expected; slice is
-/// not defined then.
+/// except a PGM, whose largest grey level may mean Mono10 or Mono12. Throws Error kBadInput, naming the file, if it is
+/// unreadable, corrupt or truncated, of another kind of pixel, or a multi-page file where one slice was expected;
+/// `slice` is then undefined.
 void read_slice(const SliceLocation& location, SliceImage& slice);
 
 }  // namespace fvd

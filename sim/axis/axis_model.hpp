@@ -9,32 +9,32 @@
 
 namespace fvd::sim {
 
-/// What the drive's encoder sits on.
+/// The part on which the drive's encoder is mounted.
 enum class Feedback {
-  kMotorEncoder,  ///< sees the motor's shaft: neither backlash nor screw nor heat
-  kLinearScale,   ///< sees the stage: its true position; the drive does not correct what it sees
+  kMotorEncoder,  ///< on the motor's shaft: measures neither backlash nor screw error nor drift
+  kLinearScale,   ///< on the stage: measures its true position, which the drive does not correct
 };
 
-/// All errors of the axis, each 0 = absent. Lengths in um, frequencies in Hz.
+/// All errors of the axis; 0 switches an error off.
 struct AxisParameters {
   double steps_per_um = 100.0;          ///< commanded steps per um (electronic gear)
   double encoder_resolution_um = 0.01;  ///< encoder quantum
-  double encoder_noise_um = 0.0;        ///< sd of each reading
-  double settle_noise_um = 0.0;         ///< sd of the true resting position about the target, drawn once a move
-  double ring_amplitude_um = 0.0;       ///< damped oscillation after a move
+  double encoder_noise_um = 0.0;        ///< standard deviation of a reading
+  double settle_noise_um = 0.0;         ///< standard deviation of the resting position, drawn once per move
+  double ring_amplitude_um = 0.0;       ///< amplitude of the damped oscillation after a move
   double ring_frequency_hz = 70.0;
   double ring_decay_ms = 15.0;
-  double backlash_um = 0.0;       ///< lost motion on reversal; not seen by a motor encoder
-  double lead_error_um = 0.0;     ///< amplitude of the periodic screw error; not seen by a motor encoder
+  double backlash_um = 0.0;       ///< lost motion on reversal; a motor encoder does not measure it
+  double lead_error_um = 0.0;     ///< amplitude of the periodic screw error; a motor encoder does not measure it
   double lead_um = 1000.0;        ///< screw lead, the period of lead_error_um
   double lead_phase_deg = 0.0;    ///< phase of lead_error_um at motor position 0
   double scale_error = 0.0;       ///< alpha_z - 1: true motion over commanded motion, about position 0
   double drift_um_per_min = 0.0;  ///< drift of the true position with time
-  double temperature_c = 20.0;    ///< of the axis, at the start
+  double temperature_c = 20.0;    ///< temperature of the axis at the start
   double temperature_rate_k_per_min = 0.0;
   double drift_um_per_k = 0.0;  ///< drift of the true position with temperature
   Feedback feedback = Feedback::kMotorEncoder;
-  double start_latency_ms = 0.0;         ///< command to motion; IN-POS is stale meanwhile
+  double start_latency_ms = 0.0;         ///< from command to motion; in_position() is stale meanwhile
   double home_position_um = 0.0;         ///< where homing ends
   double power_on_position_um = -200.0;  ///< true position before homing
   std::uint64_t seed = 1;
@@ -65,7 +65,7 @@ class AxisModel {
   /// Temperature of the axis, degC.
   [[nodiscard]] double temperature_c(HostTime at) const;
 
-  /// Where the focal plane truly is. For any time not before the last command.
+  /// True position of the focal plane. `at` must not lie before the last command.
   [[nodiscard]] double true_position_um(HostTime at) const;
 
  private:

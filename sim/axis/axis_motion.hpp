@@ -1,22 +1,22 @@
 #pragma once
 
-/// A move as stretches of constant acceleration: pure arithmetic, no errors, no clock.
+/// A move as phases of constant acceleration: pure arithmetic, no errors, no clock.
 
 #include <vector>
 
 namespace fvd::sim {
 
-/// Limits of a move; speed in um/s, accelerations in um/s^2, all > 0.
+/// Limits of a move, all > 0.
 struct MotionLimits {
-  double speed = 0.0;
-  double acceleration = 0.0;
-  double deceleration = 0.0;
+  double speed = 0.0;         ///< um/s
+  double acceleration = 0.0;  ///< um/s^2
+  double deceleration = 0.0;  ///< um/s^2
 };
 
-/// Position and velocity at a moment, um and um/s.
+/// Position and velocity at a moment.
 struct MotionState {
-  double position = 0.0;
-  double velocity = 0.0;
+  double position = 0.0;  ///< um
+  double velocity = 0.0;  ///< um/s
 };
 
 class MotionProfile {
@@ -24,17 +24,17 @@ class MotionProfile {
   /// At rest.
   explicit MotionProfile(double position) : rest_(position) {}
 
-  /// From any state to rest at `target`, as fast as the limits allow: a trapezoid, or a triangle when short. Brakes to
-  /// rest first where the state runs the wrong way or too fast to stop in time.
+  /// From any state to rest at `target`, as fast as the limits allow: a trapezoid, or a triangle for short moves.
+  /// Brakes to rest first if the motion has the wrong direction or is too fast to stop in time.
   static MotionProfile to(MotionState from, double target, const MotionLimits& limits);
   /// Brakes to rest.
   static MotionProfile brake(MotionState from, double deceleration);
 
-  /// t in seconds since the start; before the start the first, after the end the resting position.
+  /// State t seconds after the start; the initial position for t < 0, the resting position after the end.
   [[nodiscard]] MotionState at(double t) const;
   [[nodiscard]] double duration() const;
   [[nodiscard]] double end() const { return rest_; }
-  /// Positions at the ends of the stretches up to t, and at t: between two of them the motion runs one way.
+  /// Positions at the ends of the phases up to t seconds, and at t: between two of them the direction is constant.
   [[nodiscard]] std::vector<double> turning_points(double t) const;
 
  private:

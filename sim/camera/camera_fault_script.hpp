@@ -14,7 +14,7 @@
 
 namespace fvd::sim {
 
-/// What a fault may strike at.
+/// The event at which a fault may strike.
 enum class CameraEvent {
   kCommand,  ///< a command of the controller, heartbeats included
   kTrigger,  ///< a software trigger or an edge on the trigger line
@@ -22,9 +22,9 @@ enum class CameraEvent {
 };
 
 enum class CameraFault {
-  kDropLeader,  ///< of a frame; can be asked for again, as the next two
-  kDropTrailer,
-  kDropPacket,      ///< a packet in the middle of the image; with `value` 1 it is gone for good
+  kDropLeader,      ///< the leader does not leave; the client may request it again
+  kDropTrailer,     ///< the trailer, likewise
+  kDropPacket,      ///< a packet in the middle of the image, likewise; with `value` 1 it cannot be requested again
   kDropFrame,       ///< no packet of the frame leaves, none can be asked for; its block id is used up
   kDropAck,         ///< executed, not acknowledged
   kIgnoreTrigger,   ///< acknowledged, nothing is exposed, no block id used
@@ -38,12 +38,12 @@ enum class CameraFault {
   kIdJump,          ///< the block id grows by `value` more
   kIdsRestart,      ///< block ids start at the first again
   kStaleFrame,      ///< the pixels and the time of the frame before under a new id; the exposure is lost
-  kMute,            ///< answers and sends nothing for `delay`
-  kHang,            ///< stands still for `delay`, then goes on where it was
-  kRestart,         ///< as a power cycle: absent for `delay`, then knows nothing of control, settings and ids
+  kMute,            ///< the camera answers and sends nothing for `delay`
+  kHang,            ///< the camera does nothing for `delay`, then continues where it was
+  kRestart,         ///< as a power cycle: absent for `delay`, then without control, settings and ids
 };
 
-/// Their names in scripts: "drop_leader" and so on.
+/// The names of the faults in scripts: "drop_leader" and so on.
 [[nodiscard]] const std::vector<std::string>& camera_fault_names();
 [[nodiscard]] std::string_view name_of(CameraFault fault);
 /// What the fault strikes at; mute, hang and restart strike at a frame unless the step says otherwise.
@@ -52,10 +52,10 @@ enum class CameraFault {
 struct CameraFaultStep {
   CameraFault fault = CameraFault::kDropFrame;
   std::optional<CameraEvent> on{};  ///< only for kMute, kHang, kRestart
-  int after = 0;                    ///< so many matching events pass first, >= 0
-  int count = 1;                    ///< happens so often, > 0
+  int after = 0;                    ///< number of matching events that pass first, >= 0
+  int count = 1;                    ///< number of times that the fault happens, > 0
   std::chrono::milliseconds delay{0};
-  int value = 0;
+  int value = 0;  ///< see kDropPacket, kIdJump
 };
 
 /// Steps are taken one after the other: a step waits until the one before it has happened as often as it should.
@@ -65,12 +65,12 @@ class CameraFaultScript {
   /// Appends a step. Throws Error kBadConfig for one that cannot happen, naming it.
   void add(const CameraFaultStep& step);
 
-  /// The fault that strikes at this event, if any. To be asked once an event.
+  /// The fault that strikes at this event, if any. To be called once per event.
   [[nodiscard]] std::optional<CameraFaultStep> next(CameraEvent event);
 
   /// Steps that have not happened as often as they should.
   [[nodiscard]] std::size_t unconsumed() const;
-  /// One line a step, empty if all have happened.
+  /// One line per step that has not happened; empty if all have.
   [[nodiscard]] std::string describe_unconsumed() const;
 
  private:

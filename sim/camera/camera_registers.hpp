@@ -41,7 +41,7 @@ inline constexpr std::uint32_t kBytes = 0x60;
 
 inline constexpr double kLargestFrameRate_hz = 5000.0;
 
-/// What the camera does now, as its registers say.
+/// The settings in the camera's registers.
 struct CameraState {
   SensorFormat format = SensorFormat::kMono8;
   int width = 0;
@@ -74,12 +74,12 @@ class CameraRegisters {
  public:
   explicit CameraRegisters(const CameraIdentity& identity);
 
-  /// Reads count bytes. kInvalidAddress outside the memory.
+  /// Reads bytes.size() bytes. kInvalidAddress outside the memory.
   [[nodiscard]] gvcp::Status read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
   /// Writes with the checks a camera makes: unknown and read-only registers, ranges, parameters locked while acquiring.
   [[nodiscard]] gvcp::Status write(std::uint32_t address, std::span<const std::uint8_t> bytes);
 
-  /// All as it was in the beginning, but for what set() wrote to the bootstrap registers of the stream channel.
+  /// Restores the initial values, except what set() wrote to the bootstrap registers of the stream channel.
   void reset();
 
   [[nodiscard]] std::uint32_t get(std::uint32_t address) const;

@@ -28,7 +28,7 @@ namespace fvd::sim {
 
 namespace {
 
-constexpr int kPoll_ms = 100;
+constexpr int kPollInterval_ms = 100;
 
 std::uint32_t parse_address(const std::string& text) {
   in_addr address{};
@@ -108,7 +108,7 @@ struct GigeCameraServer::Impl {
       std::array<pollfd, 2> waiting{{{socket.get(), POLLIN, 0}, {wake.get(), POLLIN, 0}}};
       // Datagrams that come while it hangs wait in the socket, as those to a stopped process.
       if (hung.now()) waiting[0].events = 0;
-      ::poll(waiting.data(), waiting.size(), hung.now() ? 1 : kPoll_ms);
+      ::poll(waiting.data(), waiting.size(), hung.now() ? 1 : kPollInterval_ms);
       if ((waiting[1].revents & POLLIN) != 0) {
         std::uint64_t count = 0;
         [[maybe_unused]] const auto read = ::read(wake.get(), &count, sizeof(count));

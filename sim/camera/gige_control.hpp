@@ -1,6 +1,6 @@
 #pragma once
 
-/// Answers GVCP commands: who may do what, and what it sets off.
+/// Answers GVCP commands: access rights, and the action of each command.
 
 #include <cstdint>
 #include <optional>
@@ -29,14 +29,14 @@ class GigeControl {
               GigeStreamer::Struck struck)
       : registers_(registers), streamer_(streamer), sender_(sender), faults_(faults), struck_(std::move(struck)) {}
 
-  /// The reply to one datagram; empty = none. Nonsense gets no answer, as the standard wants. A request repeated by a
-  /// client that missed the acknowledge gets the same acknowledge again and is not executed twice.
+  /// The reply to one datagram; empty = none. A malformed datagram gets no reply, as the standard requires. A request
+  /// that a client repeats, because it missed the acknowledge, gets the same acknowledge and is not executed twice.
   [[nodiscard]] std::vector<std::uint8_t> answer(GvcpPeer peer, std::span<const std::uint8_t> packet);
 
   /// Takes control from a controller that has been silent for the heartbeat timeout.
   void check_heartbeat();
 
-  /// As after power was off.
+  /// Resets control and registers as after a power cycle.
   void restart();
 
  private:

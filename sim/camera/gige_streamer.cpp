@@ -15,7 +15,7 @@ namespace {
 using std::chrono::nanoseconds;
 
 /// Images the camera holds between sensor and line; one more is dropped at the sensor.
-constexpr std::size_t kHeld = 8;
+constexpr std::size_t kMaxHeldImages = 8;
 constexpr std::size_t kTooManyBytes = 64;
 
 nanoseconds nanoseconds_of_us(double us) { return nanoseconds(static_cast<std::int64_t>(us * 1e3)); }
@@ -174,7 +174,7 @@ bool GigeStreamer::expose_one(const CameraState& state, HostTime start, std::uin
     const MutexLock lock(mutex_);
     exposing_ = false;  // before anybody can see the frame, and trigger the next
     if (acquisition_ != acquisition) return false;
-    if (exposed_.size() >= kHeld) {
+    if (exposed_.size() >= kMaxHeldImages) {
       ++dropped_;
       return false;
     }

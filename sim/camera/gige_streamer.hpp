@@ -21,7 +21,7 @@
 
 namespace fvd::sim {
 
-/// A time until which everything stands still. context: thread-safe.
+/// A time until which the camera does nothing. context: thread-safe.
 class Standstill {
  public:
   void until(HostTime time) { time_ = time; }
@@ -35,11 +35,11 @@ class Standstill {
 /// context: thread-safe. Exposes on one thread, renders and sends on another.
 class GigeStreamer {
  public:
-  /// What a mute, a hang or a restart does is up to the camera: it is told of the step.
+  /// Called with a fault step of the kinds mute, hang and restart, which the camera server carries out.
   using Struck = std::function<void(const CameraFaultStep&)>;
 
-  /// source, registers and faults outlive this. mute: nothing leaves; hung: nothing happens at all. Throws Error
-  /// kBadConfig if there is no socket for the stream.
+  /// All references outlive the streamer. mute: no packet leaves until its end; hung: the sensor does nothing until its
+  /// end. Throws Error kBadConfig if there is no socket for the stream.
   GigeStreamer(FrameSource& source, const CameraRegisters& registers, CameraFaultScript& faults, const Standstill& mute,
                const Standstill& hung, GvspSender& sender, std::uint64_t first_block_id, bool extended_ids,
                Struck struck);
@@ -47,9 +47,10 @@ class GigeStreamer {
 
   /// AcquisitionStart: block ids start over; AcquisitionStop: a frame under way is abandoned.
   void set_acquiring(bool on);
-  /// Starts an exposure, unless one runs, or the camera waits for no trigger of this kind. False = refused: busy.
+  /// Starts an exposure; ignored if one runs or the camera does not wait for a trigger of this kind. False only if a
+  /// fault of the script refuses it as busy.
   bool trigger(bool by_line);
-  /// Registers have changed.
+  /// To be called after registers have changed.
   void look_again();
 
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }

@@ -22,7 +22,7 @@ namespace fvd::sim {
 
 namespace {
 
-constexpr std::size_t kBatch = 32;
+constexpr std::size_t kPacketsPerBatch = 32;
 /// Pacing need not wake up more often than these take on a gigabit line.
 constexpr std::size_t kBatchBytes = 48 * 1024;
 constexpr std::ptrdiff_t kReordered = 8;
@@ -91,7 +91,7 @@ void GvspSender::send(const std::shared_ptr<const StreamFrame>& frame, const Sen
   {
     const MutexLock lock(mutex_);
     kept_.push_back(frame);
-    if (kept_.size() > kKept) {
+    if (kept_.size() > kKeptFrames) {
       spare_ = std::move(kept_.front());
       kept_.pop_front();
     }
@@ -134,15 +134,15 @@ void GvspSender::resend(std::uint64_t block_id, std::uint32_t first, std::uint32
 
 void GvspSender::transmit(const StreamFrame& frame, std::span<const std::uint32_t> packets) {
   sockaddr_in to = to_sockaddr(frame.to_address, frame.to_port);
-  std::array<std::vector<std::uint8_t>, kBatch> heads;
-  std::array<std::array<iovec, 2>, kBatch> parts{};
-  std::array<mmsghdr, kBatch> messages{};
+  std::array<std::vector<std::uint8_t>, kPacketsPerBatch> heads;
+  std::array<std::array<iovec, 2>, kPacketsPerBatch> parts{};
+  std::array<mmsghdr, kPacketsPerBatch> messages{};
   const HostTime begin = HostClock::now();
   double due_s = 0.0;
   for (std::size_t next = 0; next < packets.size();) {
     unsigned count = 0;
     std::size_t batch_bytes = 0;
-    for (; next < packets.size() && count < kBatch && batch_bytes < kBatchBytes; ++next) {
+    for (; next < packets.size() && count < kPacketsPerBatch && batch_bytes < kBatchBytes; ++next) {
       const std::uint32_t packet = packets[next];
       const auto pixels = gvsp::body(frame, packet);
       batch_bytes += static_cast<std::size_t>(gvsp::header_bytes(frame.extended_ids)) + pixels.size();

@@ -26,8 +26,8 @@ struct Sending {
 /// context: send() from the readout thread, resend() from the control thread, the rest from any.
 class GvspSender {
  public:
-  /// Binds a socket of its own to the camera's address. link_mbps: the speed packets leave at, as on the real wire;
-  /// a burst at memory speed overruns every receiver's buffer; 0 = as fast as they go. Throws Error kBadConfig.
+  /// Binds a socket of its own to the camera's address (IPv4, host order). link_mbps: rate at which packets leave, as
+  /// on a real line, Mbit/s; 0 = unlimited, which overruns the receiver's buffer. Throws Error kBadConfig.
   GvspSender(std::uint32_t address, double link_mbps, std::uint64_t seed);
   ~GvspSender();
   GvspSender(const GvspSender&) = delete;
@@ -46,13 +46,13 @@ class GvspSender {
   void resend(std::uint64_t block_id, std::uint32_t first, std::uint32_t last);
   /// One packet of exactly `size` bytes on the wire, unless it would have to be fragmented.
   void send_test_packet(std::uint32_t to_address, int to_port, int size);
-  /// A frame nobody else refers to, to be filled anew; an empty one if there is none.
+  /// A frame to which nothing else refers, to be filled anew; an empty frame if there is none.
   [[nodiscard]] std::shared_ptr<StreamFrame> spare();
   /// Forgets the frames kept.
   void forget();
 
  private:
-  static constexpr std::size_t kKept = 4;
+  static constexpr std::size_t kKeptFrames = 4;
 
   void transmit(const StreamFrame& frame, std::span<const std::uint32_t> packets);
   [[nodiscard]] bool lose_packet();

@@ -10,11 +10,11 @@
 
 namespace fvd::sim {
 
-/// Looks at the axis every 0.2 ms and calls `edge` whenever it has come to be in position. context: the edge is called
+/// Polls the axis every 0.2 ms and calls `edge` whenever the axis has arrived in position. context: the edge is called
 /// on a thread of its own.
 class LineTrigger {
  public:
-  /// axis outlives the wire.
+  /// axis outlives the trigger.
   LineTrigger(const AxisModel& axis, std::function<void()> edge);
 
  private:

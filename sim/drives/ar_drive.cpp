@@ -109,8 +109,8 @@ void ArDrive::see_inputs(HostTime now) {
 }
 
 void ArDrive::elapse(HostTime now) {
-  if (pending_ != 0 && now - risen_ >= kHold) {
-    const HostTime seen = risen_ + kHold;
+  if (pending_ != 0 && now - risen_ >= kMinHoldTime) {
+    const HostTime seen = risen_ + kMinHoldTime;
     const unsigned inputs = pending_;
     pending_ = 0;
     if (ready(seen)) {

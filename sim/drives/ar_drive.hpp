@@ -31,7 +31,7 @@ class ArDrive final : public SimDrive {
   /// axis outlives the drive.
   explicit ArDrive(AxisModel& axis, DriveClock clock = HostClock::now);
 
-  static constexpr HostClock::duration kHold = std::chrono::milliseconds(4);
+  static constexpr HostClock::duration kMinHoldTime = std::chrono::milliseconds(4);
 
  private:
   void power_on() override;

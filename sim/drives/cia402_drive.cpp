@@ -160,12 +160,10 @@ void Cia402Drive::change_state(unsigned word, HostTime now) {
     } else if (state_ != State::kQuickStopActive) {
       state_ = State::kSwitchOnDisabled;
     }
-  } else if (state_ == State::kQuickStopActive) {
-    return;  // on its way to "switch on disabled" NOLINT(bugprone-branch-clone): the order is that of the standard
+  } else if (state_ == State::kQuickStopActive || (is(control::kSwitchOn) && state_ == State::kSwitchOnDisabled)) {
+    return;  // on its way to "switch on disabled", or there, which "ready to switch on" has to follow
   } else if (!is(control::kSwitchOn)) {
     leave_operation(State::kReadyToSwitchOn, now);
-  } else if (state_ == State::kSwitchOnDisabled) {
-    return;
   } else if (!is(control::kEnable)) {
     leave_operation(State::kSwitchedOn, now);
   } else {

@@ -63,7 +63,7 @@ constexpr int kAlarmTorqueOff = 0x570;
 constexpr auto kJogLife = std::chrono::milliseconds(50);
 constexpr double kJogRpm = 60.0;
 constexpr double kJogRamp = 100.0;  // ms per 1000 rpm
-constexpr std::int64_t kFarAway = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t kJogTarget_steps = std::numeric_limits<std::int32_t>::max();
 
 }  // namespace
 
@@ -152,7 +152,7 @@ void LeadshineDrive::start_path(int number, HostTime now) {
   if ((kind & mode::kKind) == mode::kHoming) {
     homing_ = start_home(now);
   } else if ((kind & mode::kKind) == mode::kSpeed) {
-    start_move(now, rpm > 0 ? kFarAway : -kFarAway, steps_per_s(std::abs(rpm)),
+    start_move(now, rpm > 0 ? kJogTarget_steps : -kJogTarget_steps, steps_per_s(std::abs(rpm)),
                steps_per_s2(image().word(at + path::kAcceleration)),
                steps_per_s2(image().word(at + path::kDeceleration)));
   } else if ((kind & mode::kKind) == mode::kPosition) {
@@ -185,7 +185,7 @@ void LeadshineDrive::jog(int direction, HostTime now) {
   if (!jog_until_) {
     homing_ = false;
     const double ramp = steps_per_s2(kJogRamp);
-    if (!start_move(now, direction * kFarAway, steps_per_s(kJogRpm), ramp, ramp)) return;
+    if (!start_move(now, direction * kJogTarget_steps, steps_per_s(kJogRpm), ramp, ramp)) return;
   }
   jog_until_ = now + kJogLife;
 }

@@ -9,8 +9,8 @@
 
 namespace fvd::sim {
 
-/// | 0x0000..0x01FF | parameters in pairs, the low word at the odd address: 0x0001 pulses a turn, 0x000F enable | |
-/// 0x1003         | status: bit 0 fault, 1 enabled, 2 running, 4 command done, 5 path done, 6 homed                 |
+/// | 0x0000..0x01FF | parameters in pairs, the low word at the odd address: 0x0001 pulses per turn, 0x000F enable     |
+/// | 0x1003         | status: bit 0 fault, 1 enabled, 2 running, 4 command done, 5 path done, 6 homed                 |
 /// | 0x1012, 0x1014 | command and feedback position, pulses                                                           |
 /// | 0x1801, 0x1901 | control word: 0x1111 resets the alarm, 0x2211 saves, 0x4001/0x4002 jog; 0x5555 = saved          |
 /// | 0x2203         | present alarm                                                                                   |

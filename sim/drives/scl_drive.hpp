@@ -10,12 +10,14 @@
 namespace fvd::sim {
 
 /// | 0       | alarm mask: bit 0 position error, 1 and 2 CCW and CW limit, 3 over-temperature, 12 move while disabled |
-/// | 1       | status: bit 0 enabled, 2 fault, 3 in position, 4 moving, 9 alarm, 10 homing | | 3       | inputs, 0 | |
-/// 4, 6, 8 | encoder position, immediate command position, target of the last move, steps | | 12      | drive
-/// temperature, 0.1 degC; 14 position error                                                             | | 27, 28  |
-/// AC, DE: 1..32767 of 1/6 rps^2; 29 VE: 1..32000 of 1/240 rps; 30 DI: distance or target, steps              | | 52 |
-/// EG/2: half the steps a turn                                                                                | | 124
-/// | opcode, parameters in 125..129                                                                             |
+/// | 1       | status: bit 0 enabled, 2 fault, 3 in position, 4 moving, 9 alarm, 10 homing                            |
+/// | 3       | inputs, 0                                                                                              |
+/// | 4, 6, 8 | encoder position, immediate command position, target of the last move, steps                           |
+/// | 12, 14  | drive temperature, 0.1 degC; position error                                                            |
+/// | 27, 28  | AC, DE: 1..32767 of 1/6 rps^2                                                                          |
+/// | 29, 30  | VE: 1..32000 of 1/240 rps; DI: distance or target, steps                                               |
+/// | 52      | EG/2: half the steps per turn                                                                          |
+/// | 124     | opcode, parameters in 125..129                                                                         |
 ///
 /// Opcodes: 0x9F enable, 0x9E disable, 0x66 relative move (FL), 0x67 absolute move (FP), 0x6E seek home (SH), 0xDB find
 /// home (FH), 0xE1 and 0xE2 stop, 0xBA alarm reset (AX), 0xA5 set position (SP, value in 125/126), 0x98 set encoder

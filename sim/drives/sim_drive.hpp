@@ -1,6 +1,6 @@
 #pragma once
 
-/// What all simulated drives share, whatever their map of registers: the axis, an alarm, faults, the lock.
+/// The part that all simulated drives share: the axis, an alarm, faults, the lock.
 
 #include <atomic>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace fvd::sim {
 
-/// The time as a drive sees it: tests give their own.
+/// The clock of a drive; tests pass their own.
 using DriveClock = std::function<HostTime()>;
 
 /// context: thread-safe; a derived class is called under the lock and takes none.
@@ -41,11 +41,11 @@ class SimDrive : public RegisterBank, public DriveFaults {
   SimDrive(AxisModel& axis, DriveClock clock) : axis_(axis), clock_(std::move(clock)) {}
 
   // What a map of registers is made of. `now` never runs back.
-  virtual void power_on() = 0;                                         ///< defaults into the empty image
-  virtual void refresh(HostTime now) = 0;                              ///< what can be read, into the image
-  virtual void was_written(const Written& written, HostTime now) = 0;  ///< what was written is in the image
-  virtual void was_read(int /*address*/, std::size_t /*count*/) {}     ///< for registers that reading resets
-  virtual void elapse(HostTime /*now*/) {}                             ///< what the drive does on its own up to now
+  virtual void power_on() = 0;                                         ///< writes the defaults into the empty image
+  virtual void refresh(HostTime now) = 0;                              ///< writes present values into the image
+  virtual void was_written(const Written& written, HostTime now) = 0;  ///< acts on a write, which is in the image
+  virtual void was_read(int /*address*/, std::size_t /*count*/) {}     ///< resets registers that reading resets
+  virtual void elapse(HostTime /*now*/) {}                             ///< what the drive does on its own up to `now`
   virtual void on_alarm(HostTime now) = 0;                             ///< alarm() was set and the axis stopped
   virtual void on_limit(HostTime now) = 0;                             ///< the axis was stopped on a limit switch
   virtual void on_torque_off(HostTime now) = 0;                        ///< the axis was stopped
@@ -77,15 +77,15 @@ class SimDrive : public RegisterBank, public DriveFaults {
   [[nodiscard]] bool reports_in_position(HostTime now) const;
   [[nodiscard]] std::int32_t command_position(HostTime now) const;  ///< steps
   [[nodiscard]] std::int32_t actual_position(HostTime now) const;   ///< steps, from the encoder
-  /// From now on the axis stands at `position`, whatever it was called before.
+  /// Makes the present position `position`, in steps, from `now` on.
   void preset_position(HostTime now, std::int32_t position);
 
-  /// False if nothing starts: a value that cannot be (speed in steps/s, accelerations in steps/s^2, all > 0), or a
-  /// fault that was asked for.
+  /// False if nothing starts, because a value is out of range (speed in steps/s, accelerations in steps/s^2, all > 0)
+  /// or a fault refuses it. target: steps.
   bool start_move(HostTime now, std::int64_t target, double speed, double acceleration, double deceleration);
   bool start_home(HostTime now);
 
-  /// When the request before this one came; when the drive was switched on if there was none.
+  /// Time of the request before this one; time of power-on if there was none.
   [[nodiscard]] HostTime last_request() const {
     mutex_.assert_held();
     return last_request_;

@@ -86,7 +86,7 @@ ordered_json rounded(double value, int decimals) {
   return std::round(value * scale) / scale;
 }
 
-/// One evaluation: the world's surface, the result's record, a height map a method.
+/// One evaluation: the world's surface, the result's record, a height map per method.
 class Evaluation {
  public:
   Evaluation(const WorldParameters& world, const std::filesystem::path& result_dir)

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A result of fvd against the truth of the simulated world.
+/// Comparison of a result of fvd with the truth of the simulated world.
 
 #include <filesystem>
 #include <iosfwd>

@@ -1,7 +1,7 @@
 #pragma once
 
-/// In-process doubles of the hardware interfaces for fast, deterministic tests of the scan. Time passes only when
-/// somebody waits.
+/// In-process doubles of the hardware interfaces for fast, deterministic tests of the scan. Time passes only while
+/// something waits.
 
 #include <atomic>
 #include <deque>
@@ -27,21 +27,22 @@ class FakeClock final : public Clock {
   HostTime now_{std::chrono::hours(1)};
 };
 
-/// What one trigger leads to.
+/// The outcome of one trigger.
 enum class TriggerOutcome {
   kFrame,          ///< a good frame
-  kNothing,        ///< the frame is lost without a trace
+  kNothing,        ///< no frame, and no sign of one
   kIncomplete,     ///< a damaged frame
   kWrongGeometry,  ///< a complete frame of another size
   kLate,           ///< a good frame that arrives after the deadline
   kTwice,          ///< the frame and a repetition of it
-  kUnderrun,       ///< no buffer was free
-  kTooEarly,       ///< a frame exposed before the trigger: one the camera still had inside
-  kDisconnect,     ///< the camera is gone
+  kUnderrun,       ///< no frame, because no buffer was free
+  kTooEarly,       ///< a frame that was exposed before the trigger, left over in the camera
+  kDisconnect,     ///< the connection is lost
 };
 
-/// A camera that follows a script, one entry a trigger, then delivers good frames. Every pixel of a frame holds the
-/// number of the trigger that made it, modulo 256. Aborts the program if it dies with script left over.
+/// A camera that follows a script, one entry per trigger, then delivers good frames. Every pixel of a frame holds the
+/// number of the trigger that made it, modulo 256. Aborts the program if it is destroyed before the script has ended.
+/// context: one thread, except interrupt().
 class FakeCamera : public Camera, private FrameRecycler {
  public:
   FakeCamera(FakeClock& clock, int width, int height, std::deque<TriggerOutcome> script = {});
@@ -58,7 +59,7 @@ class FakeCamera : public Camera, private FrameRecycler {
 
   [[nodiscard]] int triggers() const { return triggers_; }
 
-  std::chrono::microseconds clock_error{0};  ///< of the times that frames say they were exposed at
+  std::chrono::microseconds clock_error{0};  ///< added to the exposure times of frames
   [[nodiscard]] int frames_lent() const { return lent_; }
 
  private:
@@ -86,7 +87,7 @@ class FakeCamera : public Camera, private FrameRecycler {
   std::atomic<bool> interrupted_{false};
 };
 
-/// An axis that arrives in 50 ms and rests exactly `error_um` beside its target.
+/// An axis that arrives in 50 ms and rests exactly `error_um` beside its target. context: one thread.
 class FakeAxis : public Axis {
  public:
   explicit FakeAxis(FakeClock& clock) : clock_(clock) {}
@@ -113,8 +114,8 @@ class FakeAxis : public Axis {
   bool is_homed = true;
   double error_um = 0.0;
   int stops = 0;
-  HostTime settled{};       ///< of the last move
-  bool mean_moved = false;  ///< whether a mean was asked for from before the last move had settled
+  HostTime settled{};       ///< time at which the last move had settled
+  bool mean_moved = false;  ///< true once mean_position() was called for a time before the last move had settled
   std::vector<double> targets_um;
   std::optional<double> fail_at_um;  ///< kStagePosition at this target
   std::function<void()> on_move;
@@ -124,7 +125,7 @@ class FakeAxis : public Axis {
   double position_um_ = 0.0;
 };
 
-/// Keeps what a test wants to see of each slice; refuses when told to.
+/// Records z and content of each slice; refuses the slice of index refuse_at. context: one thread.
 class SpySink final : public SliceSink {
  public:
   [[nodiscard]] bool push(Slice&& slice, HostTime deadline, std::stop_token stop) override;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A simulated controller by Physik Instrumente with one axis: GCS 2.0 as text, whatever line it comes over.
+/// A simulated controller by Physik Instrumente with one axis: GCS 2.0 as text, independent of the line.
 
 #include <functional>
 #include <optional>
@@ -26,7 +26,7 @@ class GcsController {
   /// Forgets half a command: the line was closed.
   void line_closed();
 
-  // What may befall it.
+  // Faults.
   /// The axis stops with its servo off; ERR? tells the code once.
   void raise_alarm(int code);
   /// The next `count` moves are acknowledged and ignored.
@@ -34,7 +34,7 @@ class GcsController {
   /// The next `count` HLT, STP or #24 are refused with error 2 and not executed.
   void refuse_stops(int count);
 
-  [[nodiscard]] int moves() const;  ///< to a target, executed so far
+  [[nodiscard]] int moves() const;  ///< moves to a target executed so far
 
  private:
   std::string execute(const std::string& line, HostTime now) FVD_REQUIRES(mutex_);

@@ -19,7 +19,7 @@ struct GcsServerOptions {
   std::optional<std::filesystem::path> terminal_link{};
 };
 
-/// One client at a time on TCP, as the controllers have it. One thread.
+/// One client at a time on TCP, as on the real controllers. Owns one thread.
 class GcsServer {
  public:
   /// Serves. Throws Error kBadConfig if the address cannot be bound. The controller outlives the server.

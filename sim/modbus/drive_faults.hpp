@@ -1,6 +1,6 @@
 #pragma once
 
-/// What can happen to a drive and its motor, whatever map of registers the drive speaks.
+/// Faults of a drive and its motor, the same for every register map.
 
 #include "core/base/clock.hpp"
 
@@ -17,12 +17,13 @@ class DriveFaults {
   virtual void limit_hit() = 0;
   /// Torque is taken away (STO, HWTO): the axis stops and the drive says so in its own way.
   virtual void emergency_stop() = 0;
-  /// Off and on again: reference, alarm and everything written are gone.
+  /// Off and on again: reference, alarm and all written registers are lost.
   virtual void power_cycle() = 0;
   /// The next `count` starts of a motion are acknowledged and ignored.
   virtual void refuse_moves(int count) = 0;
-  /// For this long the drive reports standstill in position, whatever the axis does.
+  /// For this long the drive reports standstill in position, also while the axis moves.
   virtual void hold_in_position(HostClock::duration duration) = 0;
+  /// True while the axis truly moves.
   [[nodiscard]] virtual bool axis_moves() = 0;
 };
 

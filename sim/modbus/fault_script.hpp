@@ -33,15 +33,15 @@ enum class FaultKind {
   kPowerCycle,       ///< the drive restarts: not executed; as kLinkCut while it boots
 };
 
-/// Their names in scripts: "late_reply" and so on.
+/// The names of the faults in scripts: "late_reply" and so on.
 [[nodiscard]] const std::vector<std::string>& fault_names();
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 
 struct FaultStep {
   FaultOn on = FaultOn::kAny;    ///< a request that reads and writes (function code 23) counts as a write
-  int after = 0;                 ///< so many matching requests pass first, >= 0
+  int after = 0;                 ///< number of matching requests that pass first, >= 0
   std::optional<int> address{};  ///< PDU address that a request must contain to match; none = any
-  int count = 1;                 ///< happens so often, > 0
+  int count = 1;                 ///< number of times that the fault happens, > 0
   FaultKind fault = FaultKind::kLostReply;
   std::chrono::milliseconds delay{0};  ///< kLateReply, kLinkCut, kStaleInPosition, kPowerCycle
   int code = 0;                        ///< kException 1..255, kAlarmInMotion 1..65535
@@ -58,12 +58,12 @@ class FaultScript {
   /// Appends a step. Throws as the constructor.
   void add(const FaultStep& step);
 
-  /// The fault that befalls this request PDU, if any. To be asked once a request.
+  /// The fault that strikes this request PDU, if any. To be called once per request.
   [[nodiscard]] std::optional<FaultStep> next(std::span<const std::uint8_t> request, bool axis_moves);
 
   /// Steps that have not happened as often as they should.
   [[nodiscard]] std::size_t unconsumed() const;
-  /// One line a step, empty if all have happened.
+  /// One line per step that has not happened; empty if all have.
   [[nodiscard]] std::string describe_unconsumed() const;
 
  private:

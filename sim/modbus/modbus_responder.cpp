@@ -1,5 +1,7 @@
 #include "sim/modbus/modbus_responder.hpp"
 
+#include <algorithm>
+
 namespace fvd::sim {
 
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Executes Modbus requests, whatever line they came by (Modbus Application Protocol V1.1b3, section 6).
+/// Executes Modbus requests of either line (Modbus Application Protocol V1.1b3, section 6).
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ using ModbusBytes = std::vector<std::uint8_t>;
 /// gives an empty reply. Throws nothing of its own. context: as the bank's.
 [[nodiscard]] ModbusBytes respond(RegisterBank& bank, std::span<const std::uint8_t> request);
 
-/// What a request PDU asks for, as far as it can be told without executing it.
+/// Addresses that a request PDU reads and writes, as far as they can be found without executing it.
 struct RequestSummary {
   struct Range {
     int first = 0;
@@ -33,8 +33,8 @@ struct RequestSummary {
 };
 [[nodiscard]] RequestSummary summary_of(std::span<const std::uint8_t> request);
 
-/// Length of a serial request frame with unit and checksum, told from its first bytes: 0 = more bytes are needed,
-/// -1 = the function code does not tell, only silence ends the frame.
+/// Length in bytes of a serial request frame with unit and checksum, from its first bytes: 0 = more bytes are needed,
+/// -1 = unknown function code, only silence ends the frame.
 [[nodiscard]] int rtu_frame_length(std::span<const std::uint8_t> frame);
 
 /// CRC-16 of Modbus serial line (V1.02, 6.2.2): its low byte goes first.

@@ -16,10 +16,10 @@ namespace fvd::sim {
 /// The times of a transaction: characters of 11 bits both ways, the drive's turnaround, the silence before the next
 /// request, and the adapter that hands bytes over at ticks of its latency timer.
 struct LineTiming {
-  int baud = 115200;                              ///< 1200..4000000; the client's setting is not looked at
+  int baud = 115200;                              ///< 1200..4000000; the client's setting is ignored
   std::chrono::microseconds turnaround{0};        ///< end of request to start of reply; real drives 4 ms
   std::chrono::microseconds usb_latency{0};       ///< adapter's timer, 0 = none; real adapters 1 or 16 ms
-  std::chrono::microseconds inter_frame{1750};    ///< silence that a request needs before it
+  std::chrono::microseconds inter_frame{1750};    ///< silence that must precede a request
   std::chrono::microseconds frame_silence{1750};  ///< silence that ends a frame, if longer than 3.5 characters
 };
 
@@ -27,14 +27,14 @@ struct ModbusRtuOptions {
   std::filesystem::path link{};  ///< symbolic link to the slave, empty = none; an old link there is replaced
   int unit = 1;                  ///< 1..247; broadcasts to 0 are executed and not answered, others ignored
   LineTiming timing{};
-  FaultScript* faults = nullptr;  ///< null = nothing befalls the line; outlives the server
-  DriveFaults* drive = nullptr;   ///< what drive faults of the script befall; null = they befall nothing
+  FaultScript* faults = nullptr;  ///< null = no faults; outlives the server
+  DriveFaults* drive = nullptr;   ///< the drive that drive faults of the script strike; null = they have no effect
 };
 
-/// The function codes of respond(), one thread. A frame ends where its function code says, one of an unknown function
-/// code by silence. What has a wrong checksum is thrown away up to the next silence, without an answer. A script's
-/// faults on this line: a wrong check is a wrong checksum, a truncated frame the first half of the reply, a cut throws
-/// all input away while it lasts.
+/// Serves the function codes of respond() on one thread. The function code determines the end of a frame; a frame of an
+/// unknown function code ends by silence. After a wrong checksum all bytes up to the next silence are discarded,
+/// without an answer. Faults of a script on this line: kWrongCrc sends a wrong checksum, kTruncatedFrame the first half
+/// of the reply; kLinkCut discards all input while it lasts.
 ///
 /// Clients may open and close the slave as they like; bytes that none has read wait for the next one.
 class ModbusRtuServer {

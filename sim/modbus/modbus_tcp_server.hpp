@@ -19,12 +19,12 @@ struct ModbusTcpOptions {
   int port = 0;                   ///< 0 = any free port
   int unit = 1;                   ///< requests for other units get no answer, as on a real bus
   FaultScript* faults = nullptr;  ///< null = a script of the server's own; outlives the server
-  DriveFaults* drive = nullptr;   ///< what drive faults of the script befall; null = they befall nothing
+  DriveFaults* drive = nullptr;   ///< the drive that drive faults of the script strike; null = they have no effect
 };
 
-/// The function codes of respond(), several clients, one thread. A script's faults on this line: a wrong check is the
-/// transaction number of another request, a truncated frame the first half of the reply with the connection left open,
-/// a cut closes every connection and takes requests of new ones only when it is over.
+/// Serves the function codes of respond() to several clients on one thread. Faults of a script on this line: kWrongCrc
+/// sends the transaction number of another request, kTruncatedFrame the first half of the reply and leaves the
+/// connection open; kLinkCut closes every connection, and executes requests of new ones only when it is over.
 class ModbusTcpServer {
  public:
   /// Listens. Throws Error kBadConfig if the address cannot be bound. The bank outlives the server.

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a simulated device shows to Modbus: registers and coils by PDU address (0-based).
+/// Registers and coils of a simulated device by PDU address (0-based).
 
 #include <cstdint>
 #include <span>
@@ -37,7 +37,7 @@ class RegisterBank {
     return ModbusException::kIllegalAddress;
   }
 
-  /// Called at least every kIdlePeriodMs while nothing is asked: for what a device does on its own, e.g. a watchdog.
+  /// Called at least every kIdlePeriodMs while no request comes: for what a device does on its own, e.g. a watchdog.
   virtual void idle() {}
   static constexpr int kIdlePeriodMs = 20;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The registers of a device by PDU address, and what may be done to them.
+/// The registers of a device by PDU address, and the access to each.
 
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +40,7 @@ class RegisterImage {
   std::vector<Access> access_;
 };
 
-/// What a write has touched.
+/// The range of registers of one write.
 struct Written {
   int first = 0;
   int count = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Executes requests as a script of faults wants it: the part of faults that is the same on every line.
+/// Executes requests with the faults of a script: the part that is the same on every line.
 
 #include <chrono>
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace fvd::sim {
 
-/// What goes back on the line, and how.
+/// The reply to a request, and the fault with which it is sent.
 struct LineAnswer {
   ModbusBytes pdu;                      ///< empty = nothing goes back
-  std::chrono::milliseconds late{0};    ///< leaves so much later
-  bool wrong_check = false;             ///< with a checksum, or transaction number, that is wrong
-  bool truncated = false;               ///< only its first half
-  bool cut = false;                     ///< the line is cut instead ...
-  std::chrono::milliseconds outage{0};  ///< ... and stays so
+  std::chrono::milliseconds late{0};    ///< delay of the reply
+  bool wrong_check = false;             ///< send a wrong checksum or transaction number
+  bool truncated = false;               ///< send only the first half
+  bool cut = false;                     ///< cut the line instead of replying
+  std::chrono::milliseconds outage{0};  ///< time for which the line stays cut
 };
 
 /// context: one thread.
 class ScriptedResponder {
  public:
-  /// Both pointers may be null: then nothing befalls the line, or the drive. All outlive the responder.
+  /// script, drive: null = no faults of the line, or of the drive. All outlive the responder.
   ScriptedResponder(RegisterBank& bank, FaultScript* script, DriveFaults* drive)
       : bank_(bank), script_(script), drive_(drive) {}
 

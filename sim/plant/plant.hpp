@@ -29,8 +29,8 @@ struct PlantOptions {
   DriveKind drive = DriveKind::kAz;
   bool gcs = false;                   ///< a controller that speaks GCS in place of a drive; no faults, no line timing
   std::filesystem::path stage_pty{};  ///< if given, a serial line on a pseudo-terminal linked here instead of TCP
-  LineTiming line_timing{};           ///< of that, Modbus RTU
-  std::vector<FaultStep> faults{};    ///< what befalls line and drive of the stage, Modbus
+  LineTiming line_timing{};           ///< timing of that line, Modbus RTU only
+  std::vector<FaultStep> faults{};    ///< faults of the stage's line and drive, Modbus only
   std::vector<CameraFaultStep> camera_faults{};
 };
 
@@ -42,11 +42,11 @@ class Plant {
   explicit Plant(const PlantOptions& options);
 
   [[nodiscard]] const std::string& camera_address() const { return camera_address_; }
-  [[nodiscard]] int stage_port() const { return stage_port_; }  ///< as asked for if the stage is on RTU
+  [[nodiscard]] int stage_port() const { return stage_port_; }  ///< PlantOptions::stage_port if the stage is serial
   [[nodiscard]] GigeCameraServer& camera() { return *camera_; }
   [[nodiscard]] ModbusTcpServer& stage() { return *stage_; }                ///< only without stage_pty and gcs
   [[nodiscard]] ModbusRtuServer& serial_stage() { return *serial_stage_; }  ///< only with stage_pty, without gcs
-  [[nodiscard]] std::uint64_t stage_requests() const;                       ///< of the stage now plugged
+  [[nodiscard]] std::uint64_t stage_requests() const;                       ///< since the stage was plugged in last
   [[nodiscard]] SimDrive& drive() { return *drive_; }                       ///< only without gcs
   [[nodiscard]] FaultScript& faults() { return faults_; }
   [[nodiscard]] const SimWorld& world() const { return world_; }

@@ -18,7 +18,7 @@ struct RendererOptions {
   double defocus_px_per_um = 0.04;
   double readout_noise = 1.5;  ///< standard deviation in 8-bit grey levels
   std::uint64_t seed = 1;
-  double sigma_max_px = 12.0;  ///< a larger blur looks like this one: nothing of the texture is left
+  double sigma_max_px = 12.0;  ///< larger blurs are rendered as this one: no texture is left
   int threads = 2;
 };
 
@@ -26,10 +26,9 @@ struct RendererOptions {
 /// clipped. The blurred textures are precomputed at the nodes of TransferNodes as 16-bit values of 1/64 grey level: two
 /// bytes per pixel and node, about 36 nodes.
 ///
-/// Noise comes from a table of 2^20 normal values entered at a hashed place for each row of each exposure: rows repeat
-/// a stretch of the table, but no two slices share one at the same pixels more often than chance, which is all that a
-/// focus curve could notice. The same seed and exposure index give the same noise.
-/// context: one thread.
+/// Noise comes from a table of 2^20 normal values; each row of each exposure starts at a hashed index. Rows repeat
+/// parts of the table, but two slices have the same noise at the same pixel no more often than by chance, and only that
+/// would change a focus curve. The same seed and exposure index give the same noise. context: one thread.
 class DefocusRenderer {
  public:
   /// texture in 8-bit grey levels within -255..511, height_um of the same shape; both are copied into the renderer's

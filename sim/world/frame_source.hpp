@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a simulated camera looks at.
+/// The source of a simulated camera's pixels.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@ struct ExposureRequest {
   HostTime start{};  ///< exposure start and end on the host clock, both in the past
   HostTime end{};
   double gain_db = 0.0;
-  std::uint64_t exposure_index = 0;  ///< counts exposures since the camera started: seeds the noise
+  std::uint64_t exposure_index = 0;  ///< number of the exposure since the camera started; seeds the noise
 };
 
 /// context: render() from the camera's thread only.

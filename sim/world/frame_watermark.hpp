@@ -1,6 +1,6 @@
 #pragma once
 
-/// A mark in the pixels of a frame that tells which exposure it is, so that a test can prove what it got.
+/// A mark in the pixels of a frame that identifies its exposure, so that a test can prove which frame it got.
 
 #include <cstdint>
 #include <functional>
@@ -20,12 +20,12 @@ struct Watermark {
 /// Nothing if the checksum over all other pixels or the mark itself is wrong. Images have at least 24 pixels per row.
 [[nodiscard]] std::optional<Watermark> read_watermark(const ImageView& image);
 
-/// Marks what another source renders: in the first 20 pixels of row 0 lie index, z in nm, and the CRC-32 of everything
-/// after and of the two, one byte per pixel, in the lower 8 bits of wider ones. Frames that are packed or mosaics on
-/// the wire lose their mark. context: as its source.
+/// Marks the images of another source: the first 20 pixels of row 0 hold index, z in nm, and the CRC-32 of both and of
+/// all later pixels, one byte per pixel, in the lower 8 bits of wider pixels. Frames in packed formats or mosaics lose
+/// their mark on the wire. context: as its source.
 class WatermarkedSource final : public FrameSource {
  public:
-  /// z_um: true position at a moment; may be called for the past. source outlives this.
+  /// z_um: returns the true position at a time, which may lie in the past. source outlives this object.
   WatermarkedSource(FrameSource& source, std::function<double(HostTime)> z_um)
       : source_(source), z_um_(std::move(z_um)) {}
 

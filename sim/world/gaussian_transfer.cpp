@@ -11,7 +11,7 @@ namespace fvd::sim {
 namespace {
 
 constexpr double kFirstSpacing = 0.04;
-constexpr double kGrowth = 1.25;
+constexpr double kSpacingGrowth = 1.25;
 
 /// Angular frequency of bin k of n, -pi..pi.
 double frequency(int k, int n) { return 2.0 * std::numbers::pi * (k <= n / 2 ? k : k - n) / n; }
@@ -21,8 +21,8 @@ double frequency(int k, int n) { return 2.0 * std::numbers::pi * (k <= n / 2 ? k
 TransferNodes::TransferNodes(double sigma_max) {
   const double t_max = sigma_max * sigma_max;
   for (int i = 0; i <= 4; ++i) t_.push_back(kFirstSpacing * i);
-  while (t_.back() < t_max) t_.push_back(t_.back() * kGrowth);
-  t_.push_back(t_.back() * kGrowth);  // so that four nodes surround the largest blur
+  while (t_.back() < t_max) t_.push_back(t_.back() * kSpacingGrowth);
+  t_.push_back(t_.back() * kSpacingGrowth);  // so that four nodes surround the largest blur
 }
 
 TransferWeights TransferNodes::at(double sigma) const {

@@ -6,7 +6,7 @@
 /// Between the nodes the transfer is interpolated by the cubic through the four nearest nodes. With x = (u^2+v^2)/2 the
 /// fourth derivative in t is x^4 exp(-t x): at most (2 pi^2 / 2)^4 near t = 0 and at most (4/t)^4 exp(-4) elsewhere.
 /// The nodes lie 0.04 apart up to 0.16 and then grow by a quarter, which bounds the error of any frequency at any blur
-/// below 0.1 % of full contrast; tests/sim checks the bound numerically.
+/// below 0.1 % of full contrast; tests/sim/world checks the bound numerically.
 
 #include <array>
 #include <vector>
@@ -15,9 +15,9 @@
 
 namespace fvd::sim {
 
-/// Which of the nodes and with what weights make up a blur.
+/// The four nodes of which a blur is interpolated, and their weights.
 struct TransferWeights {
-  int first = 0;  ///< of four neighbouring nodes
+  int first = 0;  ///< index of the first of four neighbouring nodes
   std::array<float, 4> weight{};
 };
 
@@ -26,7 +26,9 @@ class TransferNodes {
   /// Nodes up to sigma_max pixels; a larger blur counts as sigma_max.
   explicit TransferNodes(double sigma_max);
 
+  /// Values of t = sigma^2 at the nodes, px^2, ascending.
   [[nodiscard]] const std::vector<double>& t() const { return t_; }
+  /// sigma: pixels, >= 0.
   [[nodiscard]] TransferWeights at(double sigma) const;
 
  private:

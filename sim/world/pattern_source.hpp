@@ -1,6 +1,6 @@
 #pragma once
 
-/// A sensor that never limits: a few random images, one after the other.
+/// Images that cost no rendering time: four random images in turn.
 
 #include <algorithm>
 #include <array>

@@ -15,10 +15,11 @@ SimWorld::SimWorld(const WorldParameters& parameters, const AxisModel& axis)
                  .seed = parameters.seed}) {}
 
 void SimWorld::render(const ExposureRequest& request, std::span<std::byte> out) {
-  constexpr int kSamples = 5;
+  constexpr int kPositionSamples = 5;
   double z_um = 0.0;
-  for (int i = 0; i < kSamples; ++i) {
-    z_um += axis_.true_position_um(request.start + (request.end - request.start) * i / (kSamples - 1)) / kSamples;
+  for (int i = 0; i < kPositionSamples; ++i) {
+    z_um += axis_.true_position_um(request.start + (request.end - request.start) * i / (kPositionSamples - 1)) /
+            kPositionSamples;
   }
   renderer_.render(z_um, request, out);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The one world that camera and drive share: a surface, optics, and where the stage truly is.
+/// The world that camera and drive share: a surface, optics, and the true position of the stage.
 
 #include "core/image/image.hpp"
 #include "sim/axis/axis_model.hpp"
@@ -11,6 +11,7 @@
 
 namespace fvd::sim {
 
+/// context: as a FrameSource.
 class SimWorld final : public FrameSource {
  public:
   /// axis outlives the world. Throws what make_surface throws.

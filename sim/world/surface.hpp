@@ -1,6 +1,6 @@
 #pragma once
 
-/// The heights a simulated microscope looks at, and which parts of them mean what.
+/// The heights of a simulated surface, and its regions.
 
 #include <cstdint>
 

@@ -13,7 +13,7 @@ enum class SurfaceKind { kChapter, kTilted, kSphere, kRough, kHeightMap };
 enum class TextureKind {
   kGranite,  ///< grains of 0.6, 1.2, 3 and 8 pixels
   kFine,     ///< grains of 0.6 pixels
-  kWhite,    ///< every pixel by itself
+  kWhite,    ///< every pixel is independent
 };
 
 struct WorldParameters {
@@ -21,7 +21,7 @@ struct WorldParameters {
   int width_px = 480;  ///< sensor; the chapter's surface needs exactly 480 x 360, a height map brings its own size
   int height_px = 360;
 
-  double tilt_x_um_per_px = 0.05;  ///< kTilted: height grows by so much a pixel
+  double tilt_x_um_per_px = 0.05;  ///< kTilted: rise per pixel
   double tilt_y_um_per_px = 0.0;
   double base_um = 50.0;         ///< kTilted: height of the centre; kSphere: of the plane it stands on; kRough: mean
   double radius_um = 1000.0;     ///< kSphere

@@ -20,7 +20,7 @@
 
 namespace fvd::bench {
 
-/// Mean and RMS of height minus truth, and of the standard errors that went with the heights.
+/// Mean and RMS of height minus truth, and RMS of the predicted standard errors. Unit: that of the errors added.
 struct ErrorSum {
   double sum = 0.0;
   double squares = 0.0;
@@ -47,7 +47,7 @@ struct ErrorSum {
   [[nodiscard]] double sigma_ratio() const { return std::sqrt(predicted / squares); }
 };
 
-/// Slices at given heights of a world, each z as it really was unless `reported` tells otherwise.
+/// Slices of a world at given heights, on an ideal axis.
 class WorldScan {
  public:
   explicit WorldScan(const sim::WorldParameters& parameters) : world_(parameters, axis_) {}
@@ -70,7 +70,7 @@ class WorldScan {
     return pixels;
   }
 
-  /// A whole scan into a stack. reported(k, z) is the z the stack is told.
+  /// A whole scan into a stack, which is told the nominal z. actual(k, z): true z of slice k of nominal height z, um.
   [[nodiscard]] std::unique_ptr<StreamingFocusStack> scan(
       double start_um, double step_um, int slices, const FocusSettings& settings, WorkerPool& pool,
       const std::function<double(int, double)>& actual = [](int, double z) { return z; }) {
@@ -101,8 +101,8 @@ class WorldScan {
 struct Reference {
   const char* key;
   const char* folder;
-  double slices_per_truth;  ///< what one unit of truth.tiff is in slices
-  double first_slice;       ///< what truth.tiff gives the first slice, in slices
+  double slices_per_truth;  ///< slices per unit of truth.tiff
+  double first_slice;       ///< value of truth.tiff at the first slice, in slices
 };
 inline constexpr Reference kReferences[]{{"cou1_rms", "generated-cou1", 1.0, 0.0},
                                          {"cou6_rms", "generated-cou6", 1.0, 0.0},
@@ -111,14 +111,14 @@ inline constexpr Reference kReferences[]{{"cou1_rms", "generated-cou1", 1.0, 0.0
 /// A stack with truth from the folder of reference data; z counts slices.
 class ReferenceScan {
  public:
-  /// A 16-bit stack is taken as 8 bit, divided by 256. Throws Error for a folder that holds none.
+  /// A 16-bit stack is divided by 256 and used as 8 bit. Throws Error for a folder without a stack.
   ReferenceScan(const std::filesystem::path& folder, const Reference& reference, const FocusSettings& settings,
                 WorkerPool& pool);
 
   [[nodiscard]] ErrorSum figures(PeakMethod method) const;
-  /// Why the stage's errors were not corrected; empty where they were.
+  /// Why the stage's errors were not corrected; empty if they were.
   [[nodiscard]] std::string stage_reason() const { return stack_->finish(PeakMethod::kFiveSample).stage.reason; }
-  /// Points with a truth.
+  /// Number of points that have a truth.
   [[nodiscard]] double points() const { return points_; }
 
  private:

@@ -1,5 +1,5 @@
 /// What the camera driver does on a simulated camera: faults, loss, restarts, the wrap of block ids, throughput, slices
-/// a second, and a scan in one motion against the same slices step by step. Prints a table; the last line is one JSON
+/// per second, and a scan in one motion against the same slices step by step. Prints a table; the last line is one JSON
 /// object. With the argument "soak" it lets a camera run free at 2048 x 2048 over a gigabit line for ten minutes
 /// instead.
 

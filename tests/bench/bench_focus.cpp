@@ -1,6 +1,6 @@
 /// Speed of the focus core on slices of 2448 x 2048, and of the same job done the usual way.
 ///   build/tests/bench/bench_focus [--benchmark_format=json]
-/// Mpx/s: pixels of slices a second of wall clock, in millions. Ratios: tests/bench/run_speed.sh.
+/// Mpx/s: pixels of slices per second of wall clock, in millions. Ratios: tests/bench/run_speed.sh.
 
 #include <algorithm>
 #include <array>
@@ -72,8 +72,8 @@ PixelFormat format_of(int bits) {
   return bits == 8 ? PixelFormat::kMono8 : bits == 12 ? PixelFormat::kMono12 : PixelFormat::kMono16;
 }
 
-/// Arguments: bits a pixel, window in pixels, threads, slices pushed together, slices a bin. One iteration is one scan;
-/// the stack is made beforehand, as in a daemon.
+/// Arguments: bits per pixel, window in pixels, threads, slices pushed together, slices per bin. One iteration is one
+/// scan; the stack is made beforehand, as in a daemon.
 template <typename Pixel>
 void streaming(benchmark::State& state) {
   const int bits = static_cast<int>(state.range(0));

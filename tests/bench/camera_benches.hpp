@@ -1,7 +1,7 @@
 #pragma once
 
-/// What bench_camera measures on simulated cameras, one source file a subject. Every function prints what it does;
-/// those that return figures return the ones of the JSON object.
+/// The measurements of bench_camera on simulated cameras, one source file per subject. Every function prints what it
+/// does; returned figures go into the JSON object.
 
 namespace fvd::test {
 
@@ -9,18 +9,18 @@ namespace fvd::test {
 
 struct FaultFigures {
   int cases = 0;
-  int wrong = 0;            ///< slices accepted that are not what they say
+  int wrong = 0;            ///< accepted slices whose pixels or z are wrong
   int violations = 0;       ///< scans whose books do not balance
   double hang_ms = 0.0;     ///< longest from the last frame of a camera that hangs to the error
   double recover_ms = 0.0;  ///< longest from a camera's return to its first frame
 };
 
 FaultFigures run_faults();
-/// A camera that was killed and comes back at once: from its return to its first frame, in ms.
+/// Time from the return of a camera that was killed to its first frame, in ms.
 double recover_after_kill();
-/// Slices that are right, of scans one after the other on one connection.
+/// Number of correct slices of successive scans on one connection.
 int right_slices(double packet_loss, int scans, int slices);
-/// Triggered frames over the end of the 16-bit ids that are not there or not what they say.
+/// Number of triggered frames, over the end of the 16-bit ids, that are missing or wrong.
 int lost_over_the_wrap(int frames);
 
 // --- camera_throughput_bench.cpp ---
@@ -32,14 +32,14 @@ struct Throughput {
   double duration_s = 0.0;
 };
 
-/// Frames per second that the simulated camera can send to somebody who reads and throws away.
+/// Frames per second that the simulated camera can send to a receiver that discards them.
 double server_frames_per_s();
 /// A camera that runs free at 2048 x 2048. link_mbps: 0 = as fast as the machine can.
 Throughput run_free(double link_mbps, double rate_hz, double duration_s, bool packet_socket);
 
 // --- camera_scan_bench.cpp ---
 
-/// Seconds of a scan of 200 slices of 1024 x 1024 at 5 ms, the stage at once where it should be.
+/// Duration in seconds of a scan of 200 slices of 1024 x 1024 pixels at 5 ms, with a stage that arrives at once.
 double step_scan_s(bool computing);
 double slices_per_s();
 
@@ -48,7 +48,7 @@ struct Motion {
   double error_ratio = 0.0;  ///< RMS error of the continuous scan over that of the step scan
 };
 Motion run_motion();
-/// Position taken for a frame minus where the stage truly was in the middle of its exposure.
+/// Prints the position that was assigned to a frame minus the true one in the middle of its exposure.
 void print_position_error();
 
 }  // namespace fvd::test

@@ -14,22 +14,22 @@ namespace fvd::bench {
 
 namespace {
 
-constexpr double kStep = 0.001;
-constexpr double kReach = 6.0;       // widths that the table covers
-constexpr double kPeakCode = 30000;  // of the curve
-constexpr double kFloor = 0.10;      // what the focus measure shows of noise alone, of the peak
-constexpr double kNoise = 0.01;      // standard deviation, of the peak
+constexpr double kTableStep_widths = 0.001;
+constexpr double kTableReach_widths = 6.0;  // widths that the table covers
+constexpr double kPeakCode = 30000;         // of the curve
+constexpr double kFloorShare = 0.10;        // what the focus measure shows of noise alone, of the peak
+constexpr double kNoiseShare = 0.01;        // standard deviation, of the peak
 
 /// The root of the passed power at a blur of sigma pixels.
 double response(double sigma) {
-  constexpr double kCutoff = 0.40;
+  constexpr double kCutoff_cycles_per_px = 0.40;
   constexpr int kNodes = 160;
   double power = 0.0;
   for (int j = 0; j < kNodes; ++j) {
     for (int i = 0; i < kNodes; ++i) {
       const double fx = 0.5 * (i + 0.5) / kNodes;
       const double fy = 0.5 * (j + 0.5) / kNodes;
-      const double nu = std::hypot(fx, fy) / kCutoff;
+      const double nu = std::hypot(fx, fy) / kCutoff_cycles_per_px;
       if (nu >= 1.0) continue;
       const double lens = 2.0 / std::numbers::pi * (std::acos(nu) - nu * std::sqrt(1.0 - nu * nu));
       const double omega = 2.0 * std::numbers::pi;
@@ -52,7 +52,7 @@ ModelCurve::ModelCurve() {
   while (over_blur[half] > 0.5) ++half;
   const double at_half =
       0.01 * (static_cast<double>(half) - (0.5 - over_blur[half]) / (over_blur[half - 1] - over_blur[half]));
-  for (double u = 0.0; u <= kReach; u += kStep) {
+  for (double u = 0.0; u <= kTableReach_widths; u += kTableStep_widths) {
     const double place = std::min(u * 2.0 * at_half / 0.01, 1598.0);
     const auto i = static_cast<std::size_t>(place);
     const double part = place - static_cast<double>(i);
@@ -61,7 +61,7 @@ ModelCurve::ModelCurve() {
 }
 
 double ModelCurve::at(double u) const {
-  const double place = std::min(std::abs(u) / kStep, static_cast<double>(values_.size() - 2));
+  const double place = std::min(std::abs(u) / kTableStep_widths, static_cast<double>(values_.size() - 2));
   const auto i = static_cast<std::size_t>(place);
   const double part = place - static_cast<double>(i);
   return (1.0 - part) * values_[i] + part * values_[i + 1];
@@ -92,7 +92,7 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
     const double z = step * k;
     for (std::size_t x = 0; x < truth.size(); ++x) {
       const double u = z - truth[x];
-      const double value = curve.at(u) + kFloor + kNoise * normal(random);
+      const double value = curve.at(u) + kFloorShare + kNoiseShare * normal(random);
       codes[x] = static_cast<std::uint16_t>(std::lround(std::clamp(kPeakCode * value, 0.0, 65000.0)));
       const double slope = (curve.at(u + 0.002) - curve.at(u - 0.002)) / 0.004;
       information += slope * slope / kCurves;
@@ -102,12 +102,12 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
     heights.push(z);
   }
   if (heights.pending() > 0) binner.close(row, heights.samples(), heights.pending());
-  const double bound = kNoise / std::sqrt(information);
+  const double bound = kNoiseShare / std::sqrt(information);
 
   const RowFit fit(heights.means_um(), settings, PixelFormat::kMono8, PeakMethod::kFiveSample);
   // In the units of the codes: the noise of a pixel that gives this noise of a sample.
   const double pixel =
-      kNoise * kPeakCode / sample_noise(settings, 1.0, 0.0) / sharpness_code(settings, PixelFormat::kMono8).gain;
+      kNoiseShare * kPeakCode / sample_noise(settings, 1.0, 0.0) / sharpness_code(settings, PixelFormat::kMono8).gain;
   const std::vector<float> noise_grey(kCurves, static_cast<float>(pixel));
   std::vector<float> noise(kCurves);
   std::vector<float> height_m(kCurves);

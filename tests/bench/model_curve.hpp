@@ -1,6 +1,6 @@
 #pragma once
 
-/// The focus curve of a white texture, for bench_accuracy: what can be reached is known for it.
+/// The focus curve of a white texture, for bench_accuracy: its Cramer-Rao bound is known.
 
 #include <vector>
 
@@ -15,7 +15,7 @@ class ModelCurve {
   [[nodiscard]] double at(double u) const;
 
  private:
-  std::vector<double> values_;  // at u = 0, kStep, ..
+  std::vector<double> values_;  // at u = 0, kTableStep_widths, ..
 };
 
 /// RMS error of the default peak through the accumulator on such curves with noise of 1 % of the peak, over the

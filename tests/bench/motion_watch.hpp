@@ -1,6 +1,6 @@
 #pragma once
 
-/// When the simulated axis truly moved: its position every 2 ms, whoever commands it.
+/// The times at which the simulated axis truly moved, from its position every 2 ms.
 
 #include <chrono>
 #include <vector>
@@ -17,13 +17,13 @@ using WallTime = std::chrono::system_clock::time_point;
 class MotionWatch {
  public:
   static constexpr std::chrono::milliseconds kPeriod{2};
-  /// Slower than any motion of a scan, faster than drift, ringing that dies away and the noise of settling.
+  /// Speed above which the axis counts as moving: below any motion of a scan, above drift, ringing and settle noise.
   static constexpr double kMovingSpeed_um_per_s = 20.0;
 
   /// The axis outlives the watch.
   explicit MotionWatch(const sim::AxisModel& axis);
 
-  /// The times at which the axis moved, in order. What was given out is forgotten.
+  /// The times at which the axis moved since the last call, in order.
   [[nodiscard]] std::vector<WallTime> take_moving();
 
  private:

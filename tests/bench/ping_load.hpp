@@ -13,11 +13,11 @@ struct PingLoad {
   std::chrono::seconds duration{10};
 };
 
-/// How long each call took in ms, counted from when it was due: a call that had to wait for the one before counts its
-/// waiting. Throws std::runtime_error if a client cannot connect.
+/// Duration of each call in ms, from the time at which it was due: a call that had to wait for the one before includes
+/// the wait. Throws std::runtime_error if a client cannot connect.
 [[nodiscard]] std::vector<double> ping_times_ms(int port, const PingLoad& load);
 
-/// fraction: 0..1, e.g. 0.99; the list is not empty.
+/// fraction: 0..1, e.g. 0.99; values: not empty.
 [[nodiscard]] double percentile(std::vector<double> values, double fraction);
 
 }  // namespace fvd::bench

@@ -1,6 +1,6 @@
 #pragma once
 
-/// fvd as a process of its own, and what its log says of states and of the part's release.
+/// fvd as a process of its own, and the changes of state and of the part's release in its log.
 
 #include <chrono>
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace fvd::bench {
 
-/// One line of the log that tells of a change.
+/// A change that a line of the log reports.
 struct LoggedChange {
   WallTime at;       ///< as logged, to the millisecond
   std::string what;  ///< "started", a state's name, "part_release true", "part_release false", "killed"
@@ -48,8 +48,8 @@ class WatchedDaemon {
   std::jthread reader_;  // last
 };
 
-/// The intervals in which a client was told that the part is free. A program that logs no release tells of it by its
-/// states, as version 0.1.0 did: always but while it executes.
+/// The intervals in which clients were told that the part is free. For a program that does not log the release, like
+/// version 0.1.0: all times at which its state was not executing.
 struct Interval {
   WallTime from;
   WallTime to;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// One fault of the camera in the middle of a scan, and whether a wrong slice was believed because of it.
+/// One fault of the camera in the middle of a scan, and whether a wrong slice was accepted because of it.
 
 #include <memory>
 #include <ostream>
@@ -21,8 +21,8 @@
 
 namespace fvd::test {
 
-/// Takes slices and reads what is in them: right is a slice whose pixels are whole, of an exposure not seen before, and
-/// exposed where it says.
+/// Counts slices and checks their watermarks: a slice is right if its pixels are intact, its exposure is new, and its z
+/// is where it was exposed.
 class CheckingSink final : public SliceSink {
  public:
   [[nodiscard]] bool push(Slice&& slice, HostTime /*deadline*/, std::stop_token /*stop*/) override {
@@ -41,13 +41,13 @@ class CheckingSink final : public SliceSink {
   double tolerance_um = 0.002;
   int slices = 0;
   int wrong = 0;
-  std::ostringstream what;  ///< of the wrong ones
+  std::ostringstream what;  ///< description of the wrong slices
 
  private:
   std::set<std::uint64_t> exposures_;
 };
 
-/// A camera whose frames tell what they are, and a stage that is at once where it should be.
+/// A camera whose frames identify their exposure, and a stage that arrives at once.
 class MarkedCamera {
  public:
   explicit MarkedCamera(int width = 160, int height = 120, sim::GigeCameraOptions options = {})
@@ -84,7 +84,7 @@ class MarkedCamera {
 struct CameraFaultCase {
   const char* name;
   sim::CameraFaultStep step;
-  /// The job's end that is right: nothing = it completes.
+  /// The error with which the scan must end; nothing = it completes.
   std::optional<ErrorCode> end{};
 };
 
@@ -148,9 +148,9 @@ inline std::vector<CameraFaultCase> camera_fault_cases() {
 
 struct CameraFaultOutcome {
   int slices = 0;
-  int wrong = 0;                   ///< slices accepted that are not what they say
+  int wrong = 0;                   ///< accepted slices whose pixels or z are wrong
   int unbalanced = 0;              ///< scans whose books do not balance
-  std::optional<ErrorCode> end{};  ///< of the scan the fault strikes
+  std::optional<ErrorCode> end{};  ///< error of the scan that the fault strikes
   double end_ms = 0.0;             ///< from the camera's last frame to that end, where the connection was lost
   double recover_ms = 0.0;         ///< from the camera's return to the first slice of the next scan
   std::size_t unconsumed = 0;
@@ -172,7 +172,7 @@ inline CameraSettings camera_fault_settings() {
   return settings;
 }
 
-/// As the machine's thread does it: tries every 0.2 s, gives dead cameras away, until it is open or 10 s are over.
+/// Opens the camera as the machine's thread does: one attempt every 0.2 s, for 10 s at most.
 inline std::unique_ptr<Camera> open_again(const CameraConfig& config) {
   const HostTime deadline = HostClock::now() + std::chrono::seconds(10);
   SystemClock clock;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A program of somebody else's beside a test: its first line, all it prints, and its end.
+/// A program that a test starts: its output and its exit code.
 
 #include <csignal>
 #include <cstdio>
@@ -56,7 +56,7 @@ class ChildProcess {
     for (int c = std::fgetc(out_); c != EOF; c = std::fgetc(out_)) text += static_cast<char>(c);
     return text;
   }
-  /// Sends a signal, e.g. SIGKILL; wait() then tells of its end.
+  /// Sends a signal, e.g. SIGKILL; wait() then returns the exit code.
   void signal(int number) const {
     if (pid_ > 0) ::kill(pid_, number);
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// One fault in the middle of a scan's moves, and whether anything false was believed because of it.
+/// One fault in the middle of a scan's moves, and whether a wrong position was accepted because of it.
 
 #include <cmath>
 #include <sstream>
@@ -15,12 +15,12 @@ namespace fvd::test {
 struct FaultOutcome {
   int wrong_values = 0;        ///< positions reported as measured that the axis was not at
   int moves_too_many = 0;      ///< motions the drive executed beyond those commanded
-  int errors = 0;              ///< moves that ended in an error that said so
-  std::string story;           ///< what went otherwise than it should
+  int errors = 0;              ///< moves that ended with an error
+  std::string story;           ///< description of everything unexpected
   std::size_t unconsumed = 0;  ///< faults that never happened
 };
 
-/// The faults of the matrix, where they strike, and whether the move may go on as if nothing had been.
+/// A fault, the request that it strikes, and whether the move must end with an error.
 struct FaultCase {
   const char* name;
   sim::FaultStep step;
@@ -62,8 +62,8 @@ inline std::vector<FaultCase> fault_cases() {
   };
 }
 
-/// Six moves of 10 um; the fault strikes from the third on. A value is wrong if the stage calls it measured and the
-/// axis was further from it than the settle window and a half allows.
+/// Six moves of 10 um; the fault strikes from the third on. A measured position is wrong if the true one differs by
+/// more than one and a half settle windows.
 inline FaultOutcome run_fault_case(const DriveCase& drive, Transport transport, const FaultCase& fault) {
   constexpr double kTolerance_um = 0.75;
   using std::chrono::milliseconds;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A TCP client that sends what it is told and reads lines, with a deadline.
+/// A TCP client that sends text and reads lines, with a deadline.
 
 #include <array>
 #include <chrono>

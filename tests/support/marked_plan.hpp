@@ -1,6 +1,6 @@
 #pragma once
 
-/// A scan of frames that tell what they are.
+/// A scan plan for frames that identify their exposure.
 
 #include "tests/support/camera_fault_case.hpp"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-/// A network of the test's own, with nothing but a loopback interface: for what insists on a fixed address and port.
+/// A network namespace of the test's own with a loopback interface only, for programs that need a fixed address and
+/// port.
 
 #include <cstring>
 

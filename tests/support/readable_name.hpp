@@ -1,6 +1,6 @@
 #pragma once
 
-/// Names for parameterised tests that say what their parameter is.
+/// Names of parameterised tests that describe the parameter.
 
 #include <cctype>
 #include <cstddef>

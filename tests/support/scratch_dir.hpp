@@ -1,6 +1,6 @@
 #pragma once
 
-/// A new empty directory that is gone with its owner.
+/// A new empty directory, which the destructor removes with its contents.
 
 #include <filesystem>
 #include <fstream>

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The socket on which systemd listens to its services.
+/// A fixture with the notification socket of systemd.
 
 #include <array>
 #include <cerrno>
@@ -18,7 +18,7 @@
 
 namespace fvd::test {
 
-/// Stands in for systemd: what the service says is heard here.
+/// Receives what a service sends to systemd.
 class AServiceManager : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -27,7 +27,7 @@ inline constexpr DriveCase kDriveCases[] = {{sim::DriveKind::kAz, "oriental-az.j
 
 inline std::ostream& operator<<(std::ostream& out, const DriveCase& drive) { return out << drive.name; }
 
-/// A nearly perfect axis: what is wrong in the figures is fvd's.
+/// A nearly perfect axis, so that errors in the figures are errors of fvd.
 inline sim::AxisParameters good_axis() {
   sim::AxisParameters parameters;
   parameters.settle_noise_um = 0.02;
@@ -36,7 +36,7 @@ inline sim::AxisParameters good_axis() {
   return parameters;
 }
 
-/// 115200 baud, a drive that thinks for 4 ms, an adapter with its latency timer at 1 ms.
+/// 115200 baud, a drive with a turnaround of 4 ms, an adapter with a latency timer of 1 ms.
 inline sim::LineTiming real_line() {
   sim::LineTiming timing;
   timing.turnaround = std::chrono::milliseconds(4);

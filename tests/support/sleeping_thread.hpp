@@ -1,6 +1,6 @@
 #pragma once
 
-/// A thread of which a test can tell that it waits.
+/// A thread whose waiting a test can detect.
 
 #include <atomic>
 #include <chrono>
@@ -26,8 +26,8 @@ class SleepingThread {
 
   void request_stop() { thread_.request_stop(); }
 
-  /// Looks until the system says that the thread sleeps; false after 10 s. The body must take no other sleep than the
-  /// wait in question.
+  /// Polls until the operating system reports that the thread sleeps; false after 10 s. The body must not sleep
+  /// anywhere but in the wait in question.
   [[nodiscard]] bool sleeps() const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     while (std::chrono::steady_clock::now() < deadline) {

@@ -1,7 +1,6 @@
 #pragma once
 
-/// A stage that is where it is told to be at once, and remembers when it was where: what a camera's frames are checked
-/// against.
+/// A stage that arrives at once and keeps the history of its positions, with which a camera's frames are checked.
 
 #include <algorithm>
 #include <mutex>
@@ -13,7 +12,7 @@
 
 namespace fvd::test {
 
-/// context: z_um() thread-safe, the rest as a Axis.
+/// context: z_um() thread-safe, the rest as an Axis.
 class TimedStage final : public Axis {
  public:
   [[nodiscard]] StageInfo info() const override {
@@ -60,7 +59,7 @@ class TimedStage final : public Axis {
   void stop() noexcept override {}
   [[nodiscard]] bool connected() const noexcept override { return true; }
 
-  /// Where it was then.
+  /// Position at a time, um.
   [[nodiscard]] double z_um(HostTime at) const {
     const std::lock_guard lock(mutex_);
     const auto after = std::upper_bound(history_.begin(), history_.end(), at,

@@ -71,7 +71,7 @@ class AMicroscope : public testing::Test {
     return line ? nlohmann::json::parse(*line)["result"] : nlohmann::json();
   }
 
-  /// Waits until the job has measured that many slices.
+  /// Waits until the job has measured at least `slices` slices.
   void await_slices(std::int64_t seq, int slices) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (std::chrono::steady_clock::now() < deadline) {

@@ -241,7 +241,7 @@ inline void solve(int count, FitPixels& at) {
     const float c22 = s0 * s2 - s1 * s1;
     const float k1 = c10 * at.t0[x] + c11 * at.t1[x] + c12 * at.t2[x];
     const float k2 = c20 * at.t0[x] + c12 * at.t1[x] + c22 * at.t2[x];
-    // Both lack the same positive factor, the determinant; their ratio does not mind.
+    // Both lack the same positive factor, the determinant, which cancels in their ratio.
     const float determinant = s1 * c10 + s2 * c11 + s3 * c12;
     const std::int32_t convex = static_cast<std::int32_t>(k2 > 0.0F) & static_cast<std::int32_t>(determinant > 0.0F);
     const float curvature = convex != 0 ? k2 : 1.0F;

@@ -45,7 +45,7 @@ inline constexpr int kMaxBinSlices = 64;
 struct FocusSettings {
   FocusOperator focus_operator = FocusOperator::kModifiedLaplacian;
   int window_px = 9;              ///< side of the square window of the sum, odd, 3..63; 1 for the intensity
-  int distance_px = 2;            ///< from a pixel to the neighbours its operator looks at, 1..7
+  int distance_px = 2;            ///< from a pixel to the neighbours that its operator uses, 1..7
   double min_prominence = 0.5;    ///< (peak - minimum) / peak of the focus curve, 0..1; below it a point is a hole
   double min_significance = 6.0;  ///< (peak - minimum) / noise of a sample, >= 0; below it a point is a hole
   int bin_slices = 1;             ///< successive slices whose sharpness is summed to one sample of the curve, 1..64

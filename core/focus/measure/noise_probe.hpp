@@ -49,7 +49,7 @@ class NoiseProbe {
   int columns_;  // of tiles
   int rows_;
   std::vector<double> least_;        // [rows][columns], mean |response|
-  std::vector<std::uint64_t> sums_;  // [rows][columns], of the slice that is looked at
+  std::vector<std::uint64_t> sums_;  // [rows][columns], of the present slice
 };
 
 }  // namespace fvd

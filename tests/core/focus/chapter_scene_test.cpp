@@ -31,7 +31,7 @@ constexpr std::array kPlateaus_um{0.0, 50.0, 100.0};
 /// The transfer of a Gaussian blur of sigma pixels at each frequency of a real kSide_px square.
 cv::Mat gaussian_transfer(double sigma) {
   cv::Mat transfer(kSide_px, kSide_px, CV_64F);
-  const auto frequency = [](int i) {  // radians a pixel
+  const auto frequency = [](int i) {  // radians per pixel
     return 2.0 * std::numbers::pi * (i <= kSide_px / 2 ? i : i - kSide_px) / kSide_px;
   };
   for (int y = 0; y < kSide_px; ++y) {

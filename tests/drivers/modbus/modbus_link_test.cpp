@@ -145,7 +145,7 @@ double stop_latency_ms(ModbusLink& link, NumberedBank& bank) {
 TEST_P(AModbusLink, LetsAStopThroughWithinOneResponseTimeoutUnderAnyFault) {
   constexpr milliseconds kTimeout{100};
   // Generous for a loaded machine; bench_stage measures the figure.
-  constexpr double kMost = 2.0;
+  constexpr double kMaxResponseTimeouts = 2.0;
   for (const auto fault : {sim::FaultKind::kLostReply, sim::FaultKind::kLostRequest, sim::FaultKind::kWrongCrc,
                            sim::FaultKind::kTruncatedFrame, sim::FaultKind::kException}) {
     SCOPED_TRACE(static_cast<int>(fault));
@@ -160,7 +160,7 @@ TEST_P(AModbusLink, LetsAStopThroughWithinOneResponseTimeoutUnderAnyFault) {
     while (faults_.unconsumed() > 0) std::this_thread::yield();
     const double latency_ms = stop_latency_ms(link, bank_);
     EXPECT_GT(latency_ms, 0.0) << "the stop never arrived";
-    EXPECT_LT(latency_ms, kMost * static_cast<double>(kTimeout.count()));
+    EXPECT_LT(latency_ms, kMaxResponseTimeouts * static_cast<double>(kTimeout.count()));
   }
 }
 

@@ -210,19 +210,19 @@ TEST_P(EveryTiffLayout, IsReadAsItIs) {
   }
 }
 
-constexpr std::uint16_t kTogether = PLANARCONFIG_CONTIG;
-constexpr std::uint16_t kApart = PLANARCONFIG_SEPARATE;
+constexpr std::uint16_t kInterleaved = PLANARCONFIG_CONTIG;
+constexpr std::uint16_t kSeparatePlanes = PLANARCONFIG_SEPARATE;
 INSTANTIATE_TEST_SUITE_P(Recorded, EveryTiffLayout,
-                         testing::Values(TiffLayout{"Grey8", 8, 1, PHOTOMETRIC_MINISBLACK, kTogether, false},
-                                         TiffLayout{"Grey16", 16, 1, PHOTOMETRIC_MINISBLACK, kTogether, false},
-                                         TiffLayout{"White16", 16, 1, PHOTOMETRIC_MINISWHITE, kTogether, false},
-                                         TiffLayout{"GreyAlpha8", 8, 2, PHOTOMETRIC_MINISBLACK, kTogether, false},
-                                         TiffLayout{"Rgb8", 8, 3, PHOTOMETRIC_RGB, kTogether, false},
-                                         TiffLayout{"Rgba16", 16, 4, PHOTOMETRIC_RGB, kTogether, false},
-                                         TiffLayout{"RgbPlanes16", 16, 3, PHOTOMETRIC_RGB, kApart, false},
-                                         TiffLayout{"GreyTiles16", 16, 1, PHOTOMETRIC_MINISBLACK, kTogether, true},
-                                         TiffLayout{"RgbTiles8", 8, 3, PHOTOMETRIC_RGB, kTogether, true},
-                                         TiffLayout{"RgbPlaneTiles8", 8, 3, PHOTOMETRIC_RGB, kApart, true}),
+                         testing::Values(TiffLayout{"Grey8", 8, 1, PHOTOMETRIC_MINISBLACK, kInterleaved, false},
+                                         TiffLayout{"Grey16", 16, 1, PHOTOMETRIC_MINISBLACK, kInterleaved, false},
+                                         TiffLayout{"White16", 16, 1, PHOTOMETRIC_MINISWHITE, kInterleaved, false},
+                                         TiffLayout{"GreyAlpha8", 8, 2, PHOTOMETRIC_MINISBLACK, kInterleaved, false},
+                                         TiffLayout{"Rgb8", 8, 3, PHOTOMETRIC_RGB, kInterleaved, false},
+                                         TiffLayout{"Rgba16", 16, 4, PHOTOMETRIC_RGB, kInterleaved, false},
+                                         TiffLayout{"RgbPlanes16", 16, 3, PHOTOMETRIC_RGB, kSeparatePlanes, false},
+                                         TiffLayout{"GreyTiles16", 16, 1, PHOTOMETRIC_MINISBLACK, kInterleaved, true},
+                                         TiffLayout{"RgbTiles8", 8, 3, PHOTOMETRIC_RGB, kInterleaved, true},
+                                         TiffLayout{"RgbPlaneTiles8", 8, 3, PHOTOMETRIC_RGB, kSeparatePlanes, true}),
                          [](const auto& layout) { return std::string(layout.param.name); });
 
 TEST(TiffFile, HasThePagesItHas) {

@@ -19,7 +19,7 @@ using test::short_request;
 using test::TcpClient;
 
 /// Longer than a loaded machine takes to answer; nothing is waited for so long unless nothing comes.
-constexpr milliseconds kNothing{100};
+constexpr milliseconds kSilenceTimeout{100};
 
 const ModbusBytes kWrite = short_request(6, 5, 0x1234);
 const ModbusBytes kRead = short_request(3, 5, 1);
@@ -78,7 +78,7 @@ TEST_F(FaultsOfATcpLine, LostReply) {
   script_.add({.on = FaultOn::kWrite, .fault = FaultKind::kLostReply});
   TcpClient client(server_.port());
   ask(client, kWrite);
-  EXPECT_TRUE(client.receive(1, kNothing).empty());
+  EXPECT_TRUE(client.receive(1, kSilenceTimeout).empty());
   EXPECT_TRUE(client.is_open());
   expect_alive(client);
 }
@@ -86,7 +86,7 @@ TEST_F(FaultsOfATcpLine, LostReply) {
 TEST_F(FaultsOfASerialLine, LostReply) {
   script_.add({.on = FaultOn::kWrite, .fault = FaultKind::kLostReply});
   ask(kWrite);
-  EXPECT_TRUE(client_.receive(1, kNothing).empty());
+  EXPECT_TRUE(client_.receive(1, kSilenceTimeout).empty());
   expect_alive();
 }
 
@@ -94,7 +94,7 @@ TEST_F(FaultsOfATcpLine, LostRequest) {
   script_.add({.on = FaultOn::kWrite, .fault = FaultKind::kLostRequest});
   TcpClient client(server_.port());
   ask(client, kWrite);
-  EXPECT_TRUE(client.receive(1, kNothing).empty());
+  EXPECT_TRUE(client.receive(1, kSilenceTimeout).empty());
   ask(client, kRead);
   EXPECT_EQ(client.receive(11), reply({3, 2, 0, 0}));
 }
@@ -102,7 +102,7 @@ TEST_F(FaultsOfATcpLine, LostRequest) {
 TEST_F(FaultsOfASerialLine, LostRequest) {
   script_.add({.on = FaultOn::kWrite, .fault = FaultKind::kLostRequest});
   ask(kWrite);
-  EXPECT_TRUE(client_.receive(1, kNothing).empty());
+  EXPECT_TRUE(client_.receive(1, kSilenceTimeout).empty());
   ask(kRead);
   EXPECT_EQ(client_.receive(7), frame({3, 2, 0, 0}));
 }
@@ -134,7 +134,7 @@ TEST_F(FaultsOfATcpLine, TruncatedFrame) {
   script_.add({.fault = FaultKind::kTruncatedFrame});
   TcpClient client(server_.port());
   ask(client, kWrite);
-  EXPECT_EQ(client.receive(12, kNothing).size(), 6U);
+  EXPECT_EQ(client.receive(12, kSilenceTimeout).size(), 6U);
   EXPECT_TRUE(client.is_open());
   expect_alive(client);
 }
@@ -142,7 +142,7 @@ TEST_F(FaultsOfATcpLine, TruncatedFrame) {
 TEST_F(FaultsOfASerialLine, TruncatedFrame) {
   script_.add({.fault = FaultKind::kTruncatedFrame});
   ask(kWrite);
-  EXPECT_EQ(client_.receive(8, kNothing).size(), 4U);
+  EXPECT_EQ(client_.receive(8, kSilenceTimeout).size(), 4U);
   expect_alive();
 }
 
@@ -184,7 +184,7 @@ TEST_F(FaultsOfASerialLine, LinkCut) {
   ModbusBytes reply;
   for (int attempt = 0; attempt < 50 && reply.empty(); ++attempt) {
     ask(kRead);
-    reply = client_.receive(7, kNothing);
+    reply = client_.receive(7, kSilenceTimeout);
   }
   EXPECT_EQ(reply, frame(kValue)) << "what was sent meanwhile is gone, and the line is back";
   EXPECT_EQ(bank_.writes(), 0);
@@ -196,11 +196,11 @@ TEST_F(FaultsOfATcpLine, OfTheServersOwnScript) {
   own.delay_replies(1, milliseconds(30));
   TcpClient client(own.port());
   ask(client, kWrite);
-  EXPECT_TRUE(client.receive(1, kNothing).empty());
+  EXPECT_TRUE(client.receive(1, kSilenceTimeout).empty());
   expect_alive(client);
   own.lose_writes(1);
   ask(client, short_request(6, 5, 1));
-  EXPECT_TRUE(client.receive(1, kNothing).empty());
+  EXPECT_TRUE(client.receive(1, kSilenceTimeout).empty());
   expect_alive(client);
 }
 

@@ -16,7 +16,7 @@ using test::short_request;
 using test::write_request;
 
 /// Long against what a loaded machine delays two writes of one client by.
-constexpr LineTiming kPatient{.frame_silence = milliseconds(100)};
+constexpr LineTiming kSlowClientTiming{.frame_silence = milliseconds(100)};
 
 class AnRtuServer : public testing::Test {
  protected:
@@ -60,21 +60,21 @@ TEST_F(AnRtuServer, AnswersExceptions) {
 }
 
 TEST_F(AnRtuServer, EndsAFrameOfAnUnknownFunctionBySilence) {
-  ModbusRtuServer server(bank_, {.timing = kPatient});
+  ModbusRtuServer server(bank_, {.timing = kSlowClientTiming});
   SerialClient client(server.path());
   client.send(SerialClient::frame(1, ModbusBytes{43, 14, 1, 0}));
   EXPECT_EQ(client.receive(5), SerialClient::frame(1, ModbusBytes{0xAB, 1}));
 }
 
 TEST_F(AnRtuServer, PutsSplitFramesTogether) {
-  ModbusRtuServer server(bank_, {.timing = kPatient});
+  ModbusRtuServer server(bank_, {.timing = kSlowClientTiming});
   SerialClient client(server.path());
   for (const auto byte : request()) client.send(std::span(&byte, 1));
   EXPECT_EQ(client.receive(7), answer());
 }
 
 TEST_F(AnRtuServer, AnswersFramesWithoutSilenceBetweenThem) {
-  ModbusRtuServer server(bank_, {.timing = kPatient});
+  ModbusRtuServer server(bank_, {.timing = kSlowClientTiming});
   SerialClient client(server.path());
   ModbusBytes two = request();
   const ModbusBytes second = SerialClient::frame(1, short_request(3, 3, 1));

@@ -298,7 +298,7 @@ TEST(FocusKernels, AddWhatASlopeAddsToSigma) {
   for (const FocusKernels* kernels : all_focus_kernels()) {
     std::vector<float> sigma(kWidth, 4e-14F);  // variance
     kernels->finish_sigma(rows[1].data(), rows[0].data(), rows[2].data(), kReach, 0.5F, kWidth, sigma.data());
-    // A gradient of 5e-7 a pixel, of which half counts, and 2e-7 of its own.
+    // A gradient of 5e-7 per pixel, of which half counts, and 2e-7 of its own.
     EXPECT_NEAR(static_cast<double>(sigma[20]), std::hypot(2e-7, 2.5e-7), 1e-12) << kernels->name;
     EXPECT_NEAR(static_cast<double>(sigma[3]), 2e-7, 1e-12) << kernels->name << ": too near the end for a gradient";
   }
