@@ -82,7 +82,7 @@ class Bench {
     observer.on_phase = [](std::string_view) {};
     observer.on_slice = [](const ScanReport&) {};
     observer.on_acquired = [] {};
-    measure(recipe, {*camera_, *stage_, clock_, pool_, 8}, observer, result, {});
+    measure(recipe, {*camera_, *stage_, clock_, pool_, nullptr, 8}, observer, result, {});
     AtomicDirectory directory(folder_.path() / ("result" + std::to_string(++scans_)));
     write_result(directory, result);
     directory.commit();
