@@ -369,7 +369,8 @@ bool RpcServer::Impl::has_room() {
   const auto leaving = std::find_if(sessions.begin(), sessions.end(),
                                     [](const std::shared_ptr<Session>& session) { return session->is_half_closed(); });
   if (leaving == sessions.end()) return false;
-  const std::shared_ptr<Session> session(*leaving);  // closing takes it out of the set
+  // A copy, for closing takes it out of the set. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
+  const std::shared_ptr<Session> session = *leaving;
   session->close();
   return true;
 }
