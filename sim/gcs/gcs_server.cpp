@@ -3,10 +3,8 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstring>
 #include <thread>
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -14,47 +12,17 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "sim/base/file_descriptor.hpp"
+#include "sim/base/listening_socket.hpp"
 #include "sim/base/pseudo_terminal.hpp"
 
 namespace fvd::sim {
 
-namespace {
-
-[[noreturn]] void refuse(const std::string& where) {
-  throw Error(ErrorCode::kBadConfig, "the simulated controller cannot serve " + where + ": " + std::strerror(errno));
-}
-
-int listen_on(const GcsServerOptions& options) {
-  const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const int on = 1;
-  ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(options.port));
-  const bool bound = ::inet_pton(AF_INET, options.address.c_str(), &address.sin_addr) == 1 &&
-                     ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 &&
-                     ::listen(fd, 8) == 0;
-  if (bound) return fd;
-  ::close(fd);
-  refuse(options.address + ":" + std::to_string(options.port));
-}
-
-int bound_port(int fd) {
-  sockaddr_in address{};
-  socklen_t length = sizeof(address);
-  ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length);
-  return ntohs(address.sin_port);
-}
-
-}  // namespace
-
 struct GcsServer::Impl {
   Impl(GcsController& one, const GcsServerOptions& options)
       : controller(one),
-        listener(options.terminal_link ? -1 : listen_on(options)),
+        listener(options.terminal_link ? -1 : listening_socket(options.address, options.port)),
         wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         port(options.terminal_link ? 0 : bound_port(listener.get())) {
     if (options.terminal_link) terminal.emplace(*options.terminal_link);

@@ -21,6 +21,7 @@
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "sim/base/file_descriptor.hpp"
+#include "sim/base/listening_socket.hpp"
 #include "sim/modbus/scripted_responder.hpp"
 
 namespace fvd::sim {
@@ -41,30 +42,6 @@ struct Client {
 
 enum class Connections { kKeep, kDropThis, kDropAll };
 
-int listening_socket(const ModbusTcpOptions& options) {
-  const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const int on = 1;
-  ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(options.port));
-  const bool bound = ::inet_pton(AF_INET, options.address.c_str(), &address.sin_addr) == 1 &&
-                     ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 &&
-                     ::listen(fd, 8) == 0;
-  if (bound) return fd;
-  const std::string reason = std::strerror(errno);
-  ::close(fd);
-  throw Error(ErrorCode::kBadConfig, "the simulated drive cannot listen on " + options.address + ":" +
-                                         std::to_string(options.port) + ": " + reason);
-}
-
-int bound_port(int fd) {
-  sockaddr_in address{};
-  socklen_t length = sizeof(address);
-  ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length);
-  return ntohs(address.sin_port);
-}
-
 }  // namespace
 
 struct ModbusTcpServer::Impl {
@@ -72,7 +49,7 @@ struct ModbusTcpServer::Impl {
       : unit(options.unit),
         faults(options.faults != nullptr ? *options.faults : own_faults),
         responder(bank, &faults, options.drive),
-        listener(listening_socket(options)),
+        listener(listening_socket(options.address, options.port)),
         wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         port(bound_port(listener.get())),
         thread(start_thread("sim-modbus-tcp", [this](std::stop_token stop) { serve(stop); })) {}

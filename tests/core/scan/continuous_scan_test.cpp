@@ -30,6 +30,17 @@ class AContinuousScan : public testing::Test {
     plan_.speed_um_per_s = 400.0;
     settings_.exposure_us = 2000.0;
   }
+  /// 1 um apart at 200 um/s; rate: of the camera, as a fraction of what is asked for.
+  void run_at(int slices, double rate) {
+    plan_.start = Micrometers{-300.0};
+    plan_.step = Micrometers{1.0};
+    plan_.speed_um_per_s = 200.0;
+    plan_.slices = slices;
+    camera_.rate_factor = rate;
+    report_ = {};
+    sink_.z_um.clear();
+    run();
+  }
   void run(std::stop_token stop = {}) {
     ContinuousScan({camera_, stage_, clock_, sink_}, settings_).run(plan_, report_, on_slice_, stop);
   }
@@ -171,14 +182,7 @@ TEST_F(AContinuousScan, LosesNothingToAFrameMoreOrLessAtTheEnds) {
 TEST_F(AContinuousScan, LosesNothingToASpeedOrRateThatIsAFewPercentOff) {
   for (const int slices : {51, 101, 401}) {
     for (const double rate : {0.97, 0.98, 0.99}) {
-      plan_.start = Micrometers{-300.0};
-      plan_.step = Micrometers{1.0};
-      plan_.speed_um_per_s = 200.0;
-      plan_.slices = slices;
-      camera_.rate_factor = rate;
-      report_ = {};
-      sink_.z_um.clear();
-      run();
+      run_at(slices, rate);
       EXPECT_EQ(report_.frames.missing, 0U) << slices << " slices at " << rate;
       EXPECT_NEAR(static_cast<double>(sink_.z_um.size()), rate * slices, 1.5) << slices << " slices at " << rate;
     }
@@ -188,14 +192,7 @@ TEST_F(AContinuousScan, LosesNothingToASpeedOrRateThatIsAFewPercentOff) {
 TEST_F(AContinuousScan, CoversTheWholeWayWithACameraThatIsAFewPercentTooFast) {
   for (const int slices : {51, 101, 401}) {
     for (const double rate : {1.01, 1.02, 1.04}) {
-      plan_.start = Micrometers{-300.0};
-      plan_.step = Micrometers{1.0};
-      plan_.speed_um_per_s = 200.0;
-      plan_.slices = slices;
-      camera_.rate_factor = rate;
-      report_ = {};
-      sink_.z_um.clear();
-      run();
+      run_at(slices, rate);
       EXPECT_GE(sink_.z_um.back(), plan_.last().value - 1.0) << slices << " slices at " << rate;
       EXPECT_EQ(report_.frames.missing, 0U) << slices << " slices at " << rate;
       EXPECT_NEAR(static_cast<double>(sink_.z_um.size()), rate * slices, 2.0) << slices << " slices at " << rate;

@@ -1,0 +1,212 @@
+#include "daemon/transport/rpc_session.hpp"
+
+#include <string_view>
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+
+#include "daemon/transport/foreign_protocol.hpp"
+#include "daemon/transport/tcp_options.hpp"
+
+namespace fvd {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+namespace {
+
+/// Limit of the replies that a client has not read; beyond it the connection is closed.
+constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
+/// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
+constexpr int kMaxParseErrorsInARow = 3;
+constexpr std::chrono::seconds kRefusalGrace{1};  // for a refused client to read the reason
+
+}  // namespace
+
+template <typename Result>
+void RpcSession::work(std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result)) {
+  at_work_ = true;
+  host_.worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
+    Result result = what(self->host_.dispatcher);
+    asio::io_context& context = self->host_.context;
+    // The session is moved back: its destructor must run on the network thread.
+    asio::post(context, [self = std::move(self), result = std::move(result), then]() mutable {
+      self->at_work_ = false;
+      if (!self->refused_) (self.get()->*then)(std::move(result));
+    });
+  });
+}
+
+RpcSession::RpcSession(const RpcSessionHost& host, tcp::socket socket, std::uint64_t connection)
+    : host_(host),
+      socket_(std::move(socket)),
+      caller_{connection, peer_of(socket_.native_handle())},
+      idle_(host.context),
+      wait_(host.context) {}
+
+void RpcSession::start() {
+  tune(socket_.native_handle());
+  watch_idle();
+  read();
+}
+
+void RpcSession::refuse() {
+  tune(socket_.native_handle());
+  refuse_with(Dispatcher::too_many_connections());
+  read();
+}
+
+void RpcSession::resume(bool timed_out) {
+  check_wait(timed_out);
+  process();
+}
+
+void RpcSession::close() {
+  refused_ = true;
+  waiting_.reset();
+  ErrorCodeOf ignored;
+  idle_.cancel();
+  wait_.cancel();
+  socket_.shutdown(tcp::socket::shutdown_both, ignored);
+  socket_.close(ignored);
+  host_.on_close(shared_from_this());
+}
+
+void RpcSession::watch_idle() {
+  idle_.expires_after(host_.idle_timeout);
+  idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+    // A connection with an open request is not idle; the request has a timeout of its own.
+    if (!error && !self->has_request()) self->close();
+  });
+}
+
+void RpcSession::read() {
+  socket_.async_read_some(asio::buffer(chunk_), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
+    if (error == asio::error::eof && !self->refused_) return self->half_close();
+    if (error) return self->close();
+    // Input after a refusal is read and dropped: closing with unread input would discard the refusal.
+    if (!self->refused_) {
+      self->input_.append(self->chunk_.data(), count);
+      self->process();
+    }
+    self->read();
+  });
+}
+
+void RpcSession::half_close() {
+  half_closed_ = true;
+  close_if_all_is_said();
+}
+
+void RpcSession::close_if_all_is_said() {
+  if (half_closed_ && !refused_ && !has_request() && unsent_.empty()) close();
+}
+
+void RpcSession::process() {
+  std::size_t begin = 0;
+  while (!has_request() && !refused_) {
+    const std::size_t end = input_.find_first_of(std::string_view("\n\r\0", 3), begin);
+    if (end == std::string::npos) break;
+    const std::string_view line(input_.data() + begin, end - begin);
+    begin = end + 1;
+    if (line.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
+    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    if (begins_foreign_protocol(line)) return refuse_with(Dispatcher::foreign_protocol());
+    watch_idle();
+    if (auto handled = host_.dispatcher.try_handle(line, caller_)) {
+      take(std::move(*handled));
+    } else {
+      work<Handled>([line = std::string(line),
+                     caller = caller_](const Dispatcher& dispatcher) { return dispatcher.handle(line, caller); },
+                    &RpcSession::take_and_go_on);
+    }
+  }
+  if (refused_) return;
+  input_.erase(0, begin);
+  // Also limits the input that collects behind an open request.
+  if (input_.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
+  close_if_all_is_said();
+}
+
+void RpcSession::take(Handled handled) {
+  watch_idle();
+  parse_errors_in_a_row_ = handled.is_parse_error ? parse_errors_in_a_row_ + 1 : 0;
+  if (parse_errors_in_a_row_ == kMaxParseErrorsInARow) return refuse_with(Dispatcher::no_json());
+  if (handled.reply) send(std::move(*handled.reply));
+  if (handled.waiting && !refused_) begin_wait(std::move(*handled.waiting));
+}
+
+void RpcSession::take_and_go_on(Handled handled) {
+  take(std::move(handled));
+  process();
+}
+
+void RpcSession::begin_wait(WaitingRequest waiting) {
+  timed_out_ = false;
+  wait_.expires_after(waiting.until.timeout);
+  waiting_ = std::move(waiting);
+  wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+    // An expiry that was already queued when the wait ended must not end the next wait.
+    if (!error && self->wait_.expiry() <= std::chrono::steady_clock::now()) self->resume(true);
+  });
+  check_wait(false);
+}
+
+void RpcSession::check_wait(bool timed_out) {
+  if (!waiting_) return;
+  timed_out_ = timed_out_ || timed_out;
+  if (at_work_) {
+    check_again_ = true;
+    return;
+  }
+  if (!timed_out_ && !host_.dispatcher.may_have_come(*waiting_)) return;
+  check_again_ = false;
+  work<std::optional<std::string>>([waiting = *waiting_, late = timed_out_](
+                                       const Dispatcher& dispatcher) { return dispatcher.resume(waiting, late); },
+                                   &RpcSession::end_wait);
+}
+
+void RpcSession::end_wait(std::optional<std::string> reply) {
+  if (!reply) {
+    if (check_again_) check_wait(false);
+    return;
+  }
+  waiting_.reset();
+  wait_.cancel();
+  watch_idle();
+  send(std::move(*reply));
+  process();
+}
+
+void RpcSession::refuse_with(std::string line) {
+  refused_ = true;
+  input_.clear();
+  send(std::move(line));
+  idle_.expires_after(kRefusalGrace);
+  idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+    if (!error) self->close();
+  });
+}
+
+void RpcSession::send(std::string line) {
+  line += '\n';
+  unsent_bytes_ += line.size();
+  unsent_.push_back(std::move(line));
+  if (unsent_bytes_ > kMaxUnsentBytes) return close();
+  if (unsent_.size() == 1) write();
+}
+
+void RpcSession::write() {
+  asio::async_write(socket_, asio::buffer(unsent_.front()),
+                    [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
+                      if (error) return self->close();
+                      self->unsent_bytes_ -= count;
+                      self->unsent_.pop_front();
+                      if (!self->unsent_.empty()) return self->write();
+                      ErrorCodeOf ignored;
+                      if (self->refused_) self->socket_.shutdown(tcp::socket::shutdown_send, ignored);
+                      self->close_if_all_is_said();
+                    });
+}
+
+}  // namespace fvd

@@ -1,0 +1,97 @@
+#pragma once
+
+/// One connection of a client: lines in, replies out, one open request at a time.
+
+#include <array>
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>  // before Asio 1.74, which forgets it
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "daemon/api/dispatcher.hpp"
+#include "daemon/transport/worker.hpp"
+
+namespace fvd {
+
+class RpcSession;
+
+/// What a session needs of its server; all of it outlives the session.
+struct RpcSessionHost {
+  boost::asio::io_context& context;  ///< run by the network thread
+  const Dispatcher& dispatcher;
+  Worker& worker;
+  std::chrono::seconds idle_timeout;
+  std::function<void(const std::shared_ptr<RpcSession>&)> on_close;
+};
+
+/// Held by shared_ptr: handlers that are still queued keep it alive. context: the network thread only.
+class RpcSession : public std::enable_shared_from_this<RpcSession> {
+ public:
+  /// connection: number of the connection since the server's start.
+  RpcSession(const RpcSessionHost& host, boost::asio::ip::tcp::socket socket, std::uint64_t connection);
+
+  /// Serves the client from now on.
+  void start();
+  /// Tells the client that there are too many connections, and closes after it.
+  void refuse();
+  /// Checks the waiting request again: a job changed, or the waiting time is over.
+  void resume(bool timed_out);
+  /// True if every request was answered and every reply was sent.
+  [[nodiscard]] bool is_answered() const noexcept { return !has_request() && unsent_.empty(); }
+  /// True if the client closed its sending side.
+  [[nodiscard]] bool is_half_closed() const noexcept { return half_closed_; }
+  /// Closes at once and calls the host's on_close.
+  void close();
+
+ private:
+  using ErrorCodeOf = boost::system::error_code;
+
+  /// Restarts the idle timeout; an unfinished line does not restart it.
+  void watch_idle();
+  void read();
+  /// The client closed its sending side; its open requests are still answered.
+  void half_close();
+  void close_if_all_is_said();
+  /// True while a request is open: on the worker, or waiting for a job or the devices.
+  [[nodiscard]] bool has_request() const noexcept { return at_work_ || waiting_.has_value(); }
+  /// Runs `what`, which may block, on the worker, then the member `then` with its result on the network thread.
+  template <typename Result>
+  void work(std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result));
+  /// Handles the whole lines at hand, in order; stops at a request that cannot be answered at once.
+  void process();
+  void take(Handled handled);
+  void take_and_go_on(Handled handled);
+  void begin_wait(WaitingRequest waiting);
+  /// Checks on the worker whether the waiting request can be answered; a check during a check is made after it.
+  void check_wait(bool timed_out);
+  void end_wait(std::optional<std::string> reply);
+  /// Sends the reason and closes the connection after it.
+  void refuse_with(std::string line);
+  void send(std::string line);
+  void write();
+
+  const RpcSessionHost& host_;
+  boost::asio::ip::tcp::socket socket_;
+  Caller caller_;
+  boost::asio::steady_timer idle_;
+  boost::asio::steady_timer wait_;
+  std::array<char, 4096> chunk_{};
+  std::string input_;
+  std::deque<std::string> unsent_;
+  std::size_t unsent_bytes_ = 0;
+  std::optional<WaitingRequest> waiting_;
+  bool at_work_ = false;      // the worker runs a task of this session, one at a time
+  bool timed_out_ = false;    // of waiting_
+  bool check_again_ = false;  // a check was asked for during a check
+  bool half_closed_ = false;
+  bool refused_ = false;
+  int parse_errors_in_a_row_ = 0;
+};
+
+}  // namespace fvd
