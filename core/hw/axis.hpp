@@ -110,7 +110,7 @@ struct PositionMean {
 };
 
 /// A connected axis. Constructing one connects and identifies the drive (throws Error kStageDisconnected).
-/// context: one thread at a time, except stop(), connected(), mean_position() and position_at().
+/// context: one thread at a time, except stop(), connected(), last_seen(), mean_position() and position_at().
 class Axis {
  public:
   virtual ~Axis() = default;
@@ -119,6 +119,10 @@ class Axis {
 
   /// Throws Error kStageDisconnected.
   [[nodiscard]] virtual StageStatus status() = 0;
+
+  /// What the axis said last, however long ago: it is not asked. Nothing where nobody samples it all the time.
+  /// context: any thread.
+  [[nodiscard]] virtual std::optional<StageStatus> last_seen() const { return std::nullopt; }
 
   /// Enables the drive and finds the reference; returns when homed and at rest.
   /// Throws Error kStageDisconnected, kStageAlarm, kTimeout, kAborted.

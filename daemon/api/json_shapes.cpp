@@ -39,7 +39,7 @@ void describe_job_status(Fields& fields) {
   result.text("state", "processing, completed, aborted, failed");
   result.text("phase", "preparing, acquiring, computing, storing; empty when ended");
   result.boolean("done", "the job has ended");
-  result.boolean("acquired", "the part may be moved");
+  result.boolean("acquired", "the job takes no more slices; part_release says whether the part may be moved");
   result.number("progress", "0..1, of the slices");
   result.integer("slices_done", "so far");
   result.integer("slices_planned", "of the recipe");

@@ -36,7 +36,7 @@ std::string progress_text(const Json& status) {
   text += "  slice " + std::to_string(status.value("slices_done", 0)) + "/" +
           std::to_string(status.value("slices_planned", 0)) + "  " +
           std::to_string(std::lround(std::clamp(fraction, 0.0, 1.0) * 100)) + " %";
-  if (status.value("acquired", false)) text += "  part may be moved";
+  if (status.value("acquired", false)) text += "  all slices taken";
   return text;
 }
 

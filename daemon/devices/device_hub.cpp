@@ -2,15 +2,18 @@
 
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "daemon/devices/standstill.hpp"
+#include "drivers/common/rest_detector.hpp"
 
 namespace fvd {
 
 DeviceHub::DeviceHub(DeviceOpeners openers, Clock& clock, std::function<void(bool)> on_rest)
     : clock_(clock),
       on_rest_(std::move(on_rest)),
-      camera_(std::move(openers.camera), ErrorCode::kCameraDisconnected, reaper_),
-      axis_(std::move(openers.axis), ErrorCode::kStageDisconnected, reaper_) {
+      camera_(std::move(openers.camera), ErrorCode::kCameraDisconnected, Predecessor::kIgnored),
+      axis_(std::move(openers.axis), ErrorCode::kStageDisconnected, Predecessor::kAwaited) {
   // The axis first: one that moves on from before is stopped before a camera is waited for.
   rows_.push_back({.kind = "stage", .slot = axis_, .check = [this] { return check_axis(); }});
   rows_.push_back({.kind = "camera", .slot = camera_, .renewed_after = ErrorCode::kCameraFramesLost});
@@ -38,6 +41,13 @@ std::optional<DeviceFailure> DeviceHub::lost() {
   }
   return std::nullopt;
 }
+
+std::optional<DeviceFailure> DeviceHub::failure() {
+  if (auto gone = lost()) return gone;
+  return restless_;
+}
+
+void DeviceHub::confirm_rest() { (void)measure_standstill(); }
 
 std::optional<DeviceFailure> DeviceHub::after_failure(ErrorCode code, const std::string& message) {
   if (code == axis_.lost()) axis_.drop();  // whatever it says of itself: nothing more is asked of it
@@ -68,24 +78,37 @@ DeviceFacts DeviceHub::facts() const {
 }
 
 std::optional<DeviceFailure> DeviceHub::check_axis() {
-  if (std::exchange(checked_opening_, axis_.openings()) == axis_.openings() && at_rest_) return std::nullopt;
+  const bool checked = std::exchange(checked_opening_, axis_.openings()) == axis_.openings() && at_rest_;
+  if (checked && !moved_unasked()) return std::nullopt;
   return measure_standstill();
 }
 
+bool DeviceHub::moved_unasked() const {
+  const std::optional<StageStatus> seen = axis_.get().last_seen();
+  if (!seen || (!reports_motion(*seen) && abs(seen->position - rest_) <= RestDetector::kWindow)) return false;
+  spdlog::warn(
+      "the stage is at {} um and rested at {} um, and nobody moved it through fvd: by hand, or by another master?",
+      seen->position.value, rest_.value);
+  return true;
+}
+
 std::optional<DeviceFailure> DeviceHub::measure_standstill() {
+  restless_.reset();
   try {
-    const bool rests = bring_to_rest(axis_.get(), clock_, [this] { set_at_rest(false); });
-    set_at_rest(rests);
-    if (rests) return std::nullopt;
-    return DeviceFailure{ErrorCode::kNotReady, "the stage was found moving and is being stopped; wait until it rests"};
+    const auto rest = bring_to_rest(axis_.get(), clock_, [this] { set_at_rest(false); });
+    if (rest) {
+      rest_ = *rest;
+    } else {
+      restless_ = {ErrorCode::kNotReady, "the stage was found moving and is being stopped; wait until it rests"};
+    }
   } catch (const Error& error) {
-    set_at_rest(false);
+    restless_ = {error.code(), error.what()};
     if (error.code() == axis_.lost()) axis_.drop();
-    return DeviceFailure{error.code(), error.what()};
   } catch (const std::exception& error) {
-    set_at_rest(false);
-    return DeviceFailure{ErrorCode::kInternal, error.what()};
+    restless_ = {ErrorCode::kInternal, error.what()};
   }
+  set_at_rest(!restless_);
+  return restless_;
 }
 
 void DeviceHub::set_at_rest(bool at_rest) {

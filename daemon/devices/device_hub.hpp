@@ -12,7 +12,6 @@
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
 #include "daemon/devices/device_slot.hpp"
-#include "daemon/devices/reaper.hpp"
 
 namespace fvd {
 
@@ -37,12 +36,16 @@ class DeviceHub {
   DeviceHub(const DeviceHub&) = delete;
   DeviceHub& operator=(const DeviceHub&) = delete;
 
-  /// Opens every device that is missing, each once, and stops an axis that moves after it was opened. Why the devices
-  /// cannot be used; nothing if they can. Never throws.
+  /// Opens every device that is missing, each once, and stops an axis that moves although nobody uses it. Why the
+  /// devices cannot be used; nothing if they can. Never throws.
   [[nodiscard]] std::optional<DeviceFailure> open();
 
-  /// The first device whose connection was lost since it was opened.
-  [[nodiscard]] std::optional<DeviceFailure> lost();
+  /// The first device whose connection was lost since it was opened, else an axis of which standstill was to be
+  /// measured and was not.
+  [[nodiscard]] std::optional<DeviceFailure> failure();
+
+  /// Measures that the axis stands still after a motion that was commanded; at_rest() tells.
+  void confirm_rest();
 
   /// After a job or a command that ended by an error: gives up the device that the error says is lost or needs to be
   /// opened anew, and measures the axis' standstill. Opens nothing: the end is told first, open() comes later. Why the
@@ -71,14 +74,17 @@ class DeviceHub {
   };
 
   [[nodiscard]] std::optional<DeviceFailure> check_axis();
+  [[nodiscard]] std::optional<DeviceFailure> lost();
+  [[nodiscard]] bool moved_unasked() const;
   [[nodiscard]] std::optional<DeviceFailure> measure_standstill();
   void set_at_rest(bool at_rest);
 
   Clock& clock_;
   std::function<void(bool)> on_rest_;
   bool at_rest_ = false;
-  int checked_opening_ = 0;  ///< of the axis, whose standstill was asked for
-  Reaper reaper_;
+  Micrometers rest_;                       ///< where standstill was measured last
+  std::optional<DeviceFailure> restless_;  ///< why it was not, the last time
+  int checked_opening_ = 0;                ///< of the axis, whose standstill was asked for
   DeviceSlot<Camera> camera_;
   DeviceSlot<Axis> axis_;
   std::vector<Row> rows_;  ///< in the order of opening

@@ -36,22 +36,33 @@ class AnyDeviceSlot {
   [[nodiscard]] virtual ErrorCode lost() const = 0;
 };
 
-/// Device has connected(); destroying it may block, so a device that is given up goes to the reaper.
+/// What a slot does about a device that was given up and is not closed yet.
+enum class Predecessor {
+  kIgnored,  ///< opens the next one beside it: its closing may take long and does the next one no harm
+  kAwaited,  ///< opens no other before: what it sends while it is closed would reach the next one
+};
+
+/// Device has connected(); destroying it may block, so a device that is given up goes to a reaper, the slot's own: no
+/// slot waits for the device of another.
 template <typename Device>
 class DeviceSlot final : public AnyDeviceSlot {
  public:
   /// Returns an open device, or throws.
   using Opener = std::function<std::unique_ptr<Device>()>;
 
-  DeviceSlot(Opener opener, ErrorCode lost, Reaper& reaper)
-      : opener_(std::move(opener)), lost_(lost), reaper_(reaper) {}
-  ~DeviceSlot() override { reaper_.bury(std::move(device_)); }
+  DeviceSlot(Opener opener, ErrorCode lost, Predecessor predecessor)
+      : opener_(std::move(opener)), lost_(lost), predecessor_(predecessor) {}
+  ~DeviceSlot() override { drop(); }
   DeviceSlot(const DeviceSlot&) = delete;
   DeviceSlot& operator=(const DeviceSlot&) = delete;
 
   bool ensure() override {
     if (device_ && !device_->connected()) drop();
     if (device_) return true;
+    if (predecessor_ == Predecessor::kAwaited && closed_ && !*closed_) {
+      failure_ = DeviceFailure{lost_, "the connection that was given up is still being closed; it is opened anew then"};
+      return false;
+    }
     try {
       device_ = opener_();
       failure_.reset();
@@ -64,7 +75,9 @@ class DeviceSlot final : public AnyDeviceSlot {
     }
     return false;
   }
-  void drop() override { reaper_.bury(std::move(device_)); }
+  void drop() override {
+    if (device_) closed_ = reaper_.bury(std::move(device_));
+  }
   [[nodiscard]] bool connected() const override { return device_ && device_->connected(); }
   [[nodiscard]] const std::optional<DeviceFailure>& failure() const override { return failure_; }
   [[nodiscard]] ErrorCode lost() const override { return lost_; }
@@ -77,10 +90,12 @@ class DeviceSlot final : public AnyDeviceSlot {
  private:
   Opener opener_;
   ErrorCode lost_;
-  Reaper& reaper_;
+  Predecessor predecessor_;
+  Closed closed_;  // of the device that was given up last
   std::unique_ptr<Device> device_;
   int openings_ = 0;
   std::optional<DeviceFailure> failure_;
+  Reaper reaper_;  // last: it is done with every device before the rest goes
 };
 
 }  // namespace fvd

@@ -10,17 +10,19 @@ Reaper::Reaper() : thread_(start_thread("fvd-reaper", [this](std::stop_token sto
 
 Reaper::~Reaper() = default;
 
-void Reaper::enqueue(std::shared_ptr<void> device) {
+Closed Reaper::enqueue(std::shared_ptr<void> device) {
+  auto closed = std::make_shared<std::atomic<bool>>(false);
   {
     const MutexLock lock(mutex_);
-    given_up_.push_back(std::move(device));
+    given_up_.push_back({std::move(device), closed});
   }
   changed_.notify_one();
+  return closed;
 }
 
 void Reaper::run(std::stop_token stop) {
   for (;;) {
-    std::shared_ptr<void> device;
+    Burial burial;
     {
       MutexLock lock(mutex_);
       changed_.wait(lock, stop, [this] {
@@ -28,10 +30,11 @@ void Reaper::run(std::stop_token stop) {
         return !given_up_.empty();
       });
       if (given_up_.empty()) return;  // stop was requested and nothing is left
-      device = std::move(given_up_.front());
+      burial = std::move(given_up_.front());
       given_up_.pop_front();
     }
-    device.reset();
+    burial.device.reset();
+    *burial.closed = true;
   }
 }
 

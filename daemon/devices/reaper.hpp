@@ -2,6 +2,7 @@
 
 /// Closes devices on a thread of its own: closing a camera that no longer answers takes many seconds.
 
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <stop_token>
@@ -11,6 +12,9 @@
 
 namespace fvd {
 
+/// Becomes true when the device is closed; an empty pointer stands for no device.
+using Closed = std::shared_ptr<const std::atomic<bool>>;
+
 /// context: thread-safe. Destruction waits until every device that was handed over is closed.
 class Reaper {
  public:
@@ -19,17 +23,22 @@ class Reaper {
 
   /// Destroys the device soon, on the reaper's thread. An empty pointer is allowed.
   template <typename Device>
-  void bury(std::unique_ptr<Device> device) {
-    if (device) enqueue(std::shared_ptr<void>(std::move(device)));
+  Closed bury(std::unique_ptr<Device> device) {
+    return device ? enqueue(std::shared_ptr<void>(std::move(device))) : nullptr;
   }
 
  private:
-  void enqueue(std::shared_ptr<void> device);
+  struct Burial {
+    std::shared_ptr<void> device;
+    std::shared_ptr<std::atomic<bool>> closed;
+  };
+
+  Closed enqueue(std::shared_ptr<void> device);
   void run(std::stop_token stop);
 
   Mutex mutex_;
   Condition changed_;
-  std::deque<std::shared_ptr<void>> given_up_ FVD_GUARDED_BY(mutex_);
+  std::deque<Burial> given_up_ FVD_GUARDED_BY(mutex_);
   std::jthread thread_;  // last: ends before anything it uses
 };
 

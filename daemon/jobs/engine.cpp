@@ -9,6 +9,9 @@ namespace fvd {
 
 namespace {
 
+/// Longest time that one slice, one opening of a device, one search for the reference or one file may take.
+constexpr std::chrono::minutes kLongestStep{10};
+
 int thread_count(int configured) {
   if (configured > 0) return configured;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -38,8 +41,10 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
                machine.apply(at_rest ? MachineEvent::kStandstillMeasured : MachineEvent::kMotionSeen);
              });
            }),
+      ticks_("fvd-machine", kLongestStep),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir}),
-      runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, deps.make_result}),
+      runner_(
+          {config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, deps.make_result}),
       jobs_({deps.store,
              board_,
              work_,
@@ -47,7 +52,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              {pool_.threads(), memory_budget_bytes(config), pages_},
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
              [this] { return tasks_.task_stop(); }}),
-      thread_(hub_, board_, work_, [this] { runner_.store_late_end(); }) {
+      thread_(hub_, board_, work_, ticks_, [this] { runner_.store_late_end(); }) {
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
     spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,

@@ -54,6 +54,7 @@ class Engine {
   MachineBoard board_;
   DeviceHub hub_;
   WorkQueue work_;
+  ThreadTicks ticks_;  // of thread_
   TaskRunner tasks_;
   JobRunner runner_;
   JobQueue jobs_;

@@ -59,7 +59,7 @@ JobRunner::JobEnd JobRunner::measured(const AcceptedJob& job, const std::stop_to
       end.error = end.result.error;
       end.message = end.result.message;
     }
-    end.failure = deps_.hub.lost();
+    end.failure = deps_.hub.failure();
     return end;
   } catch (const Error& error) {
     return failed(error.code(), error.what());
@@ -102,16 +102,19 @@ MeasurementObserver JobRunner::observer() {
     deps_.board.update([&change](MachineRecord& machine) { change(machine, *machine.job); });
   };
   MeasurementObserver observer;
-  observer.on_phase = [change_job](std::string_view phase) {
+  observer.on_phase = [this, change_job](std::string_view phase) {
+    deps_.ticks.tick(HostClock::now());
     change_job([phase](MachineRecord&, JobStatus& job) { job.phase = phase; });
   };
-  observer.on_slice = [change_job](const ScanReport& report) {
+  observer.on_slice = [this, change_job](const ScanReport& report) {
+    deps_.ticks.tick(HostClock::now());
     change_job([&report](MachineRecord&, JobStatus& job) {
       job.slices_done = static_cast<int>(report.steps.size());
       job.frames = report.frames;
     });
   };
-  observer.on_acquired = [change_job] {
+  observer.on_acquired = [this, change_job] {
+    deps_.hub.confirm_rest();  // before anybody is told that the part is free
     change_job([](MachineRecord& machine, JobStatus& job) {
       job.acquired = true;
       machine.apply(MachineEvent::kJobAcquired);

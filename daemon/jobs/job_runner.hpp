@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/clock.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
@@ -41,6 +42,7 @@ class JobRunner {
     KeptPagesPtr pages;
     PreviewHub& preview;
     StageHistory& history;
+    ThreadTicks& ticks;  ///< of the machine's thread
     ResultPipeline make_result = store_result;
   };
   explicit JobRunner(Dependencies dependencies) : deps_(std::move(dependencies)) {}

@@ -19,10 +19,12 @@ constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
 
 }  // namespace
 
-MachineThread::MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, std::function<void()> in_between)
+MachineThread::MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, ThreadTicks& ticks,
+                             std::function<void()> in_between)
     : hub_(hub),
       board_(board),
       work_(work),
+      ticks_(ticks),
       in_between_(std::move(in_between)),
       thread_(start_thread("fvd-machine", [this](std::stop_token stop) { run(stop); })) {}
 
@@ -38,11 +40,15 @@ void MachineThread::finish() {
 
 void MachineThread::run(std::stop_token stop) {
   while (!stop.stop_requested()) {
+    ticks_.tick(HostClock::now());
     const bool complete = look_after_devices();
     in_between_();
-    if (const auto work = work_.take(stop, complete ? kDeviceCheckPeriod : kDeviceRetryPeriod)) work->run();
+    const auto work = work_.take(stop, complete ? kDeviceCheckPeriod : kDeviceRetryPeriod);
+    ticks_.tick(HostClock::now());
+    if (work) work->run();
   }
   hub_.drop_all();
+  ticks_.rest();
 }
 
 bool MachineThread::look_after_devices() {

@@ -6,6 +6,7 @@
 #include <stop_token>
 #include <thread>
 
+#include "core/runtime/thread_ticks.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/jobs/machine_board.hpp"
 #include "daemon/jobs/work_queue.hpp"
@@ -16,7 +17,8 @@ class MachineThread {
  public:
   /// Starts at once; opens the devices first. in_between: called as often as the devices are looked after, never
   /// throws.
-  MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, std::function<void()> in_between);
+  MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, ThreadTicks& ticks,
+                std::function<void()> in_between);
   /// finish().
   ~MachineThread();
   MachineThread(const MachineThread&) = delete;
@@ -36,6 +38,7 @@ class MachineThread {
   DeviceHub& hub_;
   MachineBoard& board_;
   WorkQueue& work_;
+  ThreadTicks& ticks_;
   const std::function<void()> in_between_;
   int known_openings_ = 0;  // of the devices that the board knows
   std::jthread thread_;     // last: ends before anything it uses

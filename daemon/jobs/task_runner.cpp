@@ -52,7 +52,8 @@ void TaskRunner::run(DeviceTask& task, const std::stop_token& stop) {
     outcome = {{}, ErrorCode::kNotReady, failure->message};
   } else {
     outcome = performed(task, stop);
-    failure = outcome.error ? deps_.hub.after_failure(*outcome.error, outcome.message) : deps_.hub.lost();
+    if (!outcome.error && task.moves()) deps_.hub.confirm_rest();
+    failure = outcome.error ? deps_.hub.after_failure(*outcome.error, outcome.message) : deps_.hub.failure();
   }
   deps_.board.update([&](MachineRecord& machine) {
     machine.apply(MachineEvent::kTaskEnded);

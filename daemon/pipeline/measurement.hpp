@@ -36,7 +36,7 @@ struct MeasurementDependencies {
 struct MeasurementObserver {
   std::function<void(std::string_view phase)> on_phase;  ///< "preparing", "acquiring", "computing"
   std::function<void(const ScanReport& report)> on_slice;
-  std::function<void()> on_acquired;  ///< the part may be moved
+  std::function<void()> on_acquired;  ///< all slices are taken
   FocusWorker::Tap tap;               ///< every slice, on the focus thread; may be empty
 };
 

@@ -17,6 +17,7 @@ struct Recipe {
   std::string id;  ///< file name without .json: [A-Za-z0-9_-]{1,32}
   std::string description;
   std::string sha256;              ///< of the document's bytes, in hex, as sha256sum tells it; stamped into results
+  int format = 2;                  ///< 1 or 2, in which the document is written; places in messages are those of it
   std::vector<std::string> notes;  ///< what the author should know of an accepted document; not of the recipe itself
 
   double start_um = 0.0;  ///< z of the first slice

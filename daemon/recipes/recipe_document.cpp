@@ -104,6 +104,7 @@ Recipe read_recipe(std::string_view json_text, const std::string& id, Problems& 
     FieldReader reader(*document, problems);
     format_1 ? describe_format_1(recipe, reader) : describe(recipe, reader);
     reader.finish();
+    recipe.format = format_1 ? 1 : 2;
     check_together(recipe, format_1 ? kFormat1Places : kFormat2Places, problems);
     if (format_1) recipe.notes.emplace_back("has format 1, read as format 2; 'fvdctl recipe convert FILE' writes that");
   }
@@ -123,7 +124,7 @@ Recipe parse_recipe(std::string_view json_text, const std::string& id) {
 
 std::string convert_recipe(std::string_view json_text, const std::string& id) {
   const Recipe recipe = parse_recipe(json_text, id);
-  if (recipe.notes.empty()) {
+  if (recipe.format == 2) {
     throw_if_any({{"/format", "is 2 already: there is nothing to convert"}}, ErrorCode::kBadRecipe, "recipe " + id);
   }
   using nlohmann::ordered_json;
@@ -148,22 +149,21 @@ std::string convert_recipe(std::string_view json_text, const std::string& id) {
 Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up,
                             const Problems& read) {
   Problems problems;
-  const auto judged = [&read](const std::string& key) {
-    return !is_reported(read, kFormat1Places.scan + key) && !is_reported(read, kFormat2Places.scan + key);
-  };
+  const std::string scan = recipe.format == 1 ? kFormat1Places.scan : kFormat2Places.scan;
+  const auto judged = [&](const std::string& key) { return !is_reported(read, scan + key); };
   const double first = recipe.start_um - take_up.value;
   const double last = recipe.start_um + recipe.step_um * (recipe.slices - 1);
   if (judged("/start_um") && first < min.value) {
     std::ostringstream text;
     text << recipe.start_um << " with " << take_up.value << " um of take-up reaches " << first
          << " um; expected a start of at least " << min.value + take_up.value << " um";
-    problems.push_back({"/acquire/scan/start_um", text.str()});
+    problems.push_back({scan + "/start_um", text.str()});
   }
   if (judged("/start_um") && judged("/step_um") && judged("/slices") && last > max.value) {
     std::ostringstream text;
     text << recipe.slices << " slices reach " << last << " um; expected at most " << max.value
          << " um: fewer slices, a smaller step_um or a lower start_um";
-    problems.push_back({"/acquire/scan/slices", text.str()});
+    problems.push_back({scan + "/slices", text.str()});
   }
   return problems;
 }

@@ -32,7 +32,7 @@ struct JobStatus {
   JobRequest request;
   JobState state = JobState::kProcessing;
   std::string phase;      ///< "preparing", "acquiring", "computing", "storing", "" when ended
-  bool acquired = false;  ///< the part may be moved
+  bool acquired = false;  ///< it takes no more slices; Signals::part_release says whether the part may be moved
   int slices_done = 0;
   int slices_planned = 0;
   FrameCounts frames;

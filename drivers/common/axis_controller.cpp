@@ -11,6 +11,7 @@
 #include "core/scan/settle_detector.hpp"
 #include "drivers/common/axis_poller.hpp"
 #include "drivers/common/axis_stopper.hpp"
+#include "drivers/common/rest_detector.hpp"
 
 namespace fvd {
 
@@ -70,21 +71,9 @@ class AxisController final : public Axis {
     return info;
   }
 
-  [[nodiscard]] StageStatus status() override {
-    const AxisSample sample = poller_.sample_after(HostClock::now(), {});
-    StageStatus status;
-    status.enabled = sample.enabled;
-    status.homed = sample.homed;
-    status.moving = sample.moving;
-    status.in_position = sample.in_position;
-    status.alarm = sample.alarm;
-    status.alarm_code = sample.alarm_code;
-    if (sample.alarm) status.alarm_text = port_->alarm_text(sample.alarm_code);
-    status.position = sample.position;
-    status.temperatures = poller_.temperatures();
-    status.state = state_of(sample);
-    return status;
-  }
+  [[nodiscard]] StageStatus status() override { return status_of(poller_.sample_after(HostClock::now(), {})); }
+
+  [[nodiscard]] std::optional<StageStatus> last_seen() const override { return status_of(poller_.latest()); }
 
   [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
     auto stats = port_->link_stats();
@@ -142,8 +131,6 @@ class AxisController final : public Axis {
   [[nodiscard]] bool connected() const noexcept override { return poller_.connected(); }
 
  private:
-  // --- before anything may move ---
-
   static const AxisTraits& checked(const AxisTraits& traits, const AxisSettings& settings) {
     require_limits_inside(traits, settings);
     return traits;
@@ -196,18 +183,31 @@ class AxisController final : public Axis {
     return poller_.sample_after(std::max(HostClock::now() - kSampleAge, changed_.load()), stop);
   }
 
+  [[nodiscard]] StageStatus status_of(const AxisSample& sample) const {
+    StageStatus status;
+    status.enabled = sample.enabled;
+    status.homed = sample.homed;
+    status.moving = sample.moving;
+    status.in_position = sample.in_position;
+    status.alarm = sample.alarm;
+    status.alarm_code = sample.alarm_code;
+    if (sample.alarm) status.alarm_text = port_->alarm_text(sample.alarm_code);
+    status.position = sample.position;
+    status.temperatures = poller_.temperatures();
+    status.state = state_of(sample);
+    return status;
+  }
+
   [[nodiscard]] AxisState state_of(const AxisSample& sample) const {
     if (!poller_.connected()) return AxisState::kCommLost;
     if (sample.alarm || sample.emergency_stop) return AxisState::kAlarm;
     const AxisState commanded = state_;
     if (commanded == AxisState::kHoming) return commanded;
-    if (sample.moving) return AxisState::kMoving;
+    if (!sample.reports_rest()) return AxisState::kMoving;
     if (commanded == AxisState::kMoving) return AxisState::kSettling;
     if (!sample.enabled) return AxisState::kDisabled;
     return sample.homed ? AxisState::kReady : AxisState::kNotHomed;
   }
-
-  // --- moving ---
 
   /// Runs a motion. An exception that leaves it first halts the axis; what of that failed is added to its message.
   template <typename Motion>
@@ -231,6 +231,7 @@ class AxisController final : public Axis {
 
   void wait_until_homed(HostTime started, const std::stop_token& stop) {
     bool moved = false;
+    RestDetector rest;
     for (HostTime last = HostClock::now();;) {
       const AxisSample sample = poller_.sample_after(last, stop);
       last = sample.begun;
@@ -239,7 +240,9 @@ class AxisController final : public Axis {
       moved = moved || sample.moving || (traits_.tells_homed && !sample.homed);
       // An axis that was homed and rests at its origin never shows motion: then the start time decides.
       const bool begun = moved || sample.time - started > traits_.start_within;
-      if (begun && !sample.moving && (sample.homed || !traits_.tells_homed)) {
+      if (!begun || (traits_.tells_homed && !sample.homed)) {
+        rest.reset();
+      } else if (rest.add(sample.time, sample.position, !sample.moving)) {
         poller_.remember_homed(true);
         changed_ = HostClock::now();
         return;

@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 
 namespace fvd {
 
@@ -24,6 +25,10 @@ constexpr std::size_t kLoggedSamples = 8192;
 /// A position is believed at once if it lies within the reach of this multiple of the commanded speed, and this margin.
 constexpr double kSpeedFactor = 2.0;
 constexpr double kPositionMargin_um = 50.0;
+/// How often a position is read until two readings agree.
+constexpr int kReadings = 5;
+/// A poll that takes longer hangs: this multiple of the longest time between two samples of a line that is alive.
+constexpr int kHangFactor = 6;
 
 std::string text_of(const std::exception_ptr& failure) {
   try {
@@ -57,7 +62,9 @@ AxisPoller::AxisPoller(AxisPort& port, double max_speed_um_per_s)
 }
 
 void AxisPoller::run(const std::stop_token& stop) {
+  ThreadTicks ticks("fvd-stage", kHangFactor * port_.traits().sample_timeout);
   while (!stop.stop_requested() && connected()) {
+    ticks.tick(HostClock::now());
     {
       const MutexLock polling(polling_);
       poll_once();
@@ -83,34 +90,40 @@ std::optional<AxisSample> AxisPoller::read_sample(std::string& error) {
   return sample;
 }
 
-bool AxisPoller::plausible(const AxisSample& sample) const {
-  const auto last = log_.latest();
-  if (!last) return true;
-  const double seconds = std::chrono::duration<double>(sample.time - last->time).count();
+bool AxisPoller::reachable(const AxisSample& from, const AxisSample& to) const {
+  const double seconds = std::chrono::duration<double>(to.time - from.time).count();
   const double reach_um = kSpeedFactor * max_speed_um_per_s_ * seconds + kPositionMargin_um;
-  return std::abs((sample.position - last->position).value) <= reach_um;
+  return std::abs((to.position - from.position).value) <= reach_um;
+}
+
+bool AxisPoller::publish(const AxisSample& sample, const std::optional<AxisSample>& doubtful) {
+  const MutexLock lock(mutex_);
+  const auto last = log_.latest();
+  if (last && !reachable(*last, sample) && !(doubtful && reachable(*doubtful, sample))) return false;
+  log_.add(sample);
+  sampled_.notify_all();
+  return true;
 }
 
 void AxisPoller::poll_once() {
   std::string error;
-  auto sample = read_sample(error);
-  const auto doubtful = [&] {
-    const MutexLock lock(mutex_);
-    return sample && !plausible(*sample);
-  };
-  if (doubtful()) {
-    // A jump is real after a power cycle or a preset; then the second reading says the same.
+  std::optional<AxisSample> doubtful;
+  for (int reading = 0; reading < kReadings; ++reading) {
+    const auto sample = read_sample(error);
+    if (!sample) {
+      if (lose("it does not answer: " + error)) stop_lost_axis();
+      return;
+    }
+    // A jump is real after a power cycle or a preset; then the next reading says the same.
+    if (publish(*sample, doubtful)) return;
     ++implausible_;
     spdlog::debug("stage: a position of {} um cannot have been reached; reading again", sample->position.value);
-    sample = read_sample(error);
+    doubtful = sample;
   }
-  if (sample) {
-    const MutexLock lock(mutex_);
-    log_.add(*sample);
-    sampled_.notify_all();
-    return;
+  if (lose("its positions contradict one another, the last is " + std::to_string(doubtful->position.value) +
+           " um: check the line and the encoder")) {
+    stop_lost_axis();
   }
-  if (lose("it does not answer: " + error)) stop_lost_axis();
 }
 
 void AxisPoller::stop_lost_axis() noexcept {

@@ -17,8 +17,8 @@
 namespace fvd {
 
 /// A controller that stops answering is lost for good: everything throws kStageDisconnected from then on, and if the
-/// axis moved it is told to stop, once. A position that the axis cannot have reached since the last sample is read
-/// again before it is believed. context: thread-safe.
+/// axis moved it is told to stop, once. A position that the axis cannot have reached since the last sample is
+/// believed when another reading agrees; five that contradict one another are a loss. context: thread-safe.
 class AxisPoller {
  public:
   /// Takes the first sample. max_speed_um_per_s: what the axis is commanded to; homing may be as fast. The port
@@ -49,7 +49,10 @@ class AxisPoller {
   void run(const std::stop_token& stop);
   void poll_once() FVD_REQUIRES(polling_);
   [[nodiscard]] std::optional<AxisSample> read_sample(std::string& error);
-  [[nodiscard]] bool plausible(const AxisSample& sample) const FVD_REQUIRES(mutex_);
+  /// The axis, as fast as it may move, comes from one to the other in the time between.
+  [[nodiscard]] bool reachable(const AxisSample& from, const AxisSample& to) const;
+  /// False, and nothing is published, if the axis cannot have come there from the sample before nor from `doubtful`.
+  [[nodiscard]] bool publish(const AxisSample& sample, const std::optional<AxisSample>& doubtful);
   /// Publishes the loss and returns whether the axis moved when it was last seen.
   bool lose(const std::string& error);
   void stop_lost_axis() noexcept;

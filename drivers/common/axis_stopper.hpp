@@ -9,8 +9,8 @@
 
 namespace fvd {
 
-/// Standstill: samples over at least 50 ms, three or more, none of which reports motion, all within 1 um. An axis
-/// without torque counts as reporting none: some drives say "target reached" only while they are enabled.
+/// Standstill is what RestDetector finds in the samples. An axis without torque counts as reporting no motion: some
+/// drives say "target reached" only while they are enabled.
 /// context: thread-safe.
 class AxisStopper {
  public:
@@ -35,7 +35,7 @@ class AxisStopper {
 
   AxisPort& port_;
   AxisPoller& poller_;
-  const std::chrono::milliseconds braking_;
+  const std::chrono::milliseconds timeout_;
 };
 
 }  // namespace fvd

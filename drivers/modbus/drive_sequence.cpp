@@ -88,6 +88,8 @@ class Runner {
 
   SequenceResult run_step(const PulseStep& step) {
     SequenceResult result = change(step.reg, step.mask, 0);
+    // Without an answer the drive may have set the bit, and an edge that stays set makes the next one none.
+    if (result.outcome == ModbusOutcome::kUnknown) (void)change(step.reg, 0, step.mask);
     if (result.outcome != ModbusOutcome::kOk) return result;
     const bool on = pause(step.on, stop_);
     result = change(step.reg, 0, step.mask);  // a stop request leaves no bit set

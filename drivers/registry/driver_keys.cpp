@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <iterator>
 
+#include "core/base/error.hpp"
 #include "drivers/common/text_line.hpp"
+#include "drivers/modbus/drive_profile.hpp"
 #include "drivers/modbus/modbus_transport.hpp"
 
 namespace fvd {
@@ -139,9 +141,16 @@ void check_replay(const CameraConfig& camera, Problems& problems) {
 void check_modbus(const StageConfig& stage, Problems& problems) {
   check_line(stage, "rtu", kModbusBauds, problems);
   std::error_code error;
-  if (fs::is_regular_file(stage.profile, error)) return;
-  problems.push_back({"/stage/profile", "there is no file '" + stage.profile.string() +
-                                            "'; expected a drive profile such as drives/oriental-az.json"});
+  if (!fs::is_regular_file(stage.profile, error)) {
+    problems.push_back({"/stage/profile", "there is no file '" + stage.profile.string() +
+                                              "'; expected a drive profile such as drives/oriental-az.json"});
+    return;
+  }
+  try {
+    (void)load_drive_profile(stage.profile);
+  } catch (const Error& refused) {
+    problems.push_back({"/stage/profile", refused.what()});
+  }
 }
 
 void check_gcs(const StageConfig& stage, Problems& problems) {

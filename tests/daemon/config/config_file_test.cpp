@@ -170,9 +170,8 @@ TEST(ConfigFile, RefusesMalformedOverrides) {
 class AUsableConfig : public ::testing::Test {
  protected:
   AUsableConfig() {
-    std::ofstream(folder_.path() / "drive.json") << "{}";
     config_.camera.address = "192.168.1.5";
-    config_.stage.profile = folder_.path() / "drive.json";
+    config_.stage.profile = FVD_SOURCE_DIR "/config/drives/oriental-az.json";
     config_.paths.recipe_dir = folder_.path();
   }
   test::ScratchDir folder_;
@@ -212,6 +211,9 @@ TEST_F(AUsableConfig, NeedsItsFiles) {
               ElementsAre(problem("/stage/profile", "absent.json"), problem("/paths/recipe_dir", "No such file")));
   config_.stage.profile = folder_.path();
   EXPECT_THAT(check_config(config_), Contains(problem("/stage/profile"))) << "a folder is no profile";
+  config_.stage.profile = folder_.path() / "drive.json";
+  std::ofstream(config_.stage.profile) << R"({"name": "half a drive"})";
+  EXPECT_THAT(check_config(config_), Contains(problem("/stage/profile", "drive.json")));
 }
 
 TEST_F(AUsableConfig, ReplaysOnBothSidesOrNone) {

@@ -1,8 +1,11 @@
 #include "daemon/devices/device_hub.hpp"
 
-#include <atomic>
+#include <functional>
+#include <future>
 #include <memory>
+#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -21,6 +24,8 @@ struct Cables {
   bool axis_moves = false;
   bool axis_stops = true;
   bool status_fails = false;
+  std::optional<double> seen_um = std::nullopt;  ///< where the axis was seen last, by a driver that samples it
+  std::function<void()> on_axis_closing = nullptr;
 };
 
 class CabledCamera final : public sim::FakeCamera {
@@ -39,6 +44,15 @@ class CabledAxis final : public sim::FakeAxis {
     if (!cables_.axis || cables_.status_fails) throw Error(ErrorCode::kStageDisconnected, "no answer");
     StageStatus status = FakeAxis::status();
     status.moving = cables_.axis_moves;
+    return status;
+  }
+  ~CabledAxis() override {
+    if (cables_.on_axis_closing) cables_.on_axis_closing();
+  }
+  [[nodiscard]] std::optional<StageStatus> last_seen() const override {
+    if (!cables_.seen_um) return std::nullopt;
+    StageStatus status;
+    status.position = Micrometers{*cables_.seen_um};
     return status;
   }
   void stop() noexcept override { cables_.axis_moves = cables_.axis_moves && !cables_.axis_stops; }
@@ -111,12 +125,12 @@ TEST_F(ADeviceHub, NamesTheAxisThatMovesBeforeTheCameraThatIsMissing) {
 
 TEST_F(ADeviceHub, NamesTheDeviceThatWasLostAndOpensItAnew) {
   ASSERT_EQ(hub_.open(), std::nullopt);
-  EXPECT_EQ(hub_.lost(), std::nullopt);
+  EXPECT_EQ(hub_.failure(), std::nullopt);
   cables_.camera = false;
-  EXPECT_EQ(hub_.lost()->code, ErrorCode::kCameraDisconnected);
+  EXPECT_EQ(hub_.failure()->code, ErrorCode::kCameraDisconnected);
   EXPECT_TRUE(hub_.at_rest());
   cables_.axis = false;
-  EXPECT_EQ(hub_.lost()->code, ErrorCode::kStageDisconnected);
+  EXPECT_EQ(hub_.failure()->code, ErrorCode::kStageDisconnected);
   EXPECT_EQ(rest_, (std::vector<bool>{true, false})) << "an axis that cannot be seen is not at rest";
   cables_ = {};
   EXPECT_EQ(hub_.open(), std::nullopt) << "the fakes are connected again: the devices are the same";
@@ -167,6 +181,54 @@ TEST_F(ADeviceHub, StopsAnAxisThatMovesAfterAnError) {
   EXPECT_EQ(hub_.after_failure(ErrorCode::kStagePosition, "does not settle"), std::nullopt);
   EXPECT_FALSE(cables_.axis_moves);
   EXPECT_EQ(rest_, (std::vector<bool>{true, false, true})) << "seen moving, then at rest";
+}
+
+TEST_F(ADeviceHub, MeasuresAnewWhenAnAxisThatRestedIsSeenElsewhere) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  cables_.seen_um = 0.9;
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(rest_, std::vector<bool>{true}) << "the position dithers";
+  cables_.seen_um = 7.0;
+  cables_.axis_moves = true;
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_FALSE(cables_.axis_moves) << "moved by another master, and stopped";
+  EXPECT_EQ(rest_, (std::vector<bool>{true, false, true}));
+}
+
+TEST_F(ADeviceHub, CannotBeUsedAfterAMotionThatDoesNotEnd) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  hub_.confirm_rest();
+  EXPECT_EQ(hub_.failure(), std::nullopt);
+  cables_.axis_moves = true;
+  cables_.axis_stops = false;
+  hub_.confirm_rest();
+  EXPECT_FALSE(hub_.at_rest());
+  ASSERT_TRUE(hub_.failure());
+  EXPECT_EQ(hub_.failure()->code, ErrorCode::kNotReady);
+  cables_.axis_stops = true;
+  EXPECT_EQ(hub_.open(), std::nullopt);
+  EXPECT_EQ(hub_.failure(), std::nullopt);
+}
+
+TEST_F(ADeviceHub, OpensNoAxisWhileTheOneBeforeIsStillBeingClosed) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  std::promise<void> go;
+  std::promise<void> closing;
+  cables_.on_axis_closing = [&] {
+    closing.set_value();
+    go.get_future().wait_for(std::chrono::seconds(10));
+  };
+  (void)hub_.after_failure(ErrorCode::kStageDisconnected, "no answer");
+  closing.get_future().wait();
+  cables_.on_axis_closing = nullptr;
+  opened_.clear();
+  const auto failure = hub_.open();
+  ASSERT_TRUE(failure) << "what the old connection still sends would reach the new one's drive";
+  EXPECT_EQ(failure->code, ErrorCode::kStageDisconnected);
+  EXPECT_TRUE(opened_.empty());
+  go.set_value();
+  while (hub_.open()) std::this_thread::yield();
+  EXPECT_EQ(opened_, Strings{"axis"});
 }
 
 TEST_F(ADeviceHub, GivesUpAnAxisThatStopsAnsweringWhileStandstillIsMeasured) {

@@ -36,10 +36,10 @@ class LookedAtAxis final : public sim::FakeAxis {
 
 int ignore_motion = 0;
 
-TEST(Standstill, IsTwoLooksAtTheSamePlace) {
+TEST(Standstill, IsFoundWhereTheAxisIs) {
   sim::FakeClock clock;
   LookedAtAxis axis(clock, {{false, 3.0}, {false, 3.5}});
-  EXPECT_TRUE(bring_to_rest(axis, clock, [] { ++ignore_motion; }));
+  EXPECT_EQ(bring_to_rest(axis, clock, [] { ++ignore_motion; }), Micrometers{3.5});
   EXPECT_EQ(axis.stops, 0) << "an axis that rests is left alone";
 }
 
@@ -82,7 +82,7 @@ TEST(Standstill, EndsItsWaitForAnAxisThatNeverStops) {
   LookedAtAxis axis(clock, {{true, 0.0}});
   EXPECT_FALSE(bring_to_rest(axis, clock, [] { ++ignore_motion; }));
   EXPECT_EQ(axis.stops, 1);
-  EXPECT_LE(clock.now() - began, std::chrono::milliseconds(600));
+  EXPECT_LE(clock.now() - began, std::chrono::milliseconds(2100));
 }
 
 TEST(Standstill, LeavesALostAxisToItsCaller) {

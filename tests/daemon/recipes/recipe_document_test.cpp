@@ -249,6 +249,16 @@ TEST(Recipe, IsCheckedAgainstTheStageLimits) {
   EXPECT_THAT(high[0].message, AllOf(HasSubstr("193"), HasSubstr("at most 192")));
   EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um), SizeIs(2));
   EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/acquire/scan/step_um", "is missing"}}), SizeIs(1));
+  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/acquire/scan/start_um", "is missing"}}), IsEmpty());
+}
+
+TEST(Recipe, OfFormat1IsToldWhereItsOwnTextLeavesTheStageLimits) {
+  const Recipe recipe = parse_recipe(kSmallestOld, "r");
+  EXPECT_EQ(recipe.format, 1);
+  const Problems found = check_stage_limits(recipe, 0_um, 1_um, 20_um);
+  ASSERT_THAT(found, SizeIs(2));
+  EXPECT_EQ(found[0].pointer, "/scan/start_um");
+  EXPECT_EQ(found[1].pointer, "/scan/slices");
   EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/scan/start_um", "is missing"}}), IsEmpty());
 }
 

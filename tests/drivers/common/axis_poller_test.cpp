@@ -3,6 +3,7 @@
 #include "drivers/common/axis_poller.hpp"
 
 #include <atomic>
+#include <deque>
 #include <future>
 #include <stdexcept>
 
@@ -34,6 +35,10 @@ class ScriptedPort final : public AxisPort {
     AxisSample sample;
     sample.begun = sample.time = HostClock::now();
     sample.moving = moving;
+    if (script.empty()) return sample;
+    sample.position = Micrometers{script.front()};
+    if (script.size() > 1) script.pop_front();
+    ++readings;
     return sample;
   }
   [[nodiscard]] CommandResult enable(const MotionLimits& /*limits*/, std::stop_token /*stop*/) override { return {}; }
@@ -50,6 +55,8 @@ class ScriptedPort final : public AxisPort {
   [[nodiscard]] std::string alarm_text(int /*code*/) const override { return "alarm"; }
 
   std::atomic<Mode> mode{Mode::kAnswers};
+  std::deque<double> script;  ///< positions, um; the last again and again. Changed in a pause only
+  int readings = 0;           ///< of the script
   std::atomic<bool> moving{false};
   std::atomic<int> stops{0};
   std::atomic<bool> connected_at_stop{true};
@@ -58,6 +65,32 @@ class ScriptedPort final : public AxisPort {
  private:
   AxisTraits traits_;
 };
+
+TEST(AxisPoller, BelievesAJumpThatASecondReadingConfirms) {
+  ScriptedPort port;
+  port.script = {0.0, 5000.0, 5000.1};
+  AxisPoller poller(port, 1000.0);
+  EXPECT_DOUBLE_EQ(poller.sample_after(HostClock::now(), {}).position.value, 5000.1);
+  EXPECT_EQ(poller.implausible(), 1U);
+}
+
+TEST(AxisPoller, BelievesNeitherOfTwoReadingsThatContradictOneAnother) {
+  ScriptedPort port;
+  port.script = {0.0, 5000.0, -7000.0, 0.2};
+  AxisPoller poller(port, 1000.0);
+  EXPECT_DOUBLE_EQ(poller.sample_after(HostClock::now(), {}).position.value, 0.2);
+  EXPECT_EQ(poller.implausible(), 2U);
+}
+
+TEST(AxisPoller, GivesUpAnAxisWhosePositionsMakeNoSense) {
+  ScriptedPort port;
+  port.moving = true;
+  port.script = {0.0, 1e4, -1e4, 2e4, -2e4, 3e4, 0.0};
+  AxisPoller poller(port, 1000.0);
+  expect_error(ErrorCode::kStageDisconnected, {"the fake", "contradict"},
+               [&] { (void)poller.sample_after(HostClock::now(), {}); });
+  while (port.stops == 0) std::this_thread::yield();
+}
 
 TEST(AxisPoller, GivesSamplesThatWereBegunAfterTheQuestion) {
   ScriptedPort port;
