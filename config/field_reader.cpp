@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
 #include <optional>
 #include <sstream>
 
@@ -27,6 +28,9 @@ std::string shown(const json& value) {
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
+/// So many that no limit is written with an exponent.
+constexpr int kDigits = 12;
+
 std::string range_text(IntegerRange range) {
   return std::string(range.hex ? "an integer or \"0x..\" within " : "an integer within ") + std::to_string(range.min) +
          ".." + std::to_string(range.max);
@@ -39,6 +43,7 @@ std::string count_text(IntegerRange count) {
 
 std::string range_text(NumberRange range) {
   std::ostringstream text;
+  text << std::setprecision(kDigits);
   if (range.above_min) {
     text << "a number above " << range.min << " and up to " << range.max;
   } else {

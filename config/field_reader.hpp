@@ -15,7 +15,7 @@ namespace fvd {
 /// Fields that are absent or wrong keep their value. Unknown keys are problems, with the nearest known name.
 class FieldReader final : public Fields {
  public:
-  /// Both outlive the reader. pointer: where the object stands in its document.
+  /// object and problems must outlive the reader. pointer: the place of the object in its document.
   FieldReader(const nlohmann::json& object, Problems& problems, std::string pointer = "");
   /// Reports unknown keys: call when all fields are described.
   void finish();
@@ -49,7 +49,7 @@ class FieldReader final : public Fields {
   void refuse(std::string_view name, const nlohmann::json& value, const std::string& accepted,
               const char* verb = "expected");
   void report(std::string_view name, const std::string& message);
-  /// Of all shapes, where nobody knows which one was meant: only keys that none of them has are reported.
+  /// Accepts the keys of all shapes: where the shape is not known, only keys that no shape has are unknown.
   void know_members(const std::vector<Shape>& shapes);
   void read_row(const nlohmann::json& row, const ObjectList& list, const std::string& pointer);
 
@@ -58,7 +58,7 @@ class FieldReader final : public Fields {
   std::string pointer_;
   bool row_ = false;  ///< object_ stands for a list, its keys are the positions
   std::set<std::string, std::less<>> known_;
-  std::set<std::string, std::less<>> refused_;  ///< their values are not those of the document
+  std::set<std::string, std::less<>> refused_;  ///< keys whose value was refused, so that the structure holds another
 };
 
 /// Reads a whole document: problems of syntax, type, range and names, all at once.

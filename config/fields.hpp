@@ -39,10 +39,10 @@ struct NumberRange {
 /// A number greater than 0, up to max.
 constexpr NumberRange positive(double max = 1e12) { return {0.0, max, true}; }
 
-/// What a value must be beside the value of another key, plus an offset.
+/// How a value must compare with the value of another key plus an offset.
 enum class Relation { kBelow, kAtMost, kAbove, kAtLeast };
 
-/// Bytes of a text that stands in place of an object.
+/// Longest text in bytes that may stand in place of an object.
 inline constexpr std::size_t kMaxWordLength = 256;
 
 class Fields;
@@ -66,7 +66,7 @@ struct ListForm {
 struct KeyedValues {
   std::vector<std::string> keys;                                      ///< that the structure has
   std::function<void(const std::string& key, Fields&)> describe;      ///< describes the field of one of them
-  std::function<void(const std::string& key, Fields&)> describe_new;  ///< likewise of a new one, at its defaults
+  std::function<void(const std::string& key, Fields&)> describe_new;  ///< describes the field of a new key
 };
 
 /// One of the shapes an object can have.
@@ -79,8 +79,8 @@ class Fields {
  public:
   virtual ~Fields() = default;
 
-  /// An object of a named type: the schema defines the type once, so that it can contain itself. One that is absent is
-  /// not described to a reader. An empty type is none.
+  /// An object of a named type: the schema defines the type once, so that it can contain itself. A reader
+  /// skips the members where the document has no such object. An empty type means no type.
   virtual void group_of(std::string_view type, std::string_view name, std::string_view meaning,
                         const std::function<void(Fields&)>& members) = 0;
   virtual void integer64(std::string_view name, std::int64_t& value, IntegerRange range, std::string_view meaning) = 0;
@@ -102,17 +102,18 @@ class Fields {
   /// Members that only one of several shapes has, beside the key that chooses it. value names a shape, the default.
   virtual void variant(std::string_view key, std::string& value, const std::vector<Shape>& shapes,
                        std::string_view meaning) = 0;
-  /// Likewise, where the shape is the one whose name is a key of this object. value names it; empty writes nothing.
+  /// The same without a key that chooses: the shape is the one whose name is a key of this object. value: that name;
+  /// where it is empty, a writer writes nothing.
   virtual void keyed_variant(std::string& value, const std::vector<Shape>& shapes) = 0;
   /// True where the values described by describe_new replace the structure's. map() is the typed form.
   [[nodiscard]] virtual bool keyed_values(std::string_view name, const KeyedValues& values,
                                           std::string_view meaning) = 0;
-  /// A field that is one of these words, or else what member describes under the same name. No words: any text of up to
-  /// kMaxWordLength bytes. word: empty where the field is none.
+  /// A field whose value is one of these words, or what member describes under the same name. Without words any text of
+  /// up to kMaxWordLength bytes counts as a word. word: empty where the value is not a word.
   virtual void word_or(std::string_view name, std::string& word, const std::vector<std::string>& words,
                        const std::function<void(Fields&)>& member) = 0;
-  /// member describes the one field `name`, which may have no value; present tells whether it has. optional() is the
-  /// typed form.
+  /// A field that may have no value: member describes the field `name`, present says whether the field has a value.
+  /// optional() is the typed form.
   virtual void optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) = 0;
   /// Refuses a value of `name` that does not stand in this relation to `other` + offset. Both are fields of this
   /// object, described before; their values are given as read, in the unit of their keys.

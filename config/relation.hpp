@@ -9,7 +9,7 @@
 
 namespace fvd {
 
-/// False where either is not a number.
+/// Whether value stands in the relation to bound; false where one of the two is NaN.
 [[nodiscard]] bool holds(double value, Relation relation, double bound);
 
 /// "at most slices - 3"

@@ -15,8 +15,13 @@ std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
     throw Error(ErrorCode::kStorageWrite, "cannot make " + (paths.state_dir / "results").string() + ": " +
                                               error.message() + "; see /paths/state_dir");
   }
-  remove_abandoned_directories(paths.state_dir / "results");
   return paths.state_dir;
+}
+
+/// Clears what a killed process left, once the open store says that no other process has the folder.
+JobStore& with_cleared_results(JobStore& store, const PathsConfig& paths) {
+  remove_abandoned_directories(paths.state_dir / "results");
+  return store;
 }
 
 }  // namespace
@@ -24,11 +29,14 @@ std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
 App::App(const Config& config)
     : config_(config),
       store_(prepared_state_dir(config_.paths) / "fvd.sqlite"),
-      engine_(config_, {store_,
+      engine_(config_, {with_cleared_results(store_, config_.paths),
                         clock_,
                         {.camera = [this] { return open_camera(config_.camera); },
                          .axis = [this] { return open_stage(config_.stage); }}}),
-      rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {}
+      rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {
+  // No device is touched by a program that cannot have its port: another fvd may be measuring with them.
+  engine_.start();
+}
 
 // The connections live until all that was accepted has ended.
 App::~App() { engine_.finish(); }

@@ -20,7 +20,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PRODUCT = ("core", "config", "drivers", "sim", "daemon")
 KEYS = ("format_diffs", "clang_warnings", "tidy_findings", "layer_violations", "folder_circles",
         "files_over_400_lines", "tidy_files", "functions_over_80_lines", "headers_not_alone",
-        "sanitized_tests", "sanitized_failed", "raw_threads")
+        "sanitized_tests", "sanitized_failed", "raw_threads", "empty_sources")
 CLANG = "clang++-14"
 TIDY = "clang-tidy-14"
 FORMAT = "clang-format-14"
@@ -262,6 +262,8 @@ def check_sizes(findings, files):
     for path in files:
         text = read(path)
         lines = text.count("\n")
+        if not text.strip() or (path.endswith("_test.cpp") and not re.search(r"^(TYPED_)?TEST", text, re.MULTILINE)):
+            findings.add("empty_sources", path, 1, f"{path}: is empty, or a test file without a test")
         if lines > 400:
             findings.add("files_over_400_lines", path, lines, f"{path}: {lines} lines")
         for name, first, length in functions(text):

@@ -13,6 +13,8 @@ namespace fvd {
 namespace {
 
 constexpr double kFineStepShare = 0.25;
+constexpr int kMinSteps = 3;
+constexpr int kMaxSteps = 1000;
 /// A maximum that stands out less over the lowest value is noise.
 constexpr double kMinPeakOverLowest = 1.05;
 
@@ -84,6 +86,7 @@ std::size_t sharpest(const std::vector<FocusSample>& curve) {
 
 /// Vertex of the parabola through the logarithms of three samples.
 double vertex_um(const FocusSample& a, const FocusSample& b, const FocusSample& c) {
+  if (!(a.z_um < b.z_um && b.z_um < c.z_um)) return b.z_um;  // steps below the resolution of the encoder
   const double la = std::log(std::max(a.focus, 1e-9));
   const double lb = std::log(std::max(b.focus, 1e-9));
   const double lc = std::log(std::max(c.focus, 1e-9));
@@ -110,10 +113,35 @@ double mean_focus(const ImageView& image, const Region& region) {
                                             : mean_laplacian(image.as<std::uint16_t>(), inner);
 }
 
-AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan, std::stop_token stop) {
-  if (!(plan.step.value > 0.0) || (plan.to - plan.from).value < 3.0 * plan.step.value) {
-    throw Error(ErrorCode::kBadInput, "the range of an autofocus must hold three of its steps at least");
+namespace {
+
+/// Before anything moves.
+void require_range(const AutofocusPlan& plan, const StageInfo& stage) {
+  std::ostringstream why;
+  ErrorCode code = ErrorCode::kBadInput;
+  const double range_um = (plan.to - plan.from).value;
+  if (range_um <= 0.0) {
+    why << "from " << plan.from.value << " to " << plan.to.value << " um is no range: from_um must be below to_um";
+  } else if (!(plan.step.value > 0.0) || range_um < kMinSteps * plan.step.value) {
+    why << "the range of an autofocus must hold " << kMinSteps << " of its steps at least";
+  } else if (range_um > kMaxSteps * plan.step.value) {
+    why << "a range of " << range_um << " um holds more than " << kMaxSteps << " steps of " << plan.step.value
+        << " um: a larger step_um or a smaller range";
+  } else if (plan.from - stage.take_up < stage.min || plan.to > stage.max) {
+    code = ErrorCode::kStageLimit;
+    why << "from " << plan.from.value << " to " << plan.to.value << " um, with " << stage.take_up.value
+        << " um of take-up below, is outside the stage's limits of " << stage.min.value << ".." << stage.max.value
+        << " um; nothing was moved";
+  } else {
+    return;
   }
+  throw Error(code, why.str());
+}
+
+}  // namespace
+
+AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan, std::stop_token stop) {
+  require_range(plan, stage.info());
   if (!stage.status().homed) {
     throw Error(ErrorCode::kStageNotHomed, "the stage has no reference: a job homes it, or stage.home");
   }

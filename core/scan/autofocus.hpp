@@ -46,9 +46,9 @@ struct AutofocusResult {
 
 /// Finds the height at which the central region is sharpest and moves the stage there. The camera must be configured
 /// and triggered by software, the stage homed. Every move arrives from below. Throws Error kBadInput for a range of
-/// less than three steps, kStageLimit, kStageNotHomed, kCameraFramesLost, kFocusRange if the sharpest sample lies at an
-/// end of the range or is less than 5 % above the lowest, kAborted, and what camera and stage throw. context: the
-/// scan's thread.
+/// less than 3 or more than 1000 steps, kStageLimit before anything moves, kStageNotHomed, kCameraFramesLost,
+/// kFocusRange if the sharpest sample lies at an end of the range or is less than 5 % above the lowest, kAborted, and
+/// what camera and stage throw. context: the scan's thread.
 [[nodiscard]] AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan,
                                         std::stop_token stop);
 

@@ -63,29 +63,6 @@ class Sweep {
   std::jthread thread_;
 };
 
-/// A free-running camera that is quiet again afterwards.
-class FreeRun {
- public:
-  FreeRun(Camera& camera, CameraSettings settings, double frame_rate_hz) : camera_(camera), quiet_(settings) {
-    settings.trigger = TriggerMode::kFreeRun;
-    settings.frame_rate_hz = frame_rate_hz;
-    (void)camera_.configure(settings);
-  }
-  ~FreeRun() {
-    try {
-      (void)camera_.configure(quiet_);
-    } catch (const std::exception&) {
-      // A camera that cannot be quietened is lost; whoever uses it next is told so.
-    }
-  }
-  FreeRun(const FreeRun&) = delete;
-  FreeRun& operator=(const FreeRun&) = delete;
-
- private:
-  Camera& camera_;
-  CameraSettings quiet_;
-};
-
 /// Sorts frames into slices, ramps and losses. Positions grow along the way of the scan, whichever way that is.
 class SliceSorter {
  public:
@@ -249,7 +226,7 @@ StepRecord record(int index, const Frame& frame, const PositionMean& position) {
 void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
                          const std::function<void(const ScanReport&)>& on_slice, std::stop_token stop) {
   const StageInfo stage = deps_.stage.info();
-  check_continuous(plan, settings_, stage);
+  check_continuous(plan, free_run_.settings(), stage);
   check_plan(plan, stage);
   if (!deps_.stage.status().homed) {
     throw Error(ErrorCode::kStageNotHomed, "the stage has no reference: home it before the scan");
@@ -271,7 +248,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
     SettleCriterion wide = plan.settle;
     wide.window = std::max(plan.settle.window, before * 0.5);
     deps_.stage.move_to(plan.downwards ? high : low, wide, stop);
-    const FreeRun running(deps_.camera, settings_, plan.frame_rate_hz());
+    free_run_.begin(plan.frame_rate_hz());
     Sweep sweep(deps_.stage, plan.downwards ? low : high, plan.speed_um_per_s, stop);
     std::deque<Waiting> waiting;  // gone before the camera is configured anew
     SliceSorter::Circumstances circumstances;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <stop_token>
 
+#include "core/scan/free_run.hpp"
 #include "core/scan/scan_runner.hpp"
 
 namespace fvd {
@@ -18,11 +19,10 @@ namespace fvd {
 /// context: run() on one thread; stop requests from any thread. Another thread moves the stage meanwhile.
 class ContinuousScan {
  public:
-  /// The camera is configured with `settings` already, but triggered by software.
-  ContinuousScan(const ScanDependencies& dependencies, const CameraSettings& settings)
-      : deps_(dependencies), settings_(settings) {}
+  /// The camera is configured already, with free_run.settings(). It runs free until free_run ends.
+  ContinuousScan(const ScanDependencies& dependencies, FreeRun& free_run) : deps_(dependencies), free_run_(free_run) {}
 
-  /// As ScanRunner::run. On every way out the stage is at rest, or stopped, and the camera triggered by software again.
+  /// As ScanRunner::run. On every way out the stage is at rest, or stopped.
   /// Throws Error kBadRecipe and kStageLimit before anything moves, kStageNotHomed, kCameraFramesLost, kCameraSettings
   /// if the camera is much faster than asked, kSliceLost, kAborted, and what camera and stage throw.
   void run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
@@ -30,7 +30,7 @@ class ContinuousScan {
 
  private:
   ScanDependencies deps_;
-  CameraSettings settings_;
+  FreeRun& free_run_;
 };
 
 }  // namespace fvd

@@ -33,8 +33,8 @@ void check_continuous(const ScanPlan& plan, const CameraSettings& settings, cons
     refuse(message);
   }
   if (!(plan.speed_um_per_s > 0.0) || plan.speed_um_per_s > stage.speed_um_per_s) {
-    message << "scan.speed_um_per_s of " << plan.speed_um_per_s << " um/s must lie above 0 and at most at the stage's "
-            << stage.speed_um_per_s << " um/s";
+    message << "acquire.scan.speed_um_per_s of " << plan.speed_um_per_s
+            << " um/s must lie above 0 and at most at the stage's " << stage.speed_um_per_s << " um/s";
     refuse(message);
   }
   if (exposure_s * plan.speed_um_per_s > plan.max_blur_steps * plan.step.value) {

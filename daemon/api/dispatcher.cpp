@@ -169,13 +169,23 @@ Dispatcher::Outcome Dispatcher::run_method(const json& request, const json& id, 
   require_callable(name, method.about, caller, is_notification);
   const auto given = request.find("params");
   const json params = checked_params(name, method.about.params, given == request.end() ? json(nullptr) : *given);
-  if (const auto client = params.find("client"); client != params.end()) caller.name = client->get<std::string>();
+  if (const auto client = params.find("client"); client != params.end()) {
+    // A name that is none is refused by the method; until then it stands in no log.
+    if (auto given_name = client->get<std::string>(); is_client_name(given_name)) caller.name = std::move(given_name);
+  }
   const Call call{caller, name, params, !mode.in_batch && !is_notification};
   std::optional<Answer> answer;
   if (method.peek) answer = method.peek(call);
   if (!answer && !mode.may_block) return {.would_block = true};
   if (!answer && method.about.needs_id) spdlog::info("{} for {}", name, text_of(caller));
-  if (!answer) answer = method.run(call);
+  try {
+    if (!answer) answer = method.run(call);
+  } catch (const Error& error) {
+    if (method.about.needs_id) {
+      spdlog::warn("{} was refused to {}: {}: {}", name, text_of(caller), error_name(error.code()), error.what());
+    }
+    throw;
+  }
   if (auto* deferred = std::get_if<Deferred>(&*answer)) return {.waiting = WaitingRequest{id, std::move(*deferred)}};
   return {success_reply(id, std::get<Reply>(std::move(*answer)))};
 }
@@ -191,6 +201,10 @@ bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {
 }
 
 std::optional<std::string> Dispatcher::resume(const WaitingRequest& waiting, bool timed_out) const {
+  const auto refused = [&](ErrorCode code, const std::string& message) {
+    const auto state = scan_state_name(services_.machine.snapshot()->state);
+    return reply_line(failure_reply(waiting.id, code, message, state));
+  };
   try {
     if (const auto* task = std::get_if<std::shared_ptr<DeviceTask>>(&waiting.until.awaited)) {
       const auto outcome = (*task)->outcome();
@@ -204,9 +218,9 @@ std::optional<std::string> Dispatcher::resume(const WaitingRequest& waiting, boo
     if (!timed_out && !has_come(job, wait.until_acquired)) return std::nullopt;
     return reply_line(success_reply(waiting.id, job_status_json(job)));
   } catch (const Error& error) {
-    return reply_line(failure_reply(waiting.id, error.code(), error.what()));
+    return refused(error.code(), error.what());
   } catch (const std::exception& error) {
-    return reply_line(failure_reply(waiting.id, ErrorCode::kInternal, error.what()));
+    return refused(ErrorCode::kInternal, error.what());
   }
 }
 

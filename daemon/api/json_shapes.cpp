@@ -16,6 +16,8 @@ using nlohmann::ordered_json;
 constexpr std::size_t kLongestMessage_bytes = 200;
 /// What a full result repeats of result.json.
 constexpr std::array kFullGroups{"values", "focus", "frames", "slices", "steps", "times"};
+/// Of formats 2 and later.
+constexpr std::array kFullLists{"verdict", "warnings"};
 
 std::string shortened(const std::string& text) {
   return text.size() <= kLongestMessage_bytes ? text : text.substr(0, kLongestMessage_bytes - 3) + "...";
@@ -39,7 +41,7 @@ void describe_job_status(Fields& fields) {
   result.text("state", "processing, completed, aborted, failed");
   result.text("phase", "preparing, acquiring, computing, storing; empty when ended");
   result.boolean("done", "the job has ended");
-  result.boolean("acquired", "the job takes no more slices; part_release says whether the part may be moved");
+  result.boolean("acquired", "the part may be moved: no more slices, and standstill was measured");
   result.number("progress", "0..1, of the slices");
   result.integer("slices_done", "so far");
   result.integer("slices_planned", "of the recipe");
@@ -140,6 +142,7 @@ void describe_compact(Fields& fields, Presence presence) {
   result.integer("frames_expected", "compact: repeated ones too", Presence::kSometimes);
   result.integer("frames_ok", "compact", Presence::kSometimes);
   result.boolean("simulated", "a device was simulated", Presence::kSometimes);
+  result.integer("warnings_count", "compact: what lowers trust; the full result says what", Presence::kSometimes);
   result.boolean("durable", "false while the end is not stored yet: job.status tells why", Presence::kSometimes);
 }
 
@@ -155,6 +158,7 @@ void describe_result(Fields& fields) {
   result.text("error_message", "full: for people", Presence::kSometimes);
   result.text("directory", "full: where the files are", Presence::kSometimes);
   for (const char* group : kFullGroups) result.any(group, "full: as in result.json", Presence::kSometimes);
+  for (const char* list : kFullLists) result.any(list, "full: as in result.json", Presence::kSometimes);
 }
 
 ordered_json compact_result_json(const JobStatus& job, const std::string& result_text) {
@@ -170,10 +174,12 @@ ordered_json compact_result_json(const JobStatus& job, const std::string& result
   const auto& values = result.at("values");
   json["valid_fraction"] = values.at("valid_fraction");
   for (const char* key : {"min_um", "max_um", "mean_um"}) {
-    json[std::string("height_") + key] = values.at("height").at(key);
+    const auto& value = values.at("height").at(key);
+    if (!value.is_null()) json[std::string("height_") + key] = value;
   }
   json["frames_expected"] = result.at("frames").at("expected");
   json["frames_ok"] = result.at("frames").at("ok");
+  json["warnings_count"] = result.contains("warnings") ? result["warnings"].size() : 0;
   json["simulated"] = result.at("provenance").at("simulated");
   return json;
 }
@@ -193,6 +199,9 @@ ordered_json full_result_json(const JobStatus& job, const std::string& result_te
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);
   for (const char* key : kFullGroups) json[key] = result.at(key);
+  for (const char* key : kFullLists) {
+    if (result.contains(key)) json[key] = result[key];
+  }
   // Per estimator figures and the list of files stand in the directory's result.json.
   json["focus"].erase("extra_peaks");
   json["slices"].erase("suspect");

@@ -14,6 +14,8 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kPointer = "/params";
+/// Problems that one refusal tells.
+constexpr std::size_t kToldProblems = 3;
 
 [[noreturn]] void refuse(const std::string& why) { throw ProtocolError{json_rpc::kInvalidParams, why}; }
 
@@ -34,10 +36,10 @@ json by_name(const std::string& method, const DescribeFields& describe, const js
   return params;
 }
 
-/// "job.start: 'seq': 0 is not accepted; expected ..."
-std::string problem_text(const std::string& method, const Problem& problem) {
+/// "'seq': 0 is not accepted; expected ..."
+std::string problem_text(const Problem& problem) {
   const std::string name = problem.pointer.substr(std::min(problem.pointer.size(), std::string(kPointer).size() + 1));
-  return method + ": " + quoted(name) + ": " + problem.message;
+  return quoted(name) + ": " + problem.message;
 }
 
 }  // namespace
@@ -73,7 +75,13 @@ json checked_params(const std::string& method, const DescribeFields& describe, c
   FieldReader reader(params, problems, kPointer);
   describe(reader);
   reader.finish();
-  if (!problems.empty()) refuse(problem_text(method, problems.front()));
+  if (!problems.empty()) {
+    std::string all;
+    for (std::size_t i = 0; i < std::min(problems.size(), kToldProblems); ++i) {
+      all += (all.empty() ? method + ": " : "; ") + problem_text(problems[i]);
+    }
+    refuse(all);
+  }
   return params;
 }
 

@@ -21,8 +21,8 @@ ordered_json success_reply(const json& id, ordered_json result) {
 }
 
 ordered_json failure_reply(const json& id, int code, const std::string& message, ordered_json data) {
-  ordered_json error{{"code", code}, {"message", message}};
-  if (!data.is_null()) error["data"] = std::move(data);
+  if (data.is_null()) data = {{"error", json_rpc::name_of(code)}, {"retry", false}};
+  ordered_json error{{"code", code}, {"message", message}, {"data", std::move(data)}};
   return {{"jsonrpc", "2.0"}, {"id", id}, {"error", std::move(error)}};
 }
 

@@ -14,6 +14,21 @@ inline constexpr int kInvalidRequest = -32600;
 inline constexpr int kMethodNotFound = -32601;
 inline constexpr int kInvalidParams = -32602;
 inline constexpr int kInternalError = -32603;
+
+[[nodiscard]] constexpr std::string_view name_of(int code) noexcept {
+  switch (code) {
+    case kParseError:
+      return "parse_error";
+    case kInvalidRequest:
+      return "invalid_request";
+    case kMethodNotFound:
+      return "method_not_found";
+    case kInvalidParams:
+      return "invalid_params";
+    default:
+      return "internal";
+  }
+}
 }  // namespace json_rpc
 
 /// A caller whose role may not call the method.

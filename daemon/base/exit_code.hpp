@@ -23,6 +23,7 @@ namespace fvd {
     case ErrorCode::kBadConfig:
     case ErrorCode::kBadInput:
       return exit_code::kConfig;
+    case ErrorCode::kNotReady:
     case ErrorCode::kCameraDisconnected:
     case ErrorCode::kStageDisconnected:
       return exit_code::kUnavailable;

@@ -7,7 +7,7 @@
 
 namespace fvd {
 
-/// READY=1: the port is open and the devices are there or their absence is known. status: one line for systemctl
+/// READY=1: the port is open; the devices are being opened. status: one line for systemctl
 /// status.
 void notify_ready(const std::string& status);
 /// STATUS= alone.

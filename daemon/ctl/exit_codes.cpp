@@ -36,6 +36,8 @@ int exit_code(ErrorCode code) noexcept {
 
 int exit_code_of_rpc(int code) noexcept {
   switch (code) {
+    case -32600:  // invalid request
+    case -32601:  // unknown method
     case -32602:  // invalid parameters
     case 1005:    // unknown recipe
     case 1006:    // invalid recipe

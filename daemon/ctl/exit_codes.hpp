@@ -15,9 +15,10 @@ inline constexpr int kExitUnavailable = 69;  ///< no daemon or drive, no answer 
 inline constexpr int kExitInternal = 70;     ///< a bug on either side
 inline constexpr int kExitIo = 74;           ///< a file could not be read or written
 
+/// The exit code for an Error of this code.
 [[nodiscard]] int exit_code(ErrorCode code) noexcept;
 
-/// For the error code of a JSON-RPC reply.
+/// The exit code for a JSON-RPC reply with this error code.
 [[nodiscard]] int exit_code_of_rpc(int code) noexcept;
 
 }  // namespace fvd::ctl

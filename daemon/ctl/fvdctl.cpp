@@ -61,8 +61,9 @@ int report_end(const Json& status, const Terminal& terminal) {
   const auto text = [&status](const char* key) {
     return status.contains(key) && status[key].is_string() ? status[key].get<std::string>() : std::string("unknown");
   };
-  terminal.err << "fvdctl: job " << text("job_id") << " " << text("state") << ": " << text("error") << ": "
-               << text("error_message") << std::endl;
+  terminal.err << "fvdctl: job " << text("job_id") << " " << text("state") << ": ";
+  if (text("error") != text("state")) terminal.err << text("error") << ": ";  // "aborted: aborted: .."
+  terminal.err << text("error_message") << std::endl;
   return code;
 }
 
@@ -117,7 +118,7 @@ int rpc(const Arguments& arguments, const Terminal& terminal) {
     throw Error(ErrorCode::kBadInput, "'" + arguments.params + "' is not a JSON object or array");
   }
   RpcClient client = connect(arguments);
-  constexpr std::chrono::seconds kTimeout{60};  // job.wait may hold its answer back for 30 s
+  constexpr std::chrono::seconds kTimeout{330};  // a command of the stage may take 5 minutes
   print(terminal.out, client.call(arguments.method, params, kTimeout));
   return kExitOk;
 }
@@ -139,11 +140,11 @@ CLI::Option* add_line_options(CLI::App& sub, StageArguments& a) {
   CLI::Option* tcp = sub.add_option("--tcp", a.tcp, "HOST or HOST:PORT of the drive");
   sub.add_option("--serial", a.stage.serial_device, "serial port, best by its name in /dev/serial/by-id")
       ->excludes(tcp);
-  sub.add_option("--baud", a.stage.serial_baud, "of the serial port")->capture_default_str();
-  sub.add_option("--parity", a.stage.serial_parity, "of the serial port")
+  sub.add_option("--baud", a.stage.serial_baud, "bit rate of the serial port")->capture_default_str();
+  sub.add_option("--parity", a.stage.serial_parity, "parity of the serial port")
       ->check(CLI::IsMember({"none", "even", "odd"}))
       ->capture_default_str();
-  sub.add_option("--stop-bits", a.stage.serial_stop_bits, "of the serial port")
+  sub.add_option("--stop-bits", a.stage.serial_stop_bits, "stop bits of the serial port")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
   sub.add_option("--unit", a.stage.unit, "Modbus unit id")->check(CLI::Range(1, 247))->capture_default_str();
@@ -169,19 +170,22 @@ void add_stage_commands(CLI::App& app, StageArguments& a, const Terminal& termin
       ->excludes(profile);
   accuracy->add_option("--from-um", a.plan.from.value, "lowest position")->required();
   accuracy->add_option("--to-um", a.plan.to.value, "highest position")->required();
-  accuracy->add_option("--steps", a.plan.steps, "between them")->check(CLI::Range(1, 100000))->capture_default_str();
-  accuracy->add_option("--repeats", a.plan.repeats, "passes up and down")
+  accuracy->add_option("--steps", a.plan.steps, "number of steps between the two")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  accuracy->add_option("--repeats", a.plan.repeats, "how often the range is passed up and down")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   accuracy->add_option("--out", a.out, "folder for the report, must not exist")->required();
   accuracy->add_flag("--home", a.home, "home the axis first if it has no reference");
-  accuracy->add_flag("--simulated", a.stage.simulated, "say so in the report");
+  accuracy->add_flag("--simulated", a.stage.simulated, "say in the report that the drive is a simulator");
   accuracy->add_option("--lead-um", a.lead_um, "screw lead, the period of its error; default: the profile's");
   add_length(*accuracy, "--min-um", a.stage.min, "lowest position the axis may go to");
-  add_length(*accuracy, "--max-um", a.stage.max, "highest");
+  add_length(*accuracy, "--max-um", a.stage.max, "highest position the axis may go to");
   add_length(*accuracy, "--take-up-um", a.stage.take_up, "overshoot before each pass, at least 3 x backlash");
-  add_length(*accuracy, "--window-um", a.plan.settle.window, "settled means: so near the target");
-  accuracy->add_option("--speed-um-per-s", a.stage.speed_um_per_s, "of moves")->capture_default_str();
+  add_length(*accuracy, "--window-um", a.plan.settle.window,
+             "largest distance from the target at which the axis counts as settled");
+  accuracy->add_option("--speed-um-per-s", a.stage.speed_um_per_s, "speed of moves")->capture_default_str();
   accuracy->callback([&] { chosen = [&] { return run_stage_accuracy(a, terminal); }; });
 }
 
@@ -210,7 +214,9 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
 
   sub = command("result", "print the result of a job", [&] { return result(a, terminal); });
   sub->add_option("job", a.job, job_help);
-  sub->add_option("--format", a.format, "how much")->check(CLI::IsMember({"compact", "full"}))->capture_default_str();
+  sub->add_option("--format", a.format, "compact: 440 bytes; full: 1400")
+      ->check(CLI::IsMember({"compact", "full"}))
+      ->capture_default_str();
 
   sub = command("rpc", "call any method and print what it returns", [&] { return rpc(a, terminal); });
   sub->add_option("method", a.method, "e.g. recipe.list")->required();

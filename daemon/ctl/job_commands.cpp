@@ -11,9 +11,9 @@ namespace fvd::ctl {
 
 namespace {
 
-// The daemon holds the answer back until the job changes or so long: the client never sleeps.
-constexpr std::chrono::milliseconds kWatchInterval{200};
-constexpr std::chrono::milliseconds kWaitInterval{10000};
+// Longest time for which the daemon holds its answer back while the job runs: the client never sleeps.
+constexpr std::chrono::milliseconds kWatchHold{200};
+constexpr std::chrono::milliseconds kWaitHold{10000};
 
 /// job.wait until done or `hold` has passed.
 Json poll_job(RpcClient& client, const Json& key, std::chrono::milliseconds hold) {
@@ -36,7 +36,7 @@ std::string progress_text(const Json& status) {
   text += "  slice " + std::to_string(status.value("slices_done", 0)) + "/" +
           std::to_string(status.value("slices_planned", 0)) + "  " +
           std::to_string(std::lround(std::clamp(fraction, 0.0, 1.0) * 100)) + " %";
-  if (status.value("acquired", false)) text += "  all slices taken";
+  if (status.value("acquired", false)) text += "  part may be moved";
   return text;
 }
 
@@ -73,7 +73,7 @@ Json start_job(RpcClient& client, const StartOptions& options, const std::string
 Json watch_job(RpcClient& client, const Json& key, std::ostream& out, bool terminal) {
   ProgressLine line(out, terminal);
   for (;;) {
-    Json status = poll_job(client, key, kWatchInterval);
+    Json status = poll_job(client, key, kWatchHold);
     line.update(status.value("progress", 0.0), progress_text(status));
     if (has_ended(status)) return status;
   }
@@ -81,7 +81,7 @@ Json watch_job(RpcClient& client, const Json& key, std::ostream& out, bool termi
 
 Json wait_for_job(RpcClient& client, const Json& key) {
   for (;;) {
-    Json status = poll_job(client, key, kWaitInterval);
+    Json status = poll_job(client, key, kWaitHold);
     if (has_ended(status)) return status;
   }
 }

@@ -16,23 +16,24 @@ struct StartOptions {
   std::string recipe;
 };
 
-/// Sequence numbers belong to a client: those of fvdctl are never the PLC's.
+/// The client whose sequence numbers fvdctl uses unless --client says another; the PLC counts its own.
 inline constexpr const char* kClientName = "fvdctl";
 
-/// A job as people name it: digits are a sequence number of the client `owner`, anything else a job id, empty the
-/// latest job of all. Returns the parameters that name it. Throws Error kUnknownJob if there is no job yet.
+/// A job as people name it: digits are a sequence number of the client `owner`, anything else a job id; an
+/// empty text means the latest job of any client. Returns the parameters that name the job. Throws Error kUnknownJob if
+/// there is no job yet.
 [[nodiscard]] Json job_key(RpcClient& client, const std::string& job, const std::string& owner = kClientName);
 
-/// The accepted job. owner: the client whose sequence number it gets.
+/// Starts a job and returns the reply. owner: the client that counts the sequence number.
 [[nodiscard]] Json start_job(RpcClient& client, const StartOptions& options, const std::string& owner = kClientName);
 
 /// Follows a job to its end on `out` and returns its last status. terminal: draw a bar.
 [[nodiscard]] Json watch_job(RpcClient& client, const Json& key, std::ostream& out, bool terminal);
 
-/// Waits for the end of a job without a word.
+/// Waits for the end of a job, prints nothing, and returns its last status.
 [[nodiscard]] Json wait_for_job(RpcClient& client, const Json& key);
 
-/// 0 for a completed job, 1 for one that failed or was aborted.
+/// kExitOk for a completed job, kExitJobFailed for one that failed or was aborted.
 [[nodiscard]] int job_exit_code(const Json& status);
 
 }  // namespace fvd::ctl

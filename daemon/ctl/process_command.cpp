@@ -10,6 +10,7 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_stack.hpp"
 #include "daemon/ctl/progress_line.hpp"
+#include "daemon/export/recorded_slices.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 
 namespace fvd::ctl {
@@ -101,6 +102,7 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
     const std::filesystem::path file = arguments.recipe;
     options.recipe = parse_recipe(read_text_file(file), file.stem().string());
   }
+  options.simulated = recorded_of_simulation(options.source);
   options.recipe_plans_scan = !arguments.recipe.empty();
   options.z = z_source(arguments, options.recipe);
   options.z_unit_assumed = std::holds_alternative<ZFile>(options.z) && !arguments.z_unit;
@@ -195,7 +197,9 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                    "seek the stage's errors in the focus curves and correct heights by them");
   command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");
   command.add_option("--part", a.part_id, "part id to write into the result; default: the name of the source");
-  command.add_option("--threads", a.threads, "0: one a core")->check(CLI::Range(0, 256))->capture_default_str();
+  command.add_option("--threads", a.threads, "threads that compute, 0 = one per core")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
 }
 
 int run_process(const ProcessArguments& arguments, const Terminal& terminal) {

@@ -15,13 +15,13 @@ class App;
 
 namespace fvd::ctl {
 
-/// Arguments that do not go together.
+/// An argument is missing, or two contradict each other.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// As typed. What is absent is as the recipe has it, or its default.
+/// The arguments as typed. An absent one leaves the value of the recipe, or the default of recipes.
 struct ProcessArguments {
   std::string source;
   std::string out;

@@ -63,6 +63,7 @@ void describe(ResultData& data, const ProcessOptions& options, const RecordedSta
   }
   data.warnings = options.warnings;
   data.slices_planned = stack.slices();
+  data.simulated = options.simulated;
 }
 
 void push_slices(StreamingFocusStack& focus, WorkerPool& pool, const RecordedStack& stack,

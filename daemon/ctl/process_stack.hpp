@@ -18,13 +18,14 @@ struct ProcessOptions {
   std::filesystem::path source;  ///< folder of slices or multi-page TIFF
   std::filesystem::path out;     ///< result directory, must not exist
   ZSource z;
+  bool simulated = false;          ///< the slices were recorded of simulated devices
   bool z_unit_assumed = false;     ///< z is a file, and nobody said that it is in um
   Recipe recipe;                   ///< its id may be empty
   bool recipe_plans_scan = false;  ///< the slices should be as many, and as far apart, as the recipe says
   bool knows_pixel_pitch = false;  ///< false: the recipe's is a default, and the files carry pixels
-  int threads = 0;                 ///< 0 = one a core
+  int threads = 0;                 ///< 0 = one per core
   std::string part_id;             ///< empty = the name of the source
-  std::vector<Warning> warnings;   ///< further ones for the result
+  std::vector<Warning> warnings;   ///< go into the result
 };
 
 struct ProcessReport {

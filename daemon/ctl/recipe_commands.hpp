@@ -20,8 +20,8 @@ struct RecipeArguments {
   std::string file;
   std::string author;
   std::string comment;
-  std::int64_t base_version = 0;  ///< of a change; 0 = the shipped recipe, or a new one
-  std::int64_t version = 0;       ///< that is restored
+  std::int64_t base_version = 0;  ///< that the change was made from; 0 = the shipped recipe, or a new one
+  std::int64_t version = 0;       ///< to restore
 };
 
 /// Adds `recipe` with its commands. connect: called by those that need the daemon. chosen: set to the command that the

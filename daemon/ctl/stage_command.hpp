@@ -18,14 +18,14 @@ struct StageArguments {
   bool json = false;
   bool home = false;
   StageRunPlan plan;
-  double lead_um = 0.0;  ///< of the screw; 0 = as the profile says
+  double lead_um = 0.0;  ///< lead of the screw; 0 = the profile's
   std::filesystem::path out;
 };
 
-/// Reads only. Exit code 0 if the drive fits its profile, kExitData if it disagrees.
+/// Reads registers and writes none. kExitOk if the drive fits its profile, kExitBadData if it disagrees.
 [[nodiscard]] int run_stage_check(StageArguments arguments, const Terminal& terminal);
 
-/// Moves the stage; writes stage_accuracy.json, .csv and .png into a new folder `out`.
+/// Moves the stage and writes stage_accuracy.json, .csv and .png into a new folder `out`.
 [[nodiscard]] int run_stage_accuracy(StageArguments arguments, const Terminal& terminal);
 
 }  // namespace fvd::ctl

@@ -106,11 +106,12 @@ void AtomicDirectory::commit() {
 std::size_t remove_abandoned_directories(const fs::path& parent) {
   std::size_t removed = 0;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(parent, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(".") || !name.ends_with(kTemporarySuffix) || !entry.is_directory()) continue;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
     std::error_code ignored;
-    if (fs::remove_all(entry.path(), ignored) > 0) ++removed;
+    if (!name.starts_with(".") || !name.ends_with(kTemporarySuffix) || !entry->is_directory(ignored)) continue;
+    const std::uintmax_t gone = fs::remove_all(entry->path(), ignored);
+    if (gone > 0 && gone != static_cast<std::uintmax_t>(-1)) ++removed;
   }
   return removed;
 }

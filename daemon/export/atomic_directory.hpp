@@ -14,7 +14,7 @@
 namespace fvd {
 
 /// Collects files in a hidden directory beside the final one (".<name>.<pid>-<n>.tmp", so that the rename stays within
-/// one file system) and renames it when all are on the disk. Destroyed without commit() it leaves nothing behind.
+/// one file system); commit() renames it when all files are on the disk. Without commit() nothing is left behind.
 /// context: one thread at a time.
 class AtomicDirectory {
  public:
@@ -29,7 +29,7 @@ class AtomicDirectory {
   AtomicDirectory(const AtomicDirectory&) = delete;
   AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
-  /// Writes one new file; it is brought to the disk by commit() at the latest. name: "file" or "folder/file"; the
+  /// Writes one new file; commit() brings it to the disk at the latest. name: "file" or "folder/file"; the
   /// folder is made on first use. Throws Error kStorageFull, kStorageWrite, kBadInput for any other name.
   void add_file(const std::filesystem::path& name, std::string_view bytes);
 

@@ -12,13 +12,13 @@ namespace fvd {
 
 struct AxisTicks {
   std::vector<double> values;  ///< multiples of one round step inside [low, high]
-  int decimals = 0;            ///< needed to tell neighbours apart
+  int decimals = 0;            ///< as many as tell neighbouring values apart
 };
 
 /// About `count` ticks, low < high.
 [[nodiscard]] AxisTicks axis_ticks(double low, double high, int count);
 
-/// The value with so many decimals, never "-0".
+/// The value with this number of decimals, never "-0".
 [[nodiscard]] std::string fixed_text(double value, int decimals);
 
 }  // namespace fvd

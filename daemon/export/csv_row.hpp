@@ -8,7 +8,8 @@
 
 namespace fvd {
 
-/// Appends cells to `out`, commas between them, LF at the end of its life. context: one thread at a time.
+/// Appends cells to `out` with commas between them; the destructor ends the line with LF. context: one thread at a
+/// time.
 class CsvRow {
  public:
   explicit CsvRow(std::string& out) : out_(out) {}

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What an exporter makes its file of.
+/// The data from which an exporter makes its file.
 
 #include <future>
 #include <string>
@@ -13,12 +13,12 @@ namespace fvd {
 /// context: read by several exporters at the same time.
 struct ExportInput {
   const ResultData& data;
-  const HeightMap& map;                       ///< data.map, or the further map the file is for
-  PeakMethod peak;                            ///< of that map
-  std::shared_future<HeightSummary> summary;  ///< of data.map; the first who asks computes it
+  const HeightMap& map;                       ///< data.map, or the map of another peak method
+  PeakMethod peak;                            ///< peak method of `map`
+  std::shared_future<HeightSummary> summary;  ///< of data.map; the first exporter that asks computes it
 };
 
-/// What a person calls the result: its part, else its job.
+/// The title of the result for people: its part id, or its job id where there is no part id.
 [[nodiscard]] std::string result_title(const ResultData& data);
 
 }  // namespace fvd

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The files of a result, one row each.
+/// The files of a result, one row per kind of file.
 
 #include <optional>
 #include <span>
@@ -12,13 +12,13 @@
 
 namespace fvd {
 
-/// What an exporter needs, and with it how many files it makes.
+/// What an exporter reads, which also decides how many files it makes.
 enum class ExportNeed {
   kResult,        ///< the result with its height map: one file
-  kEachExtraMap,  ///< a height map of another peak method: one file for each there is
+  kEachExtraMap,  ///< a height map of another peak method: one file per map, none where there is none
 };
 
-/// Exporters that take long begin before the others, so that none is left to be waited for at the end.
+/// Slow exporters begin first, so that at the end none runs alone.
 enum class ExportCost { kQuick, kSlow };
 
 struct Exporter {
@@ -32,8 +32,8 @@ struct Exporter {
 /// All exporters, in the order in which result.json lists their files. A new one is a row here and a source of its own.
 [[nodiscard]] std::span<const Exporter> exporter_table();
 
-/// Those of these names, in the order of the table; all of them where no names are given. Names that no exporter has
-/// choose nothing.
+/// The exporters of these names in the order of the table; all exporters where no names are given. A name that no
+/// exporter has chooses nothing.
 [[nodiscard]] std::vector<Exporter> chosen_exporters(const std::optional<std::vector<std::string>>& names);
 
 }  // namespace fvd

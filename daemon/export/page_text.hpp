@@ -1,6 +1,6 @@
 #pragma once
 
-/// Words on a drawn page. Only for the sources of this folder: brings in OpenCV.
+/// Words on a drawn page. Only sources of this folder include it: it includes OpenCV.
 
 #include <string>
 #include <vector>

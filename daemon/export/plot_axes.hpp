@@ -1,7 +1,7 @@
 #pragma once
 
-/// The frame of a plot: grid, ticks, titles, and where a value lies. Only for the sources of this folder: brings in
-/// OpenCV.
+/// The frame of a plot: grid, ticks, titles, and where a value lies. Only sources of this folder include it: it
+/// includes OpenCV.
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A matrix as the bytes of a PNG file. Only for the sources of this folder: brings in OpenCV.
+/// A matrix as the bytes of a PNG file. Only sources of this folder include it: it includes OpenCV.
 
 #include <string>
 

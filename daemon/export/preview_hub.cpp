@@ -15,10 +15,10 @@ namespace fvd {
 
 namespace {
 
-constexpr int kLargestWidth = 640;
-constexpr int kLargestHeight = 480;
-constexpr std::chrono::milliseconds kLeastAge{200};
-constexpr std::chrono::seconds kWantedFor{3};
+constexpr int kMaxPictureWidth = 640;
+constexpr int kMaxPictureHeight = 480;
+constexpr std::chrono::milliseconds kMinPictureInterval{200};
+constexpr std::chrono::seconds kViewerTimeout{3};
 
 template <typename Pixel>
 Plane<std::uint8_t> scaled(PlaneView<const Pixel> image, int factor, int shift) {
@@ -40,8 +40,8 @@ Plane<std::uint8_t> scaled(PlaneView<const Pixel> image, int factor, int shift) 
 }  // namespace
 
 PreviewPicture make_preview(const ImageView& image, double z_um) {
-  const int factor = std::max(
-      {1, (image.width + kLargestWidth - 1) / kLargestWidth, (image.height + kLargestHeight - 1) / kLargestHeight});
+  const int factor = std::max({1, (image.width + kMaxPictureWidth - 1) / kMaxPictureWidth,
+                               (image.height + kMaxPictureHeight - 1) / kMaxPictureHeight});
   const int shift = significant_bits(image.format) - 8;
   PreviewPicture picture;
   picture.pixels = bytes_per_pixel(image.format) == 1 ? scaled(image.as<std::uint8_t>(), factor, 0)
@@ -69,7 +69,7 @@ std::string preview_json(const PreviewPicture& picture) {
 void PreviewHub::offer(const ImageView& image, double z_um) {
   const HostTime now = HostClock::now();
   if (now > wanted_until_.load() || !mutex_.try_lock()) return;
-  const bool recent = newest_ && now - taken_ < kLeastAge;
+  const bool recent = newest_ && now - taken_ < kMinPictureInterval;
   mutex_.unlock();
   if (recent) return;
   PreviewPicture picture = make_preview(image, z_um);
@@ -82,7 +82,7 @@ void PreviewHub::offer(const ImageView& image, double z_um) {
 }
 
 std::optional<std::string> PreviewHub::newest() {
-  wanted_until_ = HostClock::now() + kWantedFor;
+  wanted_until_ = HostClock::now() + kViewerTimeout;
   const MutexLock lock(mutex_);
   if (!newest_) return std::nullopt;
   return preview_json(*newest_);

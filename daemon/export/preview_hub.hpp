@@ -1,6 +1,6 @@
 #pragma once
 
-/// The newest picture for whoever looks on, scaled down; older ones are dropped.
+/// Keeps the newest slice of a scan as a small picture for viewers.
 
 #include <atomic>
 #include <cstdint>
@@ -22,7 +22,7 @@ struct PreviewPicture {
   double saturated_fraction = 0.0;
 };
 
-/// Scaled by whole numbers, averaging.
+/// Scales the image down by a whole factor; a pixel of the picture is the mean of the pixels it covers.
 [[nodiscard]] PreviewPicture make_preview(const ImageView& image, double z_um);
 
 /// {"seq", "width_px", "height_px", "z_um", "focus", "saturated_fraction", "png_base64"} as a JSON text.
@@ -33,9 +33,9 @@ class PreviewHub {
  public:
   /// Skips the slice if there is no viewer, the last picture is younger than 0.2 s, or the lock is taken.
   void offer(const ImageView& image, double z_um);
-  /// The newest picture as preview_json(), nothing before the first; there is a viewer for 3 s from now on.
+  /// The newest picture as preview_json(); nothing before the first. The caller counts as a viewer for 3 s.
   [[nodiscard]] std::optional<std::string> newest();
-  /// What was seen belongs to the past.
+  /// Drops the picture: it belongs to a scan that is over.
   void clear();
 
  private:

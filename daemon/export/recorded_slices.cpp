@@ -1,6 +1,8 @@
 #include "daemon/export/recorded_slices.hpp"
 
 #include <charconv>
+#include <fstream>
+#include <string_view>
 
 namespace fvd {
 
@@ -34,12 +36,25 @@ void SliceRecorder::add(const ImageView& slice, double z_um) {
   ++slices_;
 }
 
-void SliceRecorder::finish(const std::string& note) {
-  std::string head = "# " + note;
+namespace {
+
+constexpr const char* kHeights = "z.txt";
+constexpr std::string_view kSimulated = ", simulated";
+
+}  // namespace
+
+bool recorded_of_simulation(const std::filesystem::path& folder) {
+  std::ifstream in(folder / kHeights);
+  std::string head;
+  return std::getline(in, head) && head.starts_with("# ") && head.ends_with(kSimulated);
+}
+
+void SliceRecorder::finish(const std::string& source, bool simulated) {
+  std::string head = "# " + source + std::string(simulated ? kSimulated : "");
   for (char& c : head) {
     if (c == '\n' || c == '\r') c = ' ';
   }
-  directory_.add_file("slices/z.txt", head + "\n# measured z in um, one line a slice\n" + z_lines_);
+  directory_.add_file(std::string("slices/") + kHeights, head + "\n# measured z in um, one line a slice\n" + z_lines_);
 }
 
 }  // namespace fvd

@@ -1,7 +1,8 @@
 #pragma once
 
-/// Keeps the slices of a scan beside its result, in the form that they can be processed again.
+/// Writes the slices of a scan beside its result, so that they can be processed again.
 
+#include <filesystem>
 #include <string>
 
 #include "core/image/image.hpp"
@@ -11,6 +12,9 @@ namespace fvd {
 
 /// A binary PGM (netpbm "P5"); maxval is the format's largest grey level, so that reading it back restores the format.
 [[nodiscard]] std::string encode_pgm(const ImageView& slice);
+
+/// Whether z.txt in the folder of slices says that a device was simulated.
+[[nodiscard]] bool recorded_of_simulation(const std::filesystem::path& folder);
 
 /// Writes slices/slice_00000.pgm ... as they come, and their measured z to slices/z.txt in um with every digit a double
 /// has: processing the folder gives the same heights bit for bit.
@@ -23,8 +27,8 @@ class SliceRecorder {
   /// Throws Error kStorageFull, kStorageWrite.
   void add(const ImageView& slice, double z_um);
 
-  /// Writes z.txt; call once, after the last slice. note: a line of text for its head, e.g. the job and "simulated".
-  void finish(const std::string& note);
+  /// Writes z.txt; call once, after the last slice. source: a line of text for its head, e.g. the job.
+  void finish(const std::string& source, bool simulated);
 
  private:
   AtomicDirectory& directory_;

@@ -61,7 +61,7 @@ std::vector<std::size_t> order_of(const std::vector<Task>& tasks) {
   return order;
 }
 
-/// One entry a file; the files of a folder, e.g. recorded slices, share one.
+/// One entry per file; the files of a folder, e.g. recorded slices, share one entry.
 std::vector<ResultFile> listed(const std::vector<AtomicDirectory::File>& files) {
   std::vector<ResultFile> list;
   std::map<std::string, std::size_t> folders;  // name -> place in the list

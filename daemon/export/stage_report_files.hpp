@@ -29,7 +29,7 @@ struct StageReportHeader {
 /// observable, with the reasons as sentences in "caveats". Positions to 1 pm, alpha_z to 1e-9.
 [[nodiscard]] std::string stage_report_json(const StageReport& report, const StageReportHeader& header);
 
-/// One line a point in the order given, header row, decimal point, LF. Columns that need the measured position are
+/// One line per point in the order given, header row, decimal point, LF. Columns that need the measured position are
 /// empty where the report is not observable.
 [[nodiscard]] std::string stage_report_csv(const std::vector<StagePoint>& points, const StageReport& report);
 

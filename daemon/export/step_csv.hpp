@@ -10,8 +10,8 @@ namespace fvd {
 
 struct ExportInput;
 
-/// CSV with a header row, units in the column names, one row a slice, decimal point, LF. exposure_start_ms counts from
-/// the first measured exposure. Measured columns of a lost slice are empty.
+/// CSV with a header row, units in the column names, one row per slice, decimal point, LF. exposure_start_ms counts
+/// from the first measured exposure. Measured columns of a lost slice are empty.
 [[nodiscard]] std::string step_csv(const StepLog& log);
 
 /// The exporter: step_csv() of the result.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <ctime>
 #include <exception>
-#include <fstream>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 
 #include "core/focus/grey_statistics.hpp"
 #include "core/scan/slice_capture.hpp"
+#include "daemon/export/durable_file.hpp"
 #include "daemon/export/image_png.hpp"
 #include "daemon/export/preview_hub.hpp"
 
@@ -96,7 +96,11 @@ void drop_oldest(const fs::path& folder) {
     if (entry->path().extension() == ".png") snaps.push_back(entry->path());
   }
   if (snaps.size() <= kSnapsKept) return;
-  std::sort(snaps.begin(), snaps.end());  // by time
+  const auto before = [](const fs::path& a, const fs::path& b) {  // by time, "..Z-10" after "..Z-2"
+    const auto key = [](const fs::path& path) { return std::pair(path.string().size(), path.string()); };
+    return key(a) < key(b);
+  };
+  std::sort(snaps.begin(), snaps.end(), before);
   for (std::size_t i = 0; i + kSnapsKept < snaps.size(); ++i) fs::remove(snaps[i], error);
 }
 
@@ -107,10 +111,7 @@ DeviceTask::Work snap_work(const CameraSettings& settings) {
     const Shot shot = shoot(devices, settings, stop);
     const fs::path folder = devices.state_dir / "snaps";
     const fs::path path = new_snap(folder);
-    std::ofstream out(path, std::ios::binary);
-    out << encode_image_png(shot.frame.image);
-    out.close();
-    if (!out) throw Error(ErrorCode::kStorageWrite, "cannot write " + path.string() + "; see /paths/state_dir");
+    write_new_file(path, encode_image_png(shot.frame.image));
     drop_oldest(folder);
     return ordered_json{{"path", fs::absolute(path).string()},
                         {"width_px", shot.frame.image.width},

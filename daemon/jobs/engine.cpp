@@ -33,7 +33,8 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
       pages_(std::make_shared<KeptPages>(memory_budget_bytes(config))),
       history_(config.paths.state_dir / "stage_history.json"),
       recipes_({config.paths.recipe_dir, config.paths.state_dir / "recipes"},
-               {config.stage.min, config.stage.max, config.stage.take_up}, deps.store.recipe_versions()),
+               {config.stage.min, config.stage.max, config.stage.take_up, config.stage.speed_um_per_s},
+               deps.store.recipe_versions()),
       board_(constants(config, deps.store), deps.store.latest()),
       hub_(deps.openers, deps.clock,
            [this](bool at_rest) {

@@ -37,6 +37,10 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
+  /// Opens the devices, and takes jobs and commands once they are open; until then the machine is preoperational. To be
+  /// called once.
+  void start() { thread_.start(); }
+
   [[nodiscard]] Services services() { return {board_, jobs_, jobs_, tasks_, recipes_}; }
 
   /// Takes no more jobs and commands from now on, and asks what runs to end; returns at once. context: any thread.

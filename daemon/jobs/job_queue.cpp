@@ -145,16 +145,19 @@ void JobQueue::prepare(const std::string& recipe_id) {
   });
 }
 
-std::string JobQueue::result_json(const JobKey& key) const { return deps_.store.find(key).result_json; }
-
-std::string JobQueue::result_dir(const JobKey& key) const { return deps_.store.find(key).result_dir; }
+StoredJob JobQueue::stored(const JobKey& key) const {
+  StoredJob stored = deps_.store.find(key);
+  if (stored.status.state != JobState::kProcessing) return stored;
+  const auto running = on_board(key);
+  if (!running) return stored;
+  if (running->state != JobState::kProcessing) return deps_.store.find(key);  // it has ended in between
+  stored.status = *running;
+  return stored;
+}
 
 std::optional<JobStatus> JobQueue::next_unacknowledged() const { return deps_.store.next_unacknowledged(); }
 
 int JobQueue::acknowledge(const JobKey& key) {
-  if (const auto job = on_board(key); job && job->state == JobState::kProcessing) {
-    throw Error(ErrorCode::kBusy, "job " + job->job_id + " is still running; acknowledge it when it has ended");
-  }
   const int remaining = deps_.store.acknowledge(key);
   deps_.board.update([&](MachineRecord& machine) {
     if (!machine.job || !names(key, *machine.job)) return;

@@ -43,8 +43,7 @@ class JobQueue final : public JobService, public ResultService {
   JobStatus abort(const JobKey& key) override;
   void prepare(const std::string& recipe_id) override;
 
-  [[nodiscard]] std::string result_json(const JobKey& key) const override;
-  [[nodiscard]] std::string result_dir(const JobKey& key) const override;
+  [[nodiscard]] StoredJob stored(const JobKey& key) const override;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override;
   int acknowledge(const JobKey& key) override;
 

@@ -85,7 +85,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
   observer.on_phase("storing");
   // In a continuous scan nobody commands the stage to be just there.
   if (job.recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
-  if (recorder) recorder->finish("job " + job.status.job_id + (acquired.simulated ? ", simulated" : ""));
+  if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
   return deps_.make_result(directory, acquired);
 }
 
@@ -116,7 +116,7 @@ MeasurementObserver JobRunner::observer() {
   observer.on_acquired = [this, change_job] {
     deps_.hub.confirm_rest();  // before anybody is told that the part is free
     change_job([](MachineRecord& machine, JobStatus& job) {
-      job.acquired = true;
+      job.acquired = machine.state.at_rest;
       machine.apply(MachineEvent::kJobAcquired);
     });
   };
@@ -133,7 +133,7 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
   JobStatus ended = deps_.board.read().job.value_or(job.status);
   ended.state = end.state;
   ended.phase.clear();
-  ended.acquired = true;
+  ended.acquired = ended.acquired || !end.used_devices || deps_.hub.at_rest();
   ended.error = end.error;
   ended.error_message = end.message;
   // The row is durable before anybody can see the job's end; a database that fails must not hide how it ended.
@@ -145,6 +145,7 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
     ended.not_durable = failure.what();
   }
   deps_.board.update([&](MachineRecord& machine) {
+    if (machine.job) ended.acknowledged = machine.job->acknowledged;  // by a client that saw the row
     machine.job = ended;
     machine.apply(MachineEvent::kJobEnded);
     if (end.used_devices) machine.set_devices(end.failure);

@@ -21,12 +21,11 @@ constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
 
 MachineThread::MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, ThreadTicks& ticks,
                              std::function<void()> in_between)
-    : hub_(hub),
-      board_(board),
-      work_(work),
-      ticks_(ticks),
-      in_between_(std::move(in_between)),
-      thread_(start_thread("fvd-machine", [this](std::stop_token stop) { run(stop); })) {}
+    : hub_(hub), board_(board), work_(work), ticks_(ticks), in_between_(std::move(in_between)) {}
+
+void MachineThread::start() {
+  thread_ = start_thread("fvd-machine", [this](std::stop_token stop) { run(stop); });
+}
 
 MachineThread::~MachineThread() { finish(); }
 

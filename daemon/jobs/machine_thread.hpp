@@ -15,12 +15,14 @@ namespace fvd {
 
 class MachineThread {
  public:
-  /// Starts at once; opens the devices first. in_between: called as often as the devices are looked after, never
+  /// in_between: called as often as the devices are looked after, never
   /// throws.
   MachineThread(DeviceHub& hub, MachineBoard& board, WorkQueue& work, ThreadTicks& ticks,
                 std::function<void()> in_between);
   /// finish().
   ~MachineThread();
+  /// Begins: opens the devices first. To be called once.
+  void start();
   MachineThread(const MachineThread&) = delete;
   MachineThread& operator=(const MachineThread&) = delete;
 

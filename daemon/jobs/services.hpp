@@ -79,10 +79,8 @@ class ResultService {
  public:
   virtual ~ResultService() = default;
 
-  /// The JSON text of the job's result.json; empty while there is none. Throws Error kUnknownJob.
-  [[nodiscard]] virtual std::string result_json(const JobKey& key) const = 0;
-  /// The job's result directory; empty while there is none. Throws Error kUnknownJob.
-  [[nodiscard]] virtual std::string result_dir(const JobKey& key) const = 0;
+  /// The job, its result's folder and the text of its result.json, of one moment. Throws Error kUnknownJob.
+  [[nodiscard]] virtual StoredJob stored(const JobKey& key) const = 0;
 
   /// The oldest ended job that was not acknowledged.
   [[nodiscard]] virtual std::optional<JobStatus> next_unacknowledged() const = 0;

@@ -31,12 +31,13 @@ void copy_books(const ScanReport& report, ResultData& result) {
 void acquire(const ScanPlan& plan, const CameraSettings& settings, const MeasurementDependencies& deps,
              const MeasurementObserver& observer, StreamingFocusStack& stack, ResultData& result,
              std::stop_token stop) {
+  FreeRun free_run(deps.camera, settings);  // ends after the worker, which holds frames
   FocusWorker worker(stack, deps.queue_slices, observer.tap);
   const ScanDependencies scan{deps.camera, deps.stage, deps.clock, worker};
   ScanReport report;
   try {
     if (plan.mode == ScanMode::kContinuous) {
-      ContinuousScan(scan, settings).run(plan, report, observer.on_slice, stop);
+      ContinuousScan(scan, free_run).run(plan, report, observer.on_slice, stop);
     } else {
       ScanRunner(scan).run(plan, report, observer.on_slice, stop);
     }

@@ -104,7 +104,7 @@ Recipe RecipeBook::load(const std::string& id) const {
 RecipeCheck RecipeBook::check(const std::string& text, const std::string& id) const {
   Problems problems;
   const Recipe recipe = read_recipe(text, id, problems);
-  for (Problem& found : check_stage_limits(recipe, limits_.min, limits_.max, limits_.take_up, problems)) {
+  for (Problem& found : check_stage_limits(recipe, limits_, problems)) {
     problems.push_back(std::move(found));
   }
   RecipeCheck check;

@@ -11,6 +11,7 @@
 
 #include "core/base/mutex.hpp"
 #include "core/base/units.hpp"
+#include "daemon/recipes/recipe_document.hpp"
 #include "daemon/recipes/recipe_service.hpp"
 
 namespace fvd {
@@ -18,12 +19,6 @@ namespace fvd {
 struct RecipeFolders {
   std::filesystem::path shipped;
   std::filesystem::path edited;  ///< made when the first recipe is saved
-};
-
-struct StageLimits {
-  Micrometers min;
-  Micrometers max;
-  Micrometers take_up;
 };
 
 /// A file that was changed by hand becomes a version of its own as soon as the book looks at its versions. A file that

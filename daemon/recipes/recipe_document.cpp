@@ -146,24 +146,31 @@ std::string convert_recipe(std::string_view json_text, const std::string& id) {
   return made.dump(2) + "\n";
 }
 
-Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up,
-                            const Problems& read) {
+Problems check_stage_limits(const Recipe& recipe, const StageLimits& stage, const Problems& read) {
   Problems problems;
   const std::string scan = recipe.format == 1 ? kFormat1Places.scan : kFormat2Places.scan;
   const auto judged = [&](const std::string& key) { return !is_reported(read, scan + key); };
-  const double first = recipe.start_um - take_up.value;
+  const double first = recipe.start_um - stage.take_up.value;
   const double last = recipe.start_um + recipe.step_um * (recipe.slices - 1);
-  if (judged("/start_um") && first < min.value) {
+  if (judged("/start_um") && first < stage.min.value) {
     std::ostringstream text;
-    text << recipe.start_um << " with " << take_up.value << " um of take-up reaches " << first
-         << " um; expected a start of at least " << min.value + take_up.value << " um";
+    text << recipe.start_um << " with " << stage.take_up.value << " um of take-up reaches " << first
+         << " um; expected a start of at least " << stage.min.value + stage.take_up.value << " um";
     problems.push_back({scan + "/start_um", text.str()});
   }
-  if (judged("/start_um") && judged("/step_um") && judged("/slices") && last > max.value) {
+  if (judged("/start_um") && judged("/step_um") && judged("/slices") && last > stage.max.value) {
     std::ostringstream text;
-    text << recipe.slices << " slices reach " << last << " um; expected at most " << max.value
+    text << recipe.slices << " slices reach " << last << " um; expected at most " << stage.max.value
          << " um: fewer slices, a smaller step_um or a lower start_um";
     problems.push_back({scan + "/slices", text.str()});
+  }
+  const double speed = recipe.speed_um_per_s;
+  if (recipe.mode == ScanMode::kContinuous && judged("/mode") && judged("/speed_um_per_s") &&
+      !(speed > 0.0 && speed <= stage.speed_um_per_s)) {
+    std::ostringstream text;
+    text << speed << " um/s is no speed of a continuous scan; expected above 0 and at most the stage's "
+         << stage.speed_um_per_s << " um/s";
+    problems.push_back({scan + "/speed_um_per_s", text.str()});
   }
   return problems;
 }

@@ -40,10 +40,16 @@ void describe_format_1(Recipe& recipe, Fields& fields);
 /// kBadRecipe if it is refused, also where it is of format 2 already.
 [[nodiscard]] std::string convert_recipe(std::string_view json_text, const std::string& id);
 
-/// What of the recipe would leave the stage's limits: the take-up below the first slice, and the last slice. read: the
-/// problems of reading it; what rests on a value that they are about is not judged.
-[[nodiscard]] Problems check_stage_limits(const Recipe& recipe, Micrometers min, Micrometers max, Micrometers take_up,
-                                          const Problems& read = {});
+struct StageLimits {
+  Micrometers min;
+  Micrometers max;
+  Micrometers take_up;
+  double speed_um_per_s = 0.0;  ///< the highest
+};
+
+/// What of the recipe would leave the stage's limits: the take-up below the first slice, the last slice, and the speed
+/// of a continuous scan. read: the problems of reading it; what rests on a value that they are about is not judged.
+[[nodiscard]] Problems check_stage_limits(const Recipe& recipe, const StageLimits& stage, const Problems& read = {});
 
 /// JSON Schema of format 2; config/recipe.schema.json is this text.
 [[nodiscard]] std::string recipe_schema_text();

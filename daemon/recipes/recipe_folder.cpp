@@ -26,6 +26,19 @@ fs::path next_of(const fs::path& folder, const std::string& id) { return file_of
 
 }  // namespace
 
+namespace {
+
+/// Throws Error kBadInput where the disk does not tell: a recipe that cannot be seen is not one that is absent.
+bool is_there(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (error) throw Error(ErrorCode::kBadInput, "cannot read " + file.string() + ": " + error.message());
+  return true;
+}
+
+}  // namespace
+
 std::vector<std::string> list_recipes(const fs::path& folder) {
   std::vector<std::string> ids;
   std::error_code error;
@@ -41,8 +54,7 @@ std::vector<std::string> list_recipes(const fs::path& folder) {
 
 std::optional<std::string> find_recipe_text(const fs::path& folder, const std::string& id) {
   const fs::path file = file_of(folder, id);
-  std::error_code error;
-  if (!fs::exists(file, error)) return std::nullopt;
+  if (!is_there(file)) return std::nullopt;
   return read_text_file(file);
 }
 
@@ -61,8 +73,7 @@ void write_next_recipe_text(const fs::path& folder, const std::string& id, std::
 
 std::optional<std::string> find_next_recipe_text(const fs::path& folder, const std::string& id) {
   const fs::path next = next_of(folder, id);
-  std::error_code error;
-  if (!fs::is_regular_file(next, error)) return std::nullopt;
+  if (!is_there(next)) return std::nullopt;
   return read_text_file(next);
 }
 

@@ -8,8 +8,9 @@ namespace fvd {
 namespace {
 
 constexpr const char* kValidFraction = "valid_fraction";
-/// Of all points, sharpest at one end of the scan: the surface may reach beyond it.
-constexpr double kFractionAtEndWorthTelling = 0.05;
+/// Share of the points that are sharpest at one end of the scan, above which the result warns: the surface may reach
+/// beyond that end.
+constexpr double kMaxFractionAtEnd = 0.05;
 
 FurtherHeights further_heights(PeakMethod peak, const HeightMap& map) {
   const auto height = summarize_heights(map.height_m, map.sigma_m, map.mask).height;
@@ -87,9 +88,13 @@ std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warn
                                             std::to_string(result.slices.planned) +
                                             " that were planned cover the range: the camera is faster than asked"});
   }
+  if (result.valid_points == 0) {
+    warnings.push_back(
+        {"no_valid_point", "not one point is valid: is the light on, and the surface within the range?"});
+  }
   const auto at_end = [&](std::size_t points, const char* code, const char* end) {
     const double fraction = result.points == 0 ? 0.0 : static_cast<double>(points) / static_cast<double>(result.points);
-    if (fraction <= kFractionAtEndWorthTelling) return;
+    if (fraction <= kMaxFractionAtEnd) return;
     std::ostringstream text;
     text.precision(3);
     text << 100.0 * fraction << " % of the points are sharpest at the " << end

@@ -28,8 +28,8 @@ struct MeasuredValue {
   std::optional<double> u;           ///< standard uncertainty, in `unit`
   std::optional<double> expanded_u;  ///< k * u
   std::optional<double> k;           ///< coverage factor
-  std::size_t points = 0;            ///< valid points it rests on
-  double valid_fraction = 0.0;       ///< of the points it was to rest on, 0..1
+  std::size_t points = 0;            ///< valid points that the value rests on
+  double valid_fraction = 0.0;       ///< valid share of the points it was to rest on, 0..1
   std::optional<Limits> limits;
   std::optional<Verdict> verdict;  ///< present where limits are
   bool operator==(const MeasuredValue&) const = default;
@@ -61,9 +61,9 @@ struct FurtherHeights {
   bool operator==(const FurtherHeights&) const = default;
 };
 
-/// A file of the result, or all files of one of its folders.
+/// A file of the result, or all files of one folder of it.
 struct ResultFile {
-  std::string name;                    ///< a folder's ends with '/'
+  std::string name;                    ///< the name of a folder ends with '/'
   std::optional<std::uint64_t> files;  ///< number of files in a folder
   std::uint64_t size_bytes = 0;
   bool operator==(const ResultFile&) const = default;
@@ -124,7 +124,7 @@ struct Result {
 
   Job job;
   Recipe recipe;
-  std::optional<Verdict> verdict;  ///< absent = nothing was judged. Apart from whether the job ended well.
+  std::optional<Verdict> verdict;  ///< absent = nothing was judged; says nothing about how the job ended
   std::vector<MeasuredValue> measurements;
   std::vector<Warning> warnings;
   std::size_t points = 0;
@@ -137,7 +137,7 @@ struct Result {
   Stage stage;
   PhaseTimes times;
   Provenance provenance;
-  std::vector<ResultFile> files;  ///< but result.json itself
+  std::vector<ResultFile> files;  ///< all except result.json
 
   /// nullptr if there is none of that name.
   [[nodiscard]] const MeasuredValue* find(std::string_view name) const noexcept;

@@ -52,9 +52,6 @@ Database::Database(const std::filesystem::path& file, int flags) : file_(file) {
 
 Database::Database(const std::filesystem::path& file) : Database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) {
   take_the_file();
-  execute(
-      "PRAGMA journal_mode=WAL;"
-      "PRAGMA synchronous=FULL;");
 }
 
 Database Database::reader_of(const Database& owner) {
@@ -74,6 +71,17 @@ void Database::take_the_file() {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(kLockPoll_ms));  // flock() knows no deadline
   }
+}
+
+void Database::use_write_ahead_log() {
+  Statement mode(*this, "PRAGMA journal_mode=WAL");
+  const std::string in_force = mode.step() ? mode.text(0) : "";
+  if (in_force != "wal") {
+    throw Error(ErrorCode::kDatabase, "database " + file_.string() +
+                                          ": no write-ahead log is possible here, the journal is '" + in_force +
+                                          "': put state_dir on a local file system");
+  }
+  execute("PRAGMA synchronous=FULL");
 }
 
 void Database::execute(const char* sql) {

@@ -17,13 +17,17 @@ namespace fvd {
 /// One connection. context: one thread at a time.
 class Database {
  public:
-  /// Opens or creates the file; its folder must exist. Write-ahead log with synchronous=FULL: a commit that returned
-  /// survives a power cut. No other Database of this kind, of this or another process, opens the file until
-  /// destruction. Throws Error kDatabase naming the file and the reason, kStorageFull.
+  /// Opens or creates the file; its folder must exist. Writes nothing to a file that is there. No other Database of
+  /// this kind, of this or another process, opens the file until destruction. Throws Error kDatabase naming the file
+  /// and the reason, kStorageFull.
   explicit Database(const std::filesystem::path& file);
   /// A second connection to an open one's file, which sees what was committed and waits for no commit. Writing through
   /// it fails. `owner` outlives it. Throws Error kDatabase.
   [[nodiscard]] static Database reader_of(const Database& owner);
+
+  /// From here on with a write-ahead log and synchronous=FULL: a commit that returned survives a power cut, and readers
+  /// do not wait for it. Throws Error kDatabase, also where the file system cannot do that, kStorageFull.
+  void use_write_ahead_log();
 
   /// Runs statements without results. Throws Error kDatabase, kStorageFull.
   void execute(const char* sql);

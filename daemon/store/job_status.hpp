@@ -32,7 +32,7 @@ struct JobStatus {
   JobRequest request;
   JobState state = JobState::kProcessing;
   std::string phase;      ///< "preparing", "acquiring", "computing", "storing", "" when ended
-  bool acquired = false;  ///< it takes no more slices; Signals::part_release says whether the part may be moved
+  bool acquired = false;  ///< the part may be moved: no more slices, and standstill was measured
   int slices_done = 0;
   int slices_planned = 0;
   FrameCounts frames;
@@ -53,5 +53,11 @@ using JobKey = std::variant<std::string, ClientSeq>;
 
 /// True if the key is this job's.
 [[nodiscard]] bool names(const JobKey& key, const JobStatus& job);
+
+struct StoredJob {
+  JobStatus status;
+  std::string result_dir;   ///< empty = no result
+  std::string result_json;  ///< text of result.json, empty = no result
+};
 
 }  // namespace fvd

@@ -33,6 +33,11 @@ JobState state_from_name(const std::string& name) {
   return JobState::kFailed;
 }
 
+/// Nobody measured where the stage was when a job ended so.
+bool ends_in_motion(const std::optional<ErrorCode>& error) {
+  return error == ErrorCode::kInterrupted || error == ErrorCode::kStageDisconnected;
+}
+
 StoredJob read_row(const Statement& row) {
   StoredJob job;
   int column = 0;
@@ -59,7 +64,7 @@ StoredJob read_row(const Statement& row) {
   status.frames.underrun = count();
   job.result_dir = text();
   job.result_json = text();
-  status.acquired = status.state != JobState::kProcessing;
+  status.acquired = status.state != JobState::kProcessing && !ends_in_motion(status.error);
   return job;
 }
 

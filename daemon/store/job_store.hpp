@@ -14,12 +14,6 @@
 namespace fvd {
 
 /// A job with what its end left behind.
-struct StoredJob {
-  JobStatus status;
-  std::string result_dir;   ///< empty = no result
-  std::string result_json;  ///< text of result.json, empty = no result
-};
-
 /// A call that returned is on disk (SQLite, write-ahead log, synchronous=FULL; about 0.3 ms a commit).
 /// context: thread-safe. What only reads never waits for a commit.
 class JobStore {

@@ -122,7 +122,10 @@ void require_own_file(const Database& database, int version) {
                                           std::to_string(newest_schema_version()) +
                                           ": install the newer fvd that wrote it, or move the file away to start anew");
   }
-  if (version == 0 && scalar(database, "SELECT count(*) FROM sqlite_schema") > 0) {
+  const bool is_new = scalar(database, "SELECT count(*) FROM sqlite_schema") == 0;
+  const bool has_our_tables =
+      scalar(database, "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('starts', 'jobs')") == 2;
+  if (version == 0 ? !is_new : version < 0 || !has_our_tables) {
     throw Error(ErrorCode::kDatabase, "database " + database.file().string() +
                                           " was made by another program: move it away, or name another state_dir");
   }
@@ -137,8 +140,9 @@ int newest_schema_version() { return static_cast<int>(kSteps.size()); }
 int schema_version(const Database& database) { return static_cast<int>(scalar(database, "PRAGMA user_version")); }
 
 void migrate(Database& database, int version) {
-  require_own_file(database, schema_version(database));
   const int found = schema_version(database);
+  require_own_file(database, found);
+  database.use_write_ahead_log();
   for (int from = found; from < version; ++from) {
     const MigrationStep& step = kSteps.at(static_cast<std::size_t>(from));
     Transaction transaction(database);

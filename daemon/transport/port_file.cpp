@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <string>
 #include <system_error>
 
 #include <unistd.h>
@@ -24,6 +25,15 @@ void write_port_file(const std::filesystem::path& port_file, const std::string& 
     throw Error(ErrorCode::kStorageWrite,
                 "cannot write " + port_file.string() + ": " + std::strerror(errno) + "; see /paths/runtime_dir");
   }
+}
+
+void remove_port_file(const std::filesystem::path& port_file) noexcept {
+  std::ifstream in(port_file);
+  std::string text;
+  // Another fvd that was given the same folder may have put its own there meanwhile.
+  if (!std::getline(in, text) || text.find("\"pid\": " + std::to_string(::getpid()) + "}") == std::string::npos) return;
+  std::error_code ignored;
+  std::filesystem::remove(port_file, ignored);
 }
 
 }  // namespace fvd

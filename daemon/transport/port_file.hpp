@@ -10,4 +10,7 @@ namespace fvd {
 /// Writes {"address","port","pid"} whole or not at all, and makes the folder. Throws Error kStorageWrite.
 void write_port_file(const std::filesystem::path& file, const std::string& address, int port);
 
+/// Removes the file if this process wrote it.
+void remove_port_file(const std::filesystem::path& port_file) noexcept;
+
 }  // namespace fvd

@@ -59,24 +59,24 @@ struct RpcServer::Impl {
     services.machine.on_change({});
     asio::post(context, [this] { shut_down(std::chrono::steady_clock::now() + kShutdownGrace); });
     thread.join();
-    std::error_code ignored;
-    std::filesystem::remove(port_file, ignored);
+    remove_port_file(port_file);
   }
 
   void listen() {
     ErrorCodeOf error;
+    const auto refuse = [&](ErrorCode code) {
+      throw Error(code, "cannot listen on " + config.address + ":" + std::to_string(config.port) + ": " +
+                            error.message() + "; see /rpc/address and /rpc/port");
+    };
     const auto address = asio::ip::make_address(config.address, error);
-    if (!error) {
-      const tcp::endpoint endpoint(address, static_cast<unsigned short>(config.port));
-      acceptor.open(endpoint.protocol(), error);
-      if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-      if (!error) acceptor.bind(endpoint, error);
-      if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-    }
-    if (error) {
-      throw Error(ErrorCode::kBadConfig, "cannot listen on " + config.address + ":" + std::to_string(config.port) +
-                                             ": " + error.message() + "; see /rpc/address and /rpc/port");
-    }
+    if (error) refuse(ErrorCode::kBadConfig);
+    const tcp::endpoint endpoint(address, static_cast<unsigned short>(config.port));
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    // Another program may give the port free, and a network card may get its address later.
+    if (error) refuse(ErrorCode::kNotReady);
     port = acceptor.local_endpoint().port();
   }
 

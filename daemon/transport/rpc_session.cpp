@@ -76,7 +76,9 @@ void RpcSession::watch_idle() {
   idle_.expires_after(host_.idle_timeout);
   idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
     // A connection with an open request is not idle; the request has a timeout of its own.
-    if (!error && !self->has_request()) self->close();
+    // One that expired while a request was answered was put off meanwhile: its handler comes all the same.
+    const bool put_off = self->idle_.expiry() > std::chrono::steady_clock::now();
+    if (!error && !put_off && !self->has_request()) self->close();
   });
 }
 

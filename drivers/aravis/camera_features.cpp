@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <memory>
 #include <sstream>
 #include <vector>
@@ -18,9 +19,12 @@ double exposure_tolerance_us(double asked_us) { return std::max(0.01 * asked_us,
 constexpr double kGainTolerance_db = 0.3;
 constexpr double kRateTolerance = 0.02;
 
+/// So many that no limit is written with an exponent.
+constexpr int kDigits = 12;
+
 std::string number(double value) {
   std::ostringstream text;
-  text << value;
+  text << std::setprecision(kDigits) << value;
   return text.str();
 }
 

@@ -27,7 +27,10 @@ class FrameCounter {
       return last_ = base_ + block;
     }
     const std::uint64_t ahead = (block + kPeriod - previous_) % kPeriod;
-    if (ahead > kPeriod / 2) return last_ - (kPeriod - ahead);  // late: the newest stays the reference
+    if (ahead > kPeriod / 2) {  // late: the newest stays the reference
+      const std::uint64_t behind = kPeriod - ahead;
+      return last_ > behind ? last_ - behind : 0;
+    }
     previous_ = block;
     return last_ += ahead;
   }

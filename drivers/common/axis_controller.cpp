@@ -11,6 +11,7 @@
 #include "core/scan/settle_detector.hpp"
 #include "drivers/common/axis_poller.hpp"
 #include "drivers/common/axis_stopper.hpp"
+#include "drivers/common/disable_watch.hpp"
 #include "drivers/common/rest_detector.hpp"
 
 namespace fvd {
@@ -54,26 +55,15 @@ class AxisController final : public Axis {
   AxisController(const AxisController&) = delete;
   AxisController& operator=(const AxisController&) = delete;
 
-  [[nodiscard]] StageInfo info() const override {
-    StageInfo info;
-    info.name = traits_.name;
-    info.address = traits_.address;
-    info.feedback = traits_.feedback;
-    info.step_quantum = Micrometers{1.0 / std::abs(traits_.steps_per_um)};
-    info.feedback_resolution = traits_.feedback_resolution;
-    info.min = settings_.min;
-    info.max = settings_.max;
-    info.take_up = settings_.take_up;
-    info.lead = traits_.lead;
-    info.speed_um_per_s = settings_.limits.speed_um_per_s;
-    info.acceleration_um_per_s2 = settings_.limits.acceleration_um_per_s2;
-    info.simulated = settings_.simulated;
-    return info;
-  }
+  [[nodiscard]] StageInfo info() const override { return stage_info(traits_, settings_); }
 
   [[nodiscard]] StageStatus status() override { return status_of(poller_.sample_after(HostClock::now(), {})); }
 
-  [[nodiscard]] std::optional<StageStatus> last_seen() const override { return status_of(poller_.latest()); }
+  [[nodiscard]] std::optional<StageStatus> last_seen() const override {
+    const AxisSample sample = poller_.latest();
+    disabled_.saw(sample);
+    return status_of(sample);
+  }
 
   [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
     auto stats = port_->link_stats();
@@ -83,18 +73,17 @@ class AxisController final : public Axis {
 
   void home(std::stop_token stop) override {
     const AxisSample before = poller_.sample_after(HostClock::now(), stop);
-    require_no_alarm(*port_, before);
-    require_off_limits(traits_, before);
+    require_homing_possible(*port_, before);
     if (!before.enabled) enable(stop);
+    require_wanted(stop);
     const Commanded homing(state_, AxisState::kHoming);
     target_.reset();
     poller_.remember_homed(false);
     halting_on_error([&] {
-      const HostTime started = HostClock::now();
       const CommandResult sent = port_->home(settings_.limits, stop);
-      if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
+      require_wanted(stop);
       require_done(traits_, sent, "home");
-      wait_until_homed(started, stop);
+      wait_until_homed(HostClock::now(), stop);
     });
   }
 
@@ -123,7 +112,7 @@ class AxisController final : public Axis {
   }
 
   void stop() noexcept override {
-    expect_disabling();
+    disabled_.stopping(poller_.latest());
     (void)stopper_.send();
     changed_ = HostClock::now();
   }
@@ -146,20 +135,16 @@ class AxisController final : public Axis {
                                                "; stop it by its emergency stop");
   }
 
-  void enable(std::stop_token stop) {
-    require_done(traits_, port_->enable(settings_.limits, std::move(stop)), "enable");
-    expect_enabled_ = true;
+  void enable(const std::stop_token& stop) {
+    const CommandResult enabled = port_->enable(settings_.limits, stop);
+    require_wanted(stop);
+    require_done(traits_, enabled, "enable");
+    disabled_.enabled();
     changed_ = HostClock::now();
   }
 
-  /// Some drives are disabled after a stop. A stop explains nothing about a drive that was disabled before.
-  void expect_disabling() noexcept {
-    if (poller_.latest().enabled) expect_enabled_ = false;
-  }
-
-  /// A drive that somebody else has disabled - an emergency stop, a power cut - may have been moved by hand since.
   void require_enabled(const AxisSample& sample) {
-    if (sample.enabled || !expect_enabled_) return;
+    if (!disabled_.somebody_else_disabled(sample)) return;
     poller_.remember_homed(false);
     throw Error(ErrorCode::kStageAlarm,
                 "the drive at " + traits_.address +
@@ -180,7 +165,9 @@ class AxisController final : public Axis {
 
   /// The axis rests and is sampled all the time; what happens to it from now on, settle() sees.
   AxisSample current_sample(const std::stop_token& stop) {
-    return poller_.sample_after(std::max(HostClock::now() - kSampleAge, changed_.load()), stop);
+    const AxisSample sample = poller_.sample_after(std::max(HostClock::now() - kSampleAge, changed_.load()), stop);
+    disabled_.saw(sample);
+    return sample;
   }
 
   [[nodiscard]] StageStatus status_of(const AxisSample& sample) const {
@@ -223,7 +210,7 @@ class AxisController final : public Axis {
     } catch (const std::exception& error) {
       message = error.what();
     }
-    expect_disabling();
+    disabled_.stopping(poller_.latest());
     const std::string failure = stopper_.halt();
     changed_ = HostClock::now();
     throw Error(code, failure.empty() ? message : message + "; " + failure);
@@ -235,8 +222,7 @@ class AxisController final : public Axis {
     for (HostTime last = HostClock::now();;) {
       const AxisSample sample = poller_.sample_after(last, stop);
       last = sample.begun;
-      // A limit switch may be the reference, and some drives report it as an alarm.
-      if (!sample.limit_positive && !sample.limit_negative) require_no_alarm(*port_, sample);
+      require_homing_possible(*port_, sample);
       moved = moved || sample.moving || (traits_.tells_homed && !sample.homed);
       // An axis that was homed and rests at its origin never shows motion: then the start time decides.
       const bool begun = moved || sample.time - started > traits_.start_within;
@@ -271,6 +257,7 @@ class AxisController final : public Axis {
     }
     if (!before.enabled) enable(stop);  // halted by our own stop: this is a new command
     require_reference(before);
+    require_wanted(stop);
     const Commanded moving(state_, AxisState::kMoving);
     move.started = HostClock::now();
     halting_on_error([&] {
@@ -284,13 +271,16 @@ class AxisController final : public Axis {
   /// absolute target once more: an absolute move that did arrive is not repeated by that.
   void start_move(const MoveRecord& move, const MotionLimits& limits, const AxisSample& before,
                   const SettleCriterion& criterion, const std::stop_token& stop) {
+    const auto before_target = target_;
     for (int attempt = 1;; ++attempt) {
       CommandResult result;
       poller_.pause([&] { result = port_->move(move.target_counts, limits, stop); });
       target_ = move.target_counts.value;
       if (result.outcome == CommandOutcome::kDone) return;
-      if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
-      if (result.outcome == CommandOutcome::kRefused) {
+      const bool refused = result.outcome == CommandOutcome::kRefused;
+      if (refused && port_->remembered_target() != target_) target_ = before_target;
+      require_wanted(stop);
+      if (refused) {
         require_sound(poller_.sample_after(HostClock::now(), stop), false);  // which says why, if the drive does
         throw Error(ErrorCode::kStagePosition,
                     "the drive at " + traits_.address + " refused the move: " + result.error);
@@ -378,7 +368,7 @@ class AxisController final : public Axis {
   const std::unique_ptr<AxisPort> port_;
   const AxisTraits& traits_;
   std::atomic<AxisState> state_{AxisState::kReady};
-  std::atomic<bool> expect_enabled_{false};
+  mutable DisableWatch disabled_;
   std::atomic<HostTime> changed_{HostTime{}};  // by fvd: older samples do not tell what the drive is like now
   std::optional<std::int64_t> target_;         // steps, last one sent since homing
   AxisPoller poller_;

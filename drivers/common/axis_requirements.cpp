@@ -8,6 +8,37 @@
 
 namespace fvd {
 
+namespace {
+
+void require_no_emergency_stop(const AxisPort& port, const AxisSample& sample) {
+  if (!sample.emergency_stop) return;
+  throw Error(ErrorCode::kStageAlarm, "the emergency stop of the drive at " + port.traits().address +
+                                          " is on; release it, reset the alarm, and home again");
+}
+
+}  // namespace
+
+StageInfo stage_info(const AxisTraits& traits, const AxisSettings& settings) {
+  StageInfo info;
+  info.name = traits.name;
+  info.address = traits.address;
+  info.feedback = traits.feedback;
+  info.step_quantum = Micrometers{1.0 / std::abs(traits.steps_per_um)};
+  info.feedback_resolution = traits.feedback_resolution;
+  info.min = settings.min;
+  info.max = settings.max;
+  info.take_up = settings.take_up;
+  info.lead = traits.lead;
+  info.speed_um_per_s = settings.limits.speed_um_per_s;
+  info.acceleration_um_per_s2 = settings.limits.acceleration_um_per_s2;
+  info.simulated = settings.simulated;
+  return info;
+}
+
+void require_wanted(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
+}
+
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings) {
   if (!traits.limits) return;
   const auto& [lower, upper] = *traits.limits;
@@ -44,11 +75,13 @@ void require_sweep_speed(const AxisSettings& settings, double speed_um_per_s) {
   throw Error(ErrorCode::kStageLimit, message.str());
 }
 
+void require_homing_possible(const AxisPort& port, const AxisSample& sample) {
+  require_no_emergency_stop(port, sample);
+  if (!sample.limit_positive && !sample.limit_negative) require_no_alarm(port, sample);
+}
+
 void require_no_alarm(const AxisPort& port, const AxisSample& sample) {
-  if (sample.emergency_stop) {
-    throw Error(ErrorCode::kStageAlarm, "the emergency stop of the drive at " + port.traits().address +
-                                            " is on; release it, reset the alarm, and home again");
-  }
+  require_no_emergency_stop(port, sample);
   if (sample.alarm) {
     throw Error(ErrorCode::kStageAlarm, "the drive at " + port.traits().address + " reports " +
                                             port.alarm_text(sample.alarm_code) +

@@ -15,6 +15,11 @@ struct AxisSettings {
   bool simulated = false;
 };
 
+/// What is said of the axis to whoever uses it.
+[[nodiscard]] StageInfo stage_info(const AxisTraits& traits, const AxisSettings& settings);
+
+/// Throws Error kAborted if a stop was requested: nothing begins to move for a caller that does not want it any more.
+void require_wanted(const std::stop_token& stop);
 /// Throws Error kStageLimit if the configured limits reach beyond the controller's own.
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings);
 /// Throws Error kStageLimit if the target is beyond the controller's counter.
@@ -23,6 +28,9 @@ void require_limits_inside(const AxisTraits& traits, const AxisSettings& setting
 void require_within_limits(const AxisSettings& settings, Micrometers target);
 /// Throws Error kStageLimit for a speed that is not above 0 or above that of moves.
 void require_sweep_speed(const AxisSettings& settings, double speed_um_per_s);
+/// Throws Error kStageAlarm for an emergency stop, and for an alarm unless the axis stands on a limit switch: that may
+/// be its reference, some drives report it as an alarm, and homing leads away from it.
+void require_homing_possible(const AxisPort& port, const AxisSample& sample);
 /// Throws Error kStageAlarm for an alarm or an emergency stop.
 void require_no_alarm(const AxisPort& port, const AxisSample& sample);
 /// Throws Error kStageLimit on a limit switch.

@@ -33,6 +33,7 @@ speed_t speed_of(int baud) {
 }
 
 int open_serial(const TextLineConfig& config, std::string& error) {
+  const speed_t speed = speed_of(config.serial_baud);
   const int fd = ::open(config.serial_device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   termios settings{};
   // No second program on the line: its answers would be taken for ours.
@@ -43,8 +44,12 @@ int open_serial(const TextLineConfig& config, std::string& error) {
   }
   ::cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
-  ::cfsetspeed(&settings, speed_of(config.serial_baud));
-  ::tcsetattr(fd, TCSANOW, &settings);
+  settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
+  if (::cfsetspeed(&settings, speed) != 0 || ::tcsetattr(fd, TCSANOW, &settings) != 0) {
+    error = std::strerror(errno);
+    ::close(fd);
+    return -1;
+  }
   ::tcflush(fd, TCIOFLUSH);
   return fd;
 }

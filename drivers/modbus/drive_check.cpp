@@ -44,6 +44,7 @@ std::map<std::string, DriveRegister> registers_of(const DriveProfile& profile) {
   };
   add(profile.position);
   add(profile.alarm_code);
+  if (profile.target) add(*profile.target);
   for (const auto* condition : {&profile.enabled, &profile.moving, &profile.in_position, &profile.alarm}) {
     add_all(*condition);
   }
@@ -154,7 +155,7 @@ class Checker {
       const int code = static_cast<int>(
           values_.contains(profile_.alarm_code.name) ? values_.at(profile_.alarm_code.name) : std::int64_t{0});
       check_.alarm = alarm_text(profile_, code);
-      if (!profile_.alarms.contains(code)) {
+      if (alarms_of(profile_, code).empty()) {
         check_.disagreements.push_back("the profile has no text for " + check_.alarm);
       }
     } else if (values_.contains(profile_.alarm_code.name) && values_.at(profile_.alarm_code.name) != 0) {

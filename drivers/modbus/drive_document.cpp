@@ -300,6 +300,8 @@ void describe(DriveDocument& document, Fields& fields) {
   fields.require("status");
   fields.group("sequences", "what is sent to it", [&](Fields& in) { describe_sequences(document, in); });
   fields.require("sequences");
+  fields.boolean("alarms_are_bits", plain.alarms_are_bits,
+                 "true: the alarm register is a bit mask, and the codes are its single bits");
   fields.map("alarms", document.alarms, "by the code of the alarm, a number or \"0x..\"", describe_alarm);
   fields.require("alarms");
   describe_extras(document, fields);

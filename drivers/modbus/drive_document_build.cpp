@@ -154,6 +154,10 @@ class ProfileBuilder {
       if (texts[i].variable == "$speed") value = DriveVariable::kSpeed;
       if (texts[i].variable == "$acceleration") value = DriveVariable::kAcceleration;
       RegisterWrite write{reg(at + "/0", texts[i].reg, !frame), value};
+      if (const auto* plain = std::get_if<std::int64_t>(&value); plain != nullptr && !write.reg.name.empty()) {
+        if (!holds(write.reg, *plain))
+          report(at, std::to_string(*plain) + " does not fit into '" + write.reg.name + "'");
+      }
       const bool known = !write.reg.name.empty() && (writes.empty() || !writes.back().reg.name.empty());
       if (frame && known && !writes.empty()) {
         const DriveRegister& last = writes.back().reg;
@@ -211,6 +215,20 @@ class ProfileBuilder {
          {std::pair{"home", &profile_.home}, {"move_absolute", &profile_.move_absolute}, {"stop", &profile_.stop}}) {
       if (steps->empty()) report(std::string("/sequences/") + name, "[] is not accepted; it needs at least one step");
     }
+    for (const char* variable : {"$target", "$speed"}) {
+      if (!document_.move_absolute.empty() && !writes(document_.move_absolute, variable)) {
+        report("/sequences/move_absolute", std::string("writes no ") + variable +
+                                               ": every move has its own; expected it among the values of a write");
+      }
+    }
+  }
+
+  [[nodiscard]] static bool writes(const std::vector<StepDocument>& steps, const std::string& variable) {
+    return std::any_of(steps.begin(), steps.end(), [&](const StepDocument& step) {
+      const auto holds = [&](const ValueDocument& value) { return value.variable == variable; };
+      return (step.kind == "write" && std::any_of(step.values.begin(), step.values.end(), holds)) ||
+             writes(step.then, variable) || writes(step.otherwise, variable);
+    });
   }
 
   void build_alarms() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "config/field_reader.hpp"
 #include "config/field_writer.hpp"
@@ -17,14 +18,35 @@ std::int64_t DriveUnit::value(double physical) const {
   return std::clamp(static_cast<std::int64_t>(std::clamp(std::round(exact), -9e15, 9e15)), min, max);
 }
 
+std::vector<DriveAlarm> alarms_of(const DriveProfile& profile, int code) {
+  std::vector<DriveAlarm> found;
+  if (!profile.alarms_are_bits) {
+    const auto known = profile.alarms.find(code);
+    if (known != profile.alarms.end()) found.push_back(known->second);
+    return found;
+  }
+  auto bits = static_cast<std::uint32_t>(code);
+  for (const auto& [bit, alarm] : profile.alarms) {
+    const auto mask = static_cast<std::uint32_t>(bit);
+    if (mask == 0 || (bits & mask) != mask) continue;
+    bits &= ~mask;
+    found.push_back(alarm);
+  }
+  if (bits != 0 && !found.empty()) found.push_back({"further bits, see the drive's manual"});
+  return found;
+}
+
 std::string alarm_text(const DriveProfile& profile, int code) {
   std::ostringstream text;
   text << "alarm 0x" << std::hex << std::uppercase << code;
-  const auto known = profile.alarms.find(code);
-  if (known == profile.alarms.end()) return text.str() + ": see the drive's manual";
-  text << ": " << known->second.text;
-  if (!known->second.resettable) text << " (not resettable: switch the drive off and on)";
-  if (known->second.position_lost) text << " (position lost: home again)";
+  const std::vector<DriveAlarm> known = alarms_of(profile, code);
+  if (known.empty()) return text.str() + ": see the drive's manual";
+  const char* separator = ": ";
+  for (const DriveAlarm& alarm : known) {
+    text << std::exchange(separator, ", ") << alarm.text;
+    if (!alarm.resettable) text << " (not resettable: switch the drive off and on)";
+    if (alarm.position_lost) text << " (position lost: home again)";
+  }
   return text.str();
 }
 

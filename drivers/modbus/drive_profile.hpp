@@ -100,11 +100,14 @@ struct DriveProfile {
   std::optional<DriveSoftLimits> soft_limits;
   std::vector<DriveTemperature> temperatures;
   std::map<int, DriveAlarm> alarms;             ///< by code
+  bool alarms_are_bits = false;                 ///< the codes are single bits, of which several may be set
   std::chrono::milliseconds start_within{150};  ///< a move that has not begun by then was refused
   std::chrono::milliseconds home_timeout{60000};
 };
 
-/// "alarm 0x30: overload".
+/// The alarms that a code stands for; empty if the profile knows none.
+[[nodiscard]] std::vector<DriveAlarm> alarms_of(const DriveProfile& profile, int code);
+/// "alarm 0x30: overload", "alarm 0x3: position error limit, counter-clockwise limit".
 [[nodiscard]] std::string alarm_text(const DriveProfile& profile, int code);
 
 /// Throws Error kBadConfig with every problem, each with its JSON pointer, value and accepted range.

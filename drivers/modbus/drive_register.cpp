@@ -1,8 +1,27 @@
 #include "drivers/modbus/drive_register.hpp"
 
+#include <cstdlib>
 #include <utility>
 
 namespace fvd {
+
+bool holds(const DriveRegister& reg, std::int64_t value) noexcept {
+  constexpr std::int64_t kMostBase1000 = 32767 * 1000LL + 999;
+  if (reg.codec == RegisterCodec::kBase1000) return std::abs(value) <= kMostBase1000;
+  switch (reg.type) {
+    case RegisterType::kBit:
+      return value == 0 || value == 1;
+    case RegisterType::kU16:
+      return value >= 0 && value <= 0xFFFF;
+    case RegisterType::kI16:
+      return value >= -0x8000 && value <= 0x7FFF;
+    case RegisterType::kU32:
+      return value >= 0 && value <= 0xFFFFFFFFLL;
+    case RegisterType::kI32:
+      return value >= -0x80000000LL && value <= 0x7FFFFFFFLL;
+  }
+  return false;
+}
 
 std::vector<std::uint16_t> encode(const DriveRegister& reg, std::int64_t value) {
   if (reg.type == RegisterType::kBit) return {static_cast<std::uint16_t>(value != 0 ? 1 : 0)};

@@ -31,6 +31,8 @@ struct DriveRegister {
   [[nodiscard]] int words() const noexcept { return type == RegisterType::kU32 || type == RegisterType::kI32 ? 2 : 1; }
 };
 
+/// Whether the register can hold the value.
+[[nodiscard]] bool holds(const DriveRegister& reg, std::int64_t value) noexcept;
 /// The register's words, or its bit, as they stand on the wire. A value that does not fit is cut to its low words;
 /// callers clamp.
 [[nodiscard]] std::vector<std::uint16_t> encode(const DriveRegister& reg, std::int64_t value);

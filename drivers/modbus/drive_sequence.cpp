@@ -63,7 +63,11 @@ class Runner {
   SequenceResult run_step(const WriteStep& step) {
     std::vector<std::uint16_t> words;
     for (const RegisterWrite& write : step.writes) {
-      const auto encoded = encode(write.reg, number(write.value));
+      const std::int64_t value = number(write.value);
+      if (!holds(write.reg, value)) {
+        return {ModbusOutcome::kRejected, std::to_string(value) + " does not fit into " + write.reg.name, 0};
+      }
+      const auto encoded = encode(write.reg, value);
       words.insert(words.end(), encoded.begin(), encoded.end());
     }
     const DriveRegister& first = step.writes.front().reg;

@@ -174,7 +174,15 @@ class ModbusPort final : public AxisPort {
     if (!profile_.soft_limits) return std::nullopt;
     const auto positive = read_register(link_, profile_.soft_limits->positive);
     const auto negative = read_register(link_, profile_.soft_limits->negative);
-    if (!positive || !negative || *negative >= *positive) return std::nullopt;  // not set
+    if (!positive || !negative) {
+      throw Error(ErrorCode::kStageDisconnected,
+                  "the drive at " + link_.description() + " does not tell its limits of travel");
+    }
+    if (*negative >= *positive) {
+      spdlog::info("the drive at {} has no limits of travel set: {} to {} steps", link_.description(), *negative,
+                   *positive);
+      return std::nullopt;
+    }
     const Micrometers one{static_cast<double>(*positive) / traits_.steps_per_um};
     const Micrometers other{static_cast<double>(*negative) / traits_.steps_per_um};
     return std::pair(std::min(one, other), std::max(one, other));
@@ -183,8 +191,9 @@ class ModbusPort final : public AxisPort {
   void add_alarm(AxisSample& sample, std::optional<std::int64_t> code) {
     if (!code) code = read_register(link_, profile_.alarm_code);
     sample.alarm_code = static_cast<int>(code.value_or(0));
-    const auto known = profile_.alarms.find(sample.alarm_code);
-    sample.reference_lost = known != profile_.alarms.end() && known->second.position_lost;
+    const std::vector<DriveAlarm> alarms = alarms_of(profile_, sample.alarm_code);
+    sample.reference_lost =
+        std::any_of(alarms.begin(), alarms.end(), [](const DriveAlarm& alarm) { return alarm.position_lost; });
   }
 
   /// After the first enable: a drive that is being halted or identified is not to be stopped by silence in between.

@@ -44,7 +44,13 @@ constexpr milliseconds kDrainSlice{5};
 /// A line that never falls silent is drained for so many quiet times at most.
 constexpr int kMostQuietTimes = 8;
 
-bool is_exception(int error) { return (error > MODBUS_ENOBASE && error <= EMBXGTAR) || error == EMBBADEXC; }
+/// The drive says that it did not execute the request. It does not say so where it is still at it, or busy, nor where a
+/// gateway had no answer from it.
+bool is_exception(int error) {
+  if (error == EMBXACK || error == EMBXSBUSY || error == EMBXGTAR) return false;
+  return (error > MODBUS_ENOBASE && error < EMBXGTAR) || error == EMBBADEXC;
+}
+
 bool is_device_gone(int error) { return error == EIO || error == ENXIO || error == ENODEV || error == EBADF; }
 
 /// The latency timer of an FTDI adapter in ms, which holds short replies back; asks for 1. Empty for other ports.

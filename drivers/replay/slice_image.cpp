@@ -15,9 +15,14 @@ namespace fvd {
 
 namespace {
 
+/// " in slices", nothing for a file of the present folder.
+std::string folder_text(const SliceLocation& location) {
+  const std::string folder = location.file.parent_path().string();
+  return folder.empty() ? "" : " in " + folder;
+}
+
 [[noreturn]] void refuse(const SliceLocation& location, const std::string& problem) {
-  throw Error(ErrorCode::kBadInput,
-              "slice " + location.name() + " in " + location.file.parent_path().string() + " " + problem);
+  throw Error(ErrorCode::kBadInput, "slice " + location.name() + folder_text(location) + " " + problem);
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

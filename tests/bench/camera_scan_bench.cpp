@@ -214,7 +214,8 @@ void print_position_error() {
   plan.speed_um_per_s = 400.0;
   plan.allowed_lost_slices = 20;
   ScanReport report;
-  ContinuousScan({*camera, *stage, clock, sink}, in_force).run(plan, report, {}, {});
+  FreeRun free_run(*camera, in_force);
+  ContinuousScan({*camera, *stage, clock, sink}, free_run).run(plan, report, {}, {});
   double sum = 0.0;
   double squares = 0.0;
   double worst = 0.0;

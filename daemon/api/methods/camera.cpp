@@ -74,8 +74,8 @@ void add_camera_methods(MethodTable& methods, const Services& services) {
         return reply_when_done(services.tasks.preview(params.settings(services.recipes)));
       })};
   methods["camera.suggest_exposure"] = {
-      .about = task_description("Seeks the exposure; leaves the camera as it was", described<ExposureParams>(),
-                                describe_exposure, kImageErrors, TaskMotion::kNone),
+      .about = task_description("Seeks the exposure; the camera has the asked settings afterwards",
+                                described<ExposureParams>(), describe_exposure, kImageErrors, TaskMotion::kNone),
       .run = with<ExposureParams>([services](const Call& call, const ExposureParams& params) -> Answer {
         require_wait(call);
         return reply_when_done(services.tasks.submit(

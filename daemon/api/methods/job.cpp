@@ -39,7 +39,7 @@ struct WaitParams {
 
   void describe(Fields& fields) {
     job.describe(fields);
-    fields.choice("until", until, {"acquired", "done"}, "acquired = no more slices are taken");
+    fields.choice("until", until, {"acquired", "done"}, "acquired = the part may be moved");
     fields.integer64("timeout_ms", timeout_ms, {0, kLongestWait_ms}, "then the job's status comes as it is");
     client.describe(fields);
   }

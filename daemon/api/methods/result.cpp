@@ -16,7 +16,8 @@ struct GetParams {
 
   void describe(Fields& fields) {
     job.describe(fields);
-    fields.choice("format", format, {"compact", "full"}, "at most 440 bytes, or 1400");
+    fields.choice("format", format, {"compact", "full"},
+                  "compact: at most 640 bytes; full: some 2 KiB, and more with warnings");
     client.describe(fields);
   }
 };
@@ -26,9 +27,9 @@ void describe_acknowledged(Fields& fields) {
 }
 
 Reply result_of(const Services& services, const JobKey& key, const std::string& format) {
-  const JobStatus job = services.jobs.job(key);
-  if (format == "compact") return compact_result_json(job, services.results.result_json(key));
-  return full_result_json(job, services.results.result_json(key), services.results.result_dir(key));
+  const StoredJob stored = services.results.stored(key);
+  if (format == "compact") return compact_result_json(stored.status, stored.result_json);
+  return full_result_json(stored.status, stored.result_json, stored.result_dir);
 }
 
 }  // namespace

@@ -81,13 +81,29 @@ TEST(Autofocus, StopsWhereTheRegionIsSharpestAndComesFromBelow) {
   }
 }
 
+TEST(Autofocus, MovesNothingForARangeThatCannotBeSearched) {
+  sim::FakeClock clock;
+  sim::FakeAxis stage(clock);  // -500 to 500 um, 20 of take-up
+  TexturedCamera camera(clock, stage, 0.0);
+  const auto refused = [&](const AutofocusPlan& plan, ErrorCode code, const char* why) {
+    test::expect_error(code, {why}, [&] { (void)autofocus(camera, stage, clock, plan, {}); });
+  };
+  refused(from_to(0.0, 2000.0), ErrorCode::kStageLimit, "nothing was moved");
+  refused(from_to(-490.0, 100.0), ErrorCode::kStageLimit, "take-up");
+  refused(from_to(100.0, 0.0), ErrorCode::kBadInput, "below");
+  AutofocusPlan fine = from_to(0.0, 300.0);
+  fine.step = Micrometers{0.001};
+  refused(fine, ErrorCode::kBadInput, "more than 1000 steps");
+  EXPECT_TRUE(stage.targets_um.empty());
+}
+
 TEST(Autofocus, SaysWhereNothingIsSharp) {
   sim::FakeClock clock;
   sim::FakeAxis stage(clock);
   TexturedCamera above(clock, stage, 300.0);
   test::expect_error(ErrorCode::kFocusRange, {"widen the range"},
                      [&] { (void)autofocus(above, stage, clock, from_to(-100.0, 100.0), {}); });
-  test::expect_error(ErrorCode::kBadInput, {"three"},
+  test::expect_error(ErrorCode::kBadInput, {"3 of its steps"},
                      [&] { (void)autofocus(above, stage, clock, from_to(0.0, 20.0), {}); });
   stage.is_homed = false;
   test::expect_error(ErrorCode::kStageNotHomed, {"stage.home"},

@@ -42,7 +42,8 @@ class AContinuousScan : public testing::Test {
     run();
   }
   void run(std::stop_token stop = {}) {
-    ContinuousScan({camera_, stage_, clock_, sink_}, settings_).run(plan_, report_, on_slice_, stop);
+    FreeRun free_run(camera_, settings_);
+    ContinuousScan({camera_, stage_, clock_, sink_}, free_run).run(plan_, report_, on_slice_, stop);
   }
 
   TestClock clock_;

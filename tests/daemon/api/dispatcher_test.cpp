@@ -173,7 +173,15 @@ TEST_F(ADispatcher, RefusesUnknownMethodsAndParametersByName) {
       reply(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":{"seq":1,"part_id":"p","recip":"x"}})");
   EXPECT_EQ(answer["error"]["code"], json_rpc::kInvalidParams);
   EXPECT_NE(answer["error"]["message"].get<std::string>().find("recip"), std::string::npos);
+  EXPECT_EQ(answer["error"]["data"], (json{{"error", "invalid_params"}, {"retry", false}}));
   EXPECT_EQ(service_.starts, 0);
+}
+
+TEST_F(ADispatcher, TellsAMisspeltParameterBesideTheOneThatIsMissing) {
+  const json answer = reply(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":{"seq":1,"partid":"p"}})");
+  const auto message = answer["error"]["message"].get<std::string>();
+  EXPECT_NE(message.find("'part_id'"), std::string::npos) << message;
+  EXPECT_NE(message.find("'partid'"), std::string::npos) << message;
 }
 
 TEST_F(ADispatcher, RefusesWrongTypesAndRanges) {
@@ -210,11 +218,11 @@ TEST_F(ADispatcher, NamesTheRangeOfEveryNumberBeyondIt) {
                              Case{"result.get", R"({"seq":0})", "1..9007199254740991"},
                              Case{"result.ack", R"({"seq":18446744073709551615})", "1..9007199254740991"},
                              Case{"job.wait", R"({"seq":1,"timeout_ms":30001})", "0..30000"},
-                             Case{"camera.snap", R"({"exposure_us":-1})", "0.001..6e+07"},
+                             Case{"camera.snap", R"({"exposure_us":-1})", "0.001..60000000"},
                              Case{"camera.preview", R"({"gain_db":101})", "0..100"},
                              Case{"camera.suggest_exposure", R"({"target":1})", "0.1..0.95"},
-                             Case{"stage.move", R"({"z_um":1e7})", "-1e+06..1e+06"},
-                             Case{"stage.autofocus", R"({"from_um":0,"to_um":1e9})", "-1e+06..1e+06"}}) {
+                             Case{"stage.move", R"({"z_um":1e7})", "-1000000..1000000"},
+                             Case{"stage.autofocus", R"({"from_um":0,"to_um":1e9})", "-1000000..1000000"}}) {
     const json error = reply(std::string(R"({"jsonrpc":"2.0","id":1,"method":")") + beyond.method + R"(","params":)" +
                              beyond.params + "}")["error"];
     EXPECT_EQ(error["code"], json_rpc::kInvalidParams) << beyond.method << beyond.params;

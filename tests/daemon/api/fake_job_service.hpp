@@ -74,11 +74,10 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return found;
   }
   JobStatus abort(const JobKey& key) override { return job(key); }
-  [[nodiscard]] std::string result_json(const JobKey& key) const override {
-    return job(key).state == JobState::kCompleted ? result : "";
-  }
-  [[nodiscard]] std::string result_dir(const JobKey& key) const override {
-    return job(key).state == JobState::kCompleted ? "/results/x" : "";
+  [[nodiscard]] StoredJob stored(const JobKey& key) const override {
+    const JobStatus found = job(key);
+    if (found.state != JobState::kCompleted) return {found, "", ""};
+    return {found, "/results/x", result};
   }
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return history; }
   std::optional<StepHistorySummary> history;

@@ -76,7 +76,8 @@ class FvdWithAFile : public Fvd {
   StartUp start(const std::string& text, Options options) {
     options.config_file = folder_.path() / "fvd.json";
     std::ofstream(options.config_file) << text;
-    std::ofstream(folder_.path() / "drive.json") << "{}";
+    std::filesystem::copy_file(FVD_SOURCE_DIR "/config/drives/oriental-az.json", folder_.path() / "drive.json",
+                               std::filesystem::copy_options::overwrite_existing);
     return start_up(options, out_, err_);
   }
   static constexpr const char* kGood =

@@ -79,7 +79,10 @@ TEST(ShippedFiles, HaveRecipesThatPassReaderSchemaAndTheSimulatedStage) {
     const Recipe recipe = parse_recipe(find_recipe_text(folder, id).value(), id);
     EXPECT_THAT(recipe.notes, ::testing::IsEmpty()) << id;
     EXPECT_TRUE(schema.accepts(parse(text_of(folder / (id + ".json"))))) << id;
-    EXPECT_EQ(to_text(check_stage_limits(recipe, sim.stage.min, sim.stage.max, sim.stage.take_up), id), "");
+    EXPECT_EQ(
+        to_text(check_stage_limits(recipe, {sim.stage.min, sim.stage.max, sim.stage.take_up, sim.stage.speed_um_per_s}),
+                id),
+        "");
   }
 }
 
@@ -138,6 +141,8 @@ struct DocumentedSchema {
   std::string readme;
   std::string name;  ///< of the table between "<!-- keys: NAME -->" and "<!-- end -->"
   std::string schema;
+
+  friend std::ostream& operator<<(std::ostream& out, const DocumentedSchema& of) { return out << of.name; }
 };
 
 class ATableOfKeys : public ::testing::TestWithParam<DocumentedSchema> {};

@@ -107,7 +107,7 @@ TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
       live.push(image_view(pixels, PixelFormat::kMono12), z_um);
       recorder.add(image_view(pixels, PixelFormat::kMono12), z_um);
     }
-    recorder.finish("test");
+    recorder.finish("job 7", true);
     directory.commit();
   }
   const HeightMap expected = live.finish(PeakMethod::kLogParabola);
@@ -116,6 +116,8 @@ TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
                                    "log_parabola", "--out", scratch / "out"});
 
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
+  EXPECT_NE(test::read_text(scratch / "out/result.json").find("\"simulated\": true"), std::string::npos)
+      << "the slices' z.txt says so";
   const cv::Mat height = read_float(scratch / "out/height.tiff");
   int valid = 0;
   for (int y = 0; y < 30; ++y) {

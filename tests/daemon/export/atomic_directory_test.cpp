@@ -192,11 +192,11 @@ TEST(SliceRecorder, KeepsSlicesAndEveryDigitOfTheirHeight) {
   pixels.at(1, 0) = 0x0FFF;
   recorder.add(image_view(pixels.view(), PixelFormat::kMono12), 0.1 + 0.2);
   recorder.add(image_view(pixels.view(), PixelFormat::kMono12), 10.0);
-  recorder.finish("job 7\nsimulated");
+  recorder.finish("job 7\nof a friend", true);
   directory.commit();
   EXPECT_EQ(test::read_text(scratch / "job/slices/slice_00000.pgm"), std::string("P5\n2 1\n4095\n\x01\x02\x0F\xFF"));
   EXPECT_EQ(test::read_text(scratch / "job/slices/z.txt"),
-            "# job 7 simulated\n# measured z in um, one line a slice\n0.30000000000000004\n10\n");
+            "# job 7 of a friend, simulated\n# measured z in um, one line a slice\n0.30000000000000004\n10\n");
 }
 
 }  // namespace

@@ -52,12 +52,31 @@ TEST_P(AStageLossAtMove, EndsTheJobAndHoldsThePart) {
   EXPECT_EQ(now->job->error, ErrorCode::kStageDisconnected);
   EXPECT_EQ(state_behind_executing(), ScanState::kError);
   EXPECT_FALSE(now->signals.part_release) << "nobody knows whether it moves";
+  EXPECT_FALSE(now->job->acquired) << "a client moves the part when it is true";
+  EXPECT_FALSE(store_->find(JobKey{now->job->job_id}).status.acquired) << "and after a restart";
   {
     const std::lock_guard lock(bench_.mutex);
     bench_.axis_plugged = true;
   }
   ASSERT_TRUE(await_state(ScanState::kInitialized)) << "it is opened anew by itself";
   EXPECT_TRUE(signals().part_release);
+}
+
+TEST_F(AnEngine, HoldsThePartOfAScanWhoseStageDoesNotComeToRest) {
+  bench_.moves_until_restless = 5;  // the last slice's
+  bench_.stop_works = false;
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  jobs().start({1, "a", "part"});
+  ASSERT_TRUE(await_end_of(1));
+  const auto now = machine().snapshot();
+  EXPECT_EQ(now->job->state, JobState::kCompleted) << "its slices are good";
+  EXPECT_FALSE(now->job->acquired);
+  EXPECT_FALSE(now->signals.part_release);
+  EXPECT_EQ(state_behind_executing(), ScanState::kError) << "not ready while it moves";
+  EXPECT_GE(bench_.stops, 1);
+  bench_.stop_works = true;
+  ASSERT_TRUE(await([](const MachineStatus& status) { return status.signals.part_release; }));
 }
 
 INSTANTIATE_TEST_SUITE_P(OfSix, AStageLossAtMove, testing::Range(0, 6));  // the take-up, then five slices
@@ -169,7 +188,7 @@ TEST_F(AnEngineThatCannotStoreAnEnd, TellsTheTruthWithAWarningAndTakesNoJobMeanw
   EXPECT_EQ(now->job->state, JobState::kCompleted);
   EXPECT_THAT(now->job->not_durable, HasSubstr("free some disk space"));
   EXPECT_EQ(now->results_waiting, 1);
-  EXPECT_NE(services_->results.result_json(job_id_), "");
+  EXPECT_NE(services_->results.stored(job_id_).result_json, "");
   EXPECT_EQ(services_->results.next_unacknowledged()->job_id, job_id_);
   FVD_EXPECT_ERROR_SAYING(kStorageFull, (void)services_->results.acknowledge(job_id_), HasSubstr(job_id_));
   FVD_EXPECT_ERROR_SAYING(kStorageFull, jobs().start({2, "b", "part"}), HasSubstr(job_id_));

@@ -39,7 +39,8 @@ struct Bench {
   std::atomic<bool> axis_moves{false};
   std::atomic<bool> stop_works{true};
   std::atomic<int> stops{0};
-  std::atomic<int> moves_until_lost{-1};  ///< the axis is lost at the move that counts this to 0; < 0 = never
+  std::atomic<int> moves_until_restless{-1};  ///< the axis goes on moving after the move that counts this to 0
+  std::atomic<int> moves_until_lost{-1};      ///< the axis is lost at the move that counts this to 0; < 0 = never
   std::deque<sim::TriggerOutcome> script;
 };
 
@@ -83,7 +84,9 @@ class BenchAxis final : public sim::FakeAxis {
       bench_.axis_plugged = false;
     }
     require_line();
-    return FakeAxis::move_to(target, criterion, std::move(stop));
+    MoveRecord move = FakeAxis::move_to(target, criterion, std::move(stop));
+    if (bench_.moves_until_restless >= 0 && bench_.moves_until_restless-- == 0) bench_.axis_moves = true;
+    return move;
   }
   void stop() noexcept override {
     ++bench_.stops;
@@ -148,6 +151,7 @@ class AnEngine : public testing::Test {
     };
     engine_ = std::make_unique<Engine>(
         config_, EngineDependencies{*store_, clock_, {open_camera, open_axis}, std::move(make_result)});
+    engine_->start();
     services_.emplace(engine_->services());
     machine().on_change([this] {
       const auto now = machine().snapshot();

@@ -60,6 +60,23 @@ TEST_F(AnEngine, IsExecutingAndHoldsThePartWhileACommandRuns) {
   EXPECT_TRUE(signals().part_release);
 }
 
+TEST_F(AnEngine, HoldsThePartOfACommandWhoseStageDoesNotComeToRest) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  bench_.stop_works = false;
+  const auto task = tasks().submit(
+      [this](const Devices&, std::stop_token) {
+        bench_.axis_moves = true;  // as a drive that says too early that it has arrived
+        return std::string("{}");
+      },
+      TaskMotion::kMoves);
+  ASSERT_TRUE(await_answer(*task));
+  EXPECT_FALSE(signals().part_release);
+  EXPECT_FALSE(signals().ready);
+  bench_.stop_works = true;
+  ASSERT_TRUE(await([](const MachineStatus& status) { return status.signals.part_release; }));
+}
+
 TEST_F(AnEngine, StaysReadyForAPartWhileACommandTakesAnImage) {
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));

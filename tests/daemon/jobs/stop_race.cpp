@@ -78,6 +78,7 @@ class Race {
                                     [](AtomicDirectory&, const ResultData&) -> JobResult {
                                       throw Error(ErrorCode::kBadInput, "this job makes no result");
                                     }});
+    engine_->start();
     await_ready();
   }
 

@@ -54,7 +54,7 @@ class ARecipeBook : public ::testing::Test {
   const std::filesystem::path shipped_ = folder_.path() / "shipped";
   const std::filesystem::path edited_ = folder_.path() / "edited";
   JobStore store_{folder_.path() / "fvd.sqlite"};
-  RecipeBook book_{{shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions()};
+  RecipeBook book_{{shipped_, edited_}, {-10_um, 100_um, 5_um, 1000.0}, store_.recipe_versions()};
 };
 
 TEST_F(ARecipeBook, ShowsShippedRecipesFirst) {
@@ -205,7 +205,8 @@ TEST_F(ARecipeBook, PutsATextInForceWhoseRowWasThereWhenTheProcessDied) {
   put(edited_ / "a.json.new", recipe_of(22));
   (void)store_.recipe_versions().add({.id = "a", .author = "bert", .text = recipe_of(22)}, 10);
 
-  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions());  // the next start's
+  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um, 1000.0},
+                        store_.recipe_versions());  // the next start's
 
   EXPECT_EQ(next.load("a").slices, 22);
   EXPECT_EQ(next.get("a").version, 2);
@@ -217,7 +218,7 @@ TEST_F(ARecipeBook, DropsATextWithoutARow) {
   (void)book_.save(change(21, 0));
   put(edited_ / "a.json.new", recipe_of(22));
 
-  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um}, store_.recipe_versions());
+  const RecipeBook next({shipped_, edited_}, {-10_um, 100_um, 5_um, 1000.0}, store_.recipe_versions());
 
   EXPECT_EQ(next.load("a").slices, 21);
   EXPECT_THAT(next.versions("a"), SizeIs(1)) << "nobody changed it by hand";
@@ -275,6 +276,13 @@ TEST_F(ARecipeBook, NamesTheKnownRecipesWhenOneIsUnknown) {
   (void)book_.save({"new", recipe_of(5), 0, "anna", ""});
   FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.load("c"), HasSubstr("a, b, new"));
   FVD_EXPECT_ERROR_SAYING(kUnknownRecipe, (void)book_.versions("c"), HasSubstr("a, b, new"));
+}
+
+TEST_F(ARecipeBook, TakesNoShippedRecipeWhereItCannotSeeTheEditedOne) {
+  book_.save(change(13, 0));
+  std::filesystem::rename(edited_, folder_.path() / "away");
+  std::filesystem::create_symlink("edited", edited_);  // a circle: neither there nor absent
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)book_.load("a"), HasSubstr("cannot read"));
 }
 
 TEST_F(ARecipeBook, DoesNotLeaveItsFolders) {

@@ -235,31 +235,44 @@ TEST(Recipe, IsJudgedAsAWholeBesideProblemsOfSingleKeys) {
                           AllOf(HasSubstr("focus/peak: "), Not(HasSubstr("already"))));
 }
 
+TEST(Recipe, OfAContinuousScanNeedsASpeedThatTheStageHas) {
+  for (const char* const speed : {"0", "1001"}) {
+    const std::string scan = R"({"start_um": 0, "step_um": 1, "slices": 5, "mode": "continuous", "speed_um_per_s": )";
+    const Problems found =
+        check_stage_limits(parse_recipe(with_scan(scan + speed + "}"), "r"), {-100_um, 100_um, 20_um, 1000.0});
+    ASSERT_THAT(found, SizeIs(1)) << speed;
+    EXPECT_EQ(found[0].pointer, "/acquire/scan/speed_um_per_s");
+    EXPECT_THAT(found[0].message, AllOf(HasSubstr(speed), HasSubstr("at most the stage's 1000 um/s")));
+  }
+}
+
 TEST(Recipe, IsCheckedAgainstTheStageLimits) {
   const Recipe recipe = parse_recipe(kSmallest, "r");  // -7 to 193, with 20 of take-up from -27
 
-  EXPECT_THAT(check_stage_limits(recipe, -27_um, 193_um, 20_um), IsEmpty());
-  const Problems low = check_stage_limits(recipe, -26_um, 193_um, 20_um);
+  EXPECT_THAT(check_stage_limits(recipe, {-27_um, 193_um, 20_um, 1000.0}), IsEmpty());
+  const Problems low = check_stage_limits(recipe, {-26_um, 193_um, 20_um, 1000.0});
   ASSERT_THAT(low, SizeIs(1));
   EXPECT_EQ(low[0].pointer, "/acquire/scan/start_um");
   EXPECT_THAT(low[0].message, AllOf(HasSubstr("-27"), HasSubstr("at least -6 um")));
-  const Problems high = check_stage_limits(recipe, -27_um, 192_um, 20_um);
+  const Problems high = check_stage_limits(recipe, {-27_um, 192_um, 20_um, 1000.0});
   ASSERT_THAT(high, SizeIs(1));
   EXPECT_EQ(high[0].pointer, "/acquire/scan/slices");
   EXPECT_THAT(high[0].message, AllOf(HasSubstr("193"), HasSubstr("at most 192")));
-  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um), SizeIs(2));
-  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/acquire/scan/step_um", "is missing"}}), SizeIs(1));
-  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/acquire/scan/start_um", "is missing"}}), IsEmpty());
+  EXPECT_THAT(check_stage_limits(recipe, {0_um, 1_um, 20_um, 1000.0}), SizeIs(2));
+  EXPECT_THAT(check_stage_limits(recipe, {0_um, 1_um, 20_um, 1000.0}, {{"/acquire/scan/step_um", "is missing"}}),
+              SizeIs(1));
+  EXPECT_THAT(check_stage_limits(recipe, {0_um, 1_um, 20_um, 1000.0}, {{"/acquire/scan/start_um", "is missing"}}),
+              IsEmpty());
 }
 
 TEST(Recipe, OfFormat1IsToldWhereItsOwnTextLeavesTheStageLimits) {
   const Recipe recipe = parse_recipe(kSmallestOld, "r");
   EXPECT_EQ(recipe.format, 1);
-  const Problems found = check_stage_limits(recipe, 0_um, 1_um, 20_um);
+  const Problems found = check_stage_limits(recipe, {0_um, 1_um, 20_um, 1000.0});
   ASSERT_THAT(found, SizeIs(2));
   EXPECT_EQ(found[0].pointer, "/scan/start_um");
   EXPECT_EQ(found[1].pointer, "/scan/slices");
-  EXPECT_THAT(check_stage_limits(recipe, 0_um, 1_um, 20_um, {{"/scan/start_um", "is missing"}}), IsEmpty());
+  EXPECT_THAT(check_stage_limits(recipe, {0_um, 1_um, 20_um, 1000.0}, {{"/scan/start_um", "is missing"}}), IsEmpty());
 }
 
 TEST(RecipeId, IsAPlainName) {

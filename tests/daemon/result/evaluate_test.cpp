@@ -111,6 +111,7 @@ TEST(Evaluate, KeepsNamesWithoutValuesWhereEveryPointIsAHole) {
   EXPECT_FALSE(result.find("height_mean")->value);
   EXPECT_EQ(result.find("valid_fraction")->value, 0.0);
   EXPECT_EQ(result.verdict, Verdict::kFail);
+  EXPECT_THAT(codes(result), testing::Contains("no_valid_point"));
 }
 
 }  // namespace

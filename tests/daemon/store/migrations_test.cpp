@@ -167,12 +167,16 @@ TEST(AFileOfTheFuture, IsRefusedAndLeftAlone) {
   EXPECT_EQ(schema_version(database), 99);
 }
 
-TEST(AFileOfAnotherProgram, IsRefusedAndLeftAlone) {
-  const test::ScratchDir folder;
-  Database database(folder.path() / "fvd.sqlite");
-  database.execute("CREATE TABLE songs (title TEXT)");
-  FVD_EXPECT_ERROR_SAYING(kDatabase, migrate(database), HasSubstr("another program"));
-  EXPECT_THAT(schema_of(database), ::testing::SizeIs(1));
+TEST(AFileOfAnotherProgram, IsRefusedAndLeftAloneByteForByte) {
+  for (const char* version : {"0", "1", "2", "-7"}) {
+    const test::ScratchDir folder;
+    const auto file = folder.path() / "fvd.sqlite";
+    Database(file).execute(("CREATE TABLE songs (title TEXT); PRAGMA user_version = " + std::string(version)).c_str());
+    const std::string before = test::read_text(file);
+    ASSERT_FALSE(before.empty());
+    FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore{file}, HasSubstr("another program"));
+    EXPECT_EQ(test::read_text(file), before) << "version " << version;
+  }
 }
 
 }  // namespace

@@ -234,6 +234,13 @@ TEST_F(AnAravisCamera, RefusesFramesOfAnotherSize) {
   EXPECT_EQ(next->status, FrameStatus::kOk);
 }
 
+TEST(FrameCounter, GoesNotBelowZeroForALateFrameOfBeforeItsStart) {
+  FrameCounter counter;
+  EXPECT_EQ(counter.unwrap(10), 10U);
+  EXPECT_EQ(counter.unwrap(60000), 0U) << "older than the first, or much newer: it is not believed";
+  EXPECT_EQ(counter.unwrap(11), 11U);
+}
+
 TEST(FrameCounter, UnwrapsAcrossTheEndAndTellsLateFrames) {
   FrameCounter counter;
   EXPECT_EQ(counter.unwrap(65534), 65534U);
