@@ -46,7 +46,7 @@ void check_continuous(const ScanPlan& plan, const CameraSettings& settings, cons
   }
   if (exposure_s * plan.frame_rate_hz() >= 1.0) {
     message << "slices of " << plan.step.value << " um at " << plan.speed_um_per_s << " um/s need "
-            << plan.frame_rate_hz() << " frames a second, an exposure of " << settings.exposure_us << " us allows "
+            << plan.frame_rate_hz() << " frames per second, an exposure of " << settings.exposure_us << " us allows "
             << 1.0 / exposure_s;
     refuse(message);
   }

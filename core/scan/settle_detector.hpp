@@ -14,7 +14,7 @@ class SettleDetector {
 
   /// at_rest: the drive reports no motion and, if it can, in position. True once the axis has settled.
   [[nodiscard]] bool add(HostTime time, Micrometers position, bool at_rest) {
-    if (!at_rest || abs(position - target_) > criterion_.window) {
+    if (!at_rest || !(abs(position - target_) <= criterion_.window)) {  // nor for a position that is no number
       count_ = 0;
       return false;
     }

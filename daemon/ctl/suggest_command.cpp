@@ -16,7 +16,7 @@ int run_suggest(const std::string& image, const Terminal& terminal) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << "\"focus\": { \"distance_px\": " << suggestion.distance_px
        << ", \"window_px\": " << suggestion.window_px << " }\n"
-       << "noise     " << suggestion.noise_grey << " grey levels a pixel\n"
+       << "noise     " << suggestion.noise_grey << " grey levels per pixel\n"
        << "texture   " << suggestion.response_grey << " grey levels of mean modified Laplacian above the noise\n"
        << "sample    noise " << 100.0 * suggestion.sample_noise << " % of the peak\n";
   terminal.out << text.str() << std::flush;

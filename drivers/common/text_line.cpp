@@ -91,6 +91,11 @@ bool TextLine::wait(short events, HostTime deadline) const {
   return left > 0 && ::poll(&waiting, 1, static_cast<int>(left)) > 0;
 }
 
+bool TextLine::has_input() const {
+  pollfd looked_at{fd_, POLLIN, 0};
+  return ::poll(&looked_at, 1, 0) > 0;
+}
+
 bool TextLine::open(std::string& error) {
   unread_.clear();
   fd_ = config_.serial_device.empty() ? begin_connect(config_, error) : open_serial(config_, error);
@@ -195,6 +200,11 @@ std::optional<std::vector<std::string>> TextLine::exchange(std::string_view text
                                                            bool urgent) {
   begin(urgent);
   std::optional<std::vector<std::string>> answers;
+  // What came since the last exchange answers no question that is still to be asked.
+  if (fd_ >= 0 && has_input()) {
+    close();
+    doubtful_ = true;
+  }
   if (fd_ < 0) {
     const MutexLock lock(mutex_);
     ++statistics_.reopenings;

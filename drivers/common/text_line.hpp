@@ -59,6 +59,7 @@ class TextLine {
   std::optional<std::string> receive(HostTime deadline, std::string& error);
   void drain();
   bool wait(short events, HostTime deadline) const;
+  [[nodiscard]] bool has_input() const;  ///< or the end of the connection
 
   const TextLineConfig config_;
   int fd_ = -1;  // of the caller whose turn it is, as the two below

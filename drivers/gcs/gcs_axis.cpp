@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <sstream>
@@ -50,7 +51,8 @@ std::optional<double> value_of(const std::string& answer, const std::string& axi
   const char* const end = answer.data() + answer.size();
   double value = 0.0;
   const auto [stop, failure] = std::from_chars(begin + (begin < end && *begin == '+' ? 1 : 0), end, value);
-  if (failure != std::errc{} || std::any_of(stop, end, [](char c) { return c != ' ' && c != '\r'; })) {
+  if (failure != std::errc{} || !std::isfinite(value) ||
+      std::any_of(stop, end, [](char c) { return c != ' ' && c != '\r'; })) {
     return std::nullopt;
   }
   return value;

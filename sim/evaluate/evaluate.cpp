@@ -124,7 +124,7 @@ class Evaluation {
         << " um over " << steps.at("steps") << " steps; move and settle " << steps.at("move_median_ms") << " ms\n"
         << "time          prepare " << times.at("prepare_ms") << " ms, scan " << times.at("scan_ms") << " ms, finish "
         << times.at("finish_ms") << " ms\n"
-        << "memory        " << record_.at("focus").at("state_bytes_per_pixel") << " bytes a pixel\n";
+        << "memory        " << record_.at("focus").at("state_bytes_per_pixel") << " bytes per pixel\n";
   }
 
   [[nodiscard]] ordered_json figures() const {

@@ -21,8 +21,8 @@ void describe(WorldParameters& world, Fields& fields) {
   fields.require("surface");
   fields.integer("width_px", world.width_px, {16, 8192}, "sensor width");
   fields.integer("height_px", world.height_px, {16, 8192}, "sensor height");
-  fields.number("tilt_x_um_per_px", world.tilt_x_um_per_px, {-10.0, 10.0}, "tilted: rise a pixel");
-  fields.number("tilt_y_um_per_px", world.tilt_y_um_per_px, {-10.0, 10.0}, "tilted: rise a pixel");
+  fields.number("tilt_x_um_per_px", world.tilt_x_um_per_px, {-10.0, 10.0}, "tilted: rise per pixel");
+  fields.number("tilt_y_um_per_px", world.tilt_y_um_per_px, {-10.0, 10.0}, "tilted: rise per pixel");
   fields.number("base_um", world.base_um, {-10000.0, 10000.0}, "height of the centre, the plane, or the mean");
   fields.number("radius_um", world.radius_um, positive(1e6), "sphere: radius");
   fields.number("cap_height_um", world.cap_height_um, positive(1e6), "sphere: apex above the plane");
