@@ -2,7 +2,6 @@
 
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
-#include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
 
@@ -29,10 +28,7 @@ JobStore& with_cleared_results(JobStore& store, const PathsConfig& paths) {
 App::App(const Config& config)
     : config_(config),
       store_(prepared_state_dir(config_.paths) / "fvd.sqlite"),
-      engine_(config_, {with_cleared_results(store_, config_.paths),
-                        clock_,
-                        {.camera = [this] { return open_camera(config_.camera); },
-                         .axis = [this] { return open_stage(config_.stage); }}}),
+      engine_(config_, {with_cleared_results(store_, config_.paths), clock_, openers_of(config_)}),
       rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {
   // No device is touched by a program that cannot have its port: another fvd may be measuring with them.
   engine_.start();

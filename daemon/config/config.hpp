@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "drivers/common/driver_config.hpp"
+#include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
 
@@ -33,10 +33,9 @@ struct LogConfig {
   std::string level = "info";  ///< trace, debug, info, warn, error
 };
 
-struct Config {
+/// With a block for each kind of device.
+struct Config : DeviceConfigs {
   RpcConfig rpc;
-  CameraConfig camera;
-  StageConfig stage;
   PathsConfig paths;
   ComputeConfig compute;
   LogConfig log;

@@ -42,9 +42,8 @@ class ConfigCheck {
 
   Problems run() {
     check_rpc(config_.rpc);
-    check_device(config_.camera, {"/camera/driver"});
+    for (Problem& problem : check_devices(config_, read_)) report_if(true, problem.pointer, {}, problem.message);
     check_travel(config_.stage);
-    check_device(config_.stage, {"/stage/driver", "/stage/transport"});
     const std::string& camera_driver = config_.camera.driver;
     const std::string& stage_driver = config_.stage.driver;
     report_if((camera_driver == "replay") != (stage_driver == "replay"), "/stage/driver", {"/camera/driver"},
@@ -80,14 +79,6 @@ class ConfigCheck {
               {"/stage/min_um", "/stage/max_um"},
               text(stage.take_up.value) + " leaves no room between min_um and max_um, " +
                   text((stage.max - stage.min).value) + " apart");
-  }
-
-  /// What the driver finds, as far as the driver, the line that it is reached by, and the value itself were read.
-  template <typename DeviceConfig>
-  void check_device(const DeviceConfig& device, std::initializer_list<std::string_view> others) {
-    Problems found;
-    check_driver(device, found);
-    for (Problem& problem : found) report_if(true, problem.pointer, others, std::move(problem.message));
   }
 
   void check_paths(const PathsConfig& paths) {

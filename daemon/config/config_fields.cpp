@@ -39,8 +39,7 @@ void describe(ComputeConfig& compute, Fields& fields) {
 
 void describe(Config& config, Fields& fields) {
   fields.group("rpc", "where clients connect", [&](Fields& in) { describe(config.rpc, in); });
-  fields.group("camera", "the camera", [&](Fields& in) { describe(config.camera, in); });
-  fields.group("stage", "the Z stage", [&](Fields& in) { describe(config.stage, in); });
+  describe(static_cast<DeviceConfigs&>(config), fields);
   fields.group("paths", "folders", [&](Fields& in) { describe(config.paths, in); });
   fields.group("compute", "resources of the computation", [&](Fields& in) { describe(config.compute, in); });
   fields.group("log", "logging", [&](Fields& in) {

@@ -12,13 +12,9 @@
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
 #include "daemon/devices/device_slot.hpp"
+#include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
-
-struct DeviceOpeners {
-  DeviceSlot<Camera>::Opener camera;
-  DeviceSlot<Axis>::Opener axis;
-};
 
 /// What is known of the open devices without asking them.
 struct DeviceFacts {

@@ -60,13 +60,22 @@ auto open(const std::vector<Row>& rows, const Config& config, const std::string&
   throw Error(ErrorCode::kBadConfig, block + ".driver: '" + config.driver + "' is not one of: " + known);
 }
 
-}  // namespace
-
 void describe(CameraConfig& config, Fields& fields) {
   fields.choice("driver", config.driver, names_of(camera_drivers()), meanings_of(camera_drivers()));
   describe_all_cameras(config, fields);
   for (const CameraDriver& row : camera_drivers()) row.describe(config, fields);
 }
+
+/// What the chosen row finds, unless what the choice rests on was refused when it was read.
+template <typename Row, typename Config>
+void check(const std::vector<Row>& rows, const Config& config, const Problems& read,
+           std::initializer_list<std::string_view> rests_on, Problems& found) {
+  const auto refused = [&read](std::string_view pointer) { return is_reported(read, pointer); };
+  if (std::any_of(rests_on.begin(), rests_on.end(), refused)) return;
+  if (const Row* const row = find(rows, config.driver)) row->check(config, found);
+}
+
+}  // namespace
 
 void describe(StageConfig& config, Fields& fields) {
   fields.choice("driver", config.driver, names_of(axis_drivers()), meanings_of(axis_drivers()));
@@ -74,15 +83,26 @@ void describe(StageConfig& config, Fields& fields) {
   for (const AxisDriver& row : axis_drivers()) row.describe(config, fields);
 }
 
-void check_driver(const CameraConfig& config, Problems& problems) {
-  if (const CameraDriver* const row = find(camera_drivers(), config.driver)) row->check(config, problems);
+void describe(DeviceConfigs& devices, Fields& fields) {
+  fields.group("camera", "the camera", [&](Fields& in) { describe(devices.camera, in); });
+  fields.group("stage", "the Z stage", [&](Fields& in) { describe(devices.stage, in); });
 }
 
-void check_driver(const StageConfig& config, Problems& problems) {
-  if (const AxisDriver* const row = find(axis_drivers(), config.driver)) row->check(config, problems);
+void check_driver(const StageConfig& config, Problems& problems) { check(axis_drivers(), config, {}, {}, problems); }
+
+Problems check_devices(const DeviceConfigs& devices, const Problems& read) {
+  Problems found;
+  check(camera_drivers(), devices.camera, read, {"/camera/driver"}, found);
+  check(axis_drivers(), devices.stage, read, {"/stage/driver", "/stage/transport"}, found);
+  return found;
 }
 
 std::unique_ptr<Camera> open_camera(const CameraConfig& config) { return open(camera_drivers(), config, "camera"); }
 std::unique_ptr<Axis> open_stage(const StageConfig& config) { return open(axis_drivers(), config, "stage"); }
+
+DeviceOpeners openers_of(const DeviceConfigs& devices) {
+  return {.camera = [&devices] { return open_camera(devices.camera); },
+          .axis = [&devices] { return open_stage(devices.stage); }};
+}
 
 }  // namespace fvd

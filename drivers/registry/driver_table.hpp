@@ -1,6 +1,7 @@
 #pragma once
 
-/// The drivers by name, one row each: what the configuration says to them, what is checked before, how they are opened.
+/// The devices of a station by kind, and the drivers of each kind by name, one row each: what the configuration says to
+/// them, what is checked before, how they are opened.
 
 #include <functional>
 #include <memory>
@@ -36,13 +37,29 @@ using AxisDriver = DriverRow<StageConfig, Axis>;
 [[nodiscard]] const std::vector<CameraDriver>& camera_drivers();
 [[nodiscard]] const std::vector<AxisDriver>& axis_drivers();
 
-/// The blocks `camera` and `stage` of the configuration: the driver, the keys that all share, and each driver's own.
-void describe(CameraConfig& config, Fields& fields);
+/// One block of the configuration per kind.
+struct DeviceConfigs {
+  CameraConfig camera;
+  StageConfig stage;
+};
+
+/// How each device is opened; throws as open_camera() and open_stage() do.
+struct DeviceOpeners {
+  std::function<std::unique_ptr<Camera>()> camera;
+  std::function<std::unique_ptr<Axis>()> axis;
+};
+
+/// Each block: the driver, the keys that all drivers of the kind share, and each driver's own.
+void describe(DeviceConfigs& devices, Fields& fields);
 void describe(StageConfig& config, Fields& fields);
 
-/// What the chosen driver asks for beyond ranges, with pointers that begin at the root of the configuration.
-void check_driver(const CameraConfig& config, Problems& problems);
+/// What the chosen drivers ask for beyond ranges, with pointers that begin at the root of the configuration. read: the
+/// problems of reading it; a driver that cannot be known from it is not asked.
+[[nodiscard]] Problems check_devices(const DeviceConfigs& devices, const Problems& read);
 void check_driver(const StageConfig& config, Problems& problems);
+
+/// devices outlives the openers.
+[[nodiscard]] DeviceOpeners openers_of(const DeviceConfigs& devices);
 
 /// Opens the camera. Throws Error kBadConfig for an unknown driver (the message lists the known ones), else what the
 /// driver throws.
