@@ -274,7 +274,7 @@ TEST_F(AContinuousScan, IsRefusedBeforeAnythingMoves) {
   settings_.exposure_us = 2000.0;
   plan_.max_blur_steps = 2.0;
   settings_.exposure_us = 6000.0;
-  refused(ErrorCode::kBadRecipe, "frames a second");
+  refused(ErrorCode::kBadRecipe, "frames per second");
   settings_.exposure_us = 2000.0;
   plan_.speed_um_per_s = 1001.0;
   refused(ErrorCode::kBadRecipe, "speed");
