@@ -15,16 +15,19 @@ namespace fvd {
 
 namespace {
 
-/// c of the modified Laplacian; measured on blurred textures, see README.md.
+/// c of the Laplacians; measured on blurred textures, see README.md.
 constexpr double kLaplacianNoise = 4.0;
+constexpr double kDiagonalNoise = 16.0;
 
 }  // namespace
 
 double sample_noise(const FocusSettings& settings, double noise_grey, double sharpness) noexcept {
-  const double window = settings.window_px;
+  const double window = window_norm(settings);
   switch (settings.focus_operator) {
     case FocusOperator::kModifiedLaplacian:
       return kLaplacianNoise * window * noise_grey;
+    case FocusOperator::kDiagonalLaplacian:
+      return kDiagonalNoise * window * noise_grey;
     case FocusOperator::kTenengrad:
       // g = (gx, gy) of white noise has 12 sigma^2 each; neighbouring gradients share pixels, which doubles the sum.
       return 2.0 * std::sqrt(2.0 * 12.0 * sharpness) * noise_grey;
