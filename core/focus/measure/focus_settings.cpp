@@ -92,6 +92,13 @@ double window_norm(const FocusSettings& settings) noexcept {
   return squares;
 }
 
+double window_area_px2(const FocusSettings& settings) noexcept {
+  const WindowSides sides = window_sides(settings);
+  const double weights = static_cast<double>(sides.first) * sides.second;  // their sum along one direction
+  const double along = weights * weights / window_norm(settings);          // px
+  return along * along;
+}
+
 int choose_bin_slices(double step_um, double curve_width_um) noexcept {
   constexpr double kSampleDistance = 0.4;
   if (!(curve_width_um > 0.0) || !(std::abs(step_um) > 0.0)) return 1;

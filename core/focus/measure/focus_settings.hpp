@@ -79,6 +79,10 @@ struct WindowSides {
 /// a box.
 [[nodiscard]] double window_norm(const FocusSettings& settings) noexcept;
 
+/// The square of the sum of the weights over the sum of their squares: the area over which the noise of neighbouring
+/// sums is one. window_px^2 for a box.
+[[nodiscard]] double window_area_px2(const FocusSettings& settings) noexcept;
+
 /// The bin that puts samples about 0.4 of the curve's full width at half maximum apart, where a peak is placed best: a
 /// finer step needs more slices a sample, for with each its neighbours differ by less, by more noise than curve.
 /// 1 where the width is unknown, 0.
