@@ -121,6 +121,7 @@ class ReferenceScan {
   /// Why the stage's errors were not corrected; empty where they were.
   [[nodiscard]] std::string stage_reason() const { return stack_->finish(PeakMethod::kFiveSample).stage.reason; }
   /// Points with a truth.
+  [[nodiscard]] double truth(int x, int y) const { return truth_slices_.at<double>(y, x); }
   [[nodiscard]] double points() const { return points_; }
 
  private:

@@ -415,7 +415,6 @@ int main(int argc, char** argv) try {
   const char* const data = argc > 1 ? argv[1] : FVD_SOURCE_DIR "/../shared/data";
   fvd::bench::operator_table(data, pool);
   fvd::bench::smooth_table(data, pool);
-  if (argc > 2) return 0;
   fvd::bench::chapter_table(pool, json);
   fvd::bench::ripple_table(pool, json);
   fvd::bench::bound_table(json);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/focus/fit/curve_misfit.hpp"
 #include "core/focus/fit/curve_shape.hpp"
 #include "core/focus/fit/curve_tuple.hpp"
 #include "core/focus/kernels/five_sample_fit.hpp"
@@ -20,8 +21,17 @@ namespace fvd {
 namespace {
 
 /// The texture of a window has its weight not quite in the middle; on a slope that is an error of height: so many
-/// windows beside the middle, standard deviation. Measured on the chapter's ramp.
+/// windows beside the middle, standard deviation. Measured on ramps of four textures: a box and the modified Laplacian;
+/// the diagonals see more of the texture, and a double box gives its rim less weight.
 constexpr float kWeightOffset = 0.038F;
+constexpr float kOfDiagonals = 0.9F;
+constexpr float kOfDoubleBox = 0.76F;
+
+float weight_offset_px(const FocusSettings& settings) {
+  return kWeightOffset * static_cast<float>(settings.window_px) *
+         (settings.focus_operator == FocusOperator::kDiagonalLaplacian ? kOfDiagonals : 1.0F) *
+         (settings.window == FocusWindow::kDoubleBox ? kOfDoubleBox : 1.0F);
+}
 
 /// About how many points are looked at first: what the curves are like, and where the stage was off.
 constexpr double kSpotChecks = 10000.0;
@@ -229,7 +239,7 @@ class MapFinish {
     const bool inside = reach > 0 && y >= reach && y < height_ - reach;
     focus_kernels().finish_sigma(map_.height_m.row(y), inside ? map_.height_m.row(y - reach) : nullptr,
                                  inside ? map_.height_m.row(y + reach) : nullptr, reach,
-                                 kWeightOffset * static_cast<float>(settings_.window_px), width_, map_.sigma_m.row(y));
+                                 weight_offset_px(settings_), width_, map_.sigma_m.row(y));
   }
 
   const CurveSource& curves_;
@@ -255,7 +265,8 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
     map.stage.reason = "not asked for";
   }
   const CurveShape shape = curve_shape(tuples, corrected, pool);
-  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias));
+  const double misfit = curve_misfit(tuples, corrected, shape.exponent);
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias, misfit));
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;
 }

@@ -21,9 +21,9 @@ namespace fvd {
 /// context: const members from many threads.
 class RowFit {
  public:
-  /// z of the samples. bias: what is taken off the vertices of kFiveSample.
+  /// z of the samples. bias: what is taken off the vertices of kFiveSample. misfit: see curve_misfit.hpp.
   RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
-         VertexBias bias = {});
+         VertexBias bias = {}, double misfit = 0.0);
 
   /// Standard deviation of a sample at the peak, as shares, from that of each pixel. Shape [width] each.
   void find_noise(const CurveRow& row, const float* noise_grey, int width, float* noise) const noexcept;
@@ -51,6 +51,7 @@ class RowFit {
   SharpnessCode code_;
   PeakMethod method_;
   VertexBias bias_;
+  float misfit_;
   std::vector<double> z_um_;
   std::vector<HeightEntry> heights_;
   double bin_gain_;  // from the mean code of a bin's slices to the bin's code

@@ -62,6 +62,7 @@ struct FitParameters {
   float min_prominence;
   float min_significance;
   float shape_error;  ///< see five_sample_fit.hpp
+  float misfit;       ///< standard deviation of a sample beside its noise, as a share of the amplitude
   float code_unit;    ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
   bool root_code;
   VertexBias bias;  ///< to be taken off

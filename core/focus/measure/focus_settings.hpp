@@ -55,8 +55,8 @@ inline constexpr int kMaxDistancePx = 7;
 inline constexpr int kMaxBinSlices = 64;
 
 struct FocusSettings {
-  FocusOperator focus_operator = FocusOperator::kModifiedLaplacian;
-  FocusWindow window = FocusWindow::kBox;
+  FocusOperator focus_operator = FocusOperator::kDiagonalLaplacian;
+  FocusWindow window = FocusWindow::kDoubleBox;
   int window_px = 9;              ///< side of the square window of the sum, odd, 3..63; 1 for the intensity
   int distance_px = 2;            ///< from a pixel to the neighbours its operator looks at, 1..7
   double min_prominence = 0.5;    ///< (peak - minimum) / peak of the focus curve, 0..1; below it a point is a hole
