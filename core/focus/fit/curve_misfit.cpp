@@ -19,11 +19,16 @@ constexpr double kLeastShare = 0.02;  // of the peak: a smaller sample tells of 
 /// A curve with two peaks, or beside an edge, is not what curves have in common: no more than so many medians count.
 constexpr double kMostMedians = 10.0;
 
+struct Skew {
+  double vertex = 0.0;  // in samples from the peak's
+  double value = 0.0;
+};
+
 /// What a curve has of a cubic about its vertex, beside the parabola that is fitted to G = F^(-1/p): that moves the
 /// vertex, and symmetric curves have none of it in the mean, whatever their shape. With noise of one size n on every
 /// share r, G = r^(-1/p) has the variance (n / p)^2 r^(-2/p - 2); weighted with the inverse of that and divided by its
 /// own size, the cubic has a coefficient of variance (n / p)^2. Returned times p.
-std::optional<double> skew(const CurveTuple& tuple, const HeightEntry& at, double p) {
+std::optional<Skew> skew(const CurveTuple& tuple, const HeightEntry& at, double p) {
   const std::array u{at.u_left2, at.u_left, 0.0F, at.u_right, at.u_right2};
   std::array<double, 5> g{};
   std::array<double, 5> weight{};
@@ -57,7 +62,7 @@ std::optional<double> skew(const CurveTuple& tuple, const HeightEntry& at, doubl
     size += weight[i] * rest * rest;
   }
   const double value = p * product / std::sqrt(size);
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  return std::isfinite(value) ? std::optional(Skew{vertex, value}) : std::nullopt;
 }
 
 double median(std::vector<double>& values) {
@@ -66,11 +71,32 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
+/// Less what all curves have: a lens that is not symmetric moves every height alike, and what a curve has of a fourth
+/// power shows as a cubic where its vertex lies beside the peak's sample, which is taken off the heights.
+std::vector<double> squares_about_line(const std::vector<Skew>& skews) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d sums = Eigen::Vector2d::Zero();
+  for (const Skew& skew : skews) {
+    const Eigen::Vector2d terms(1.0, skew.vertex);
+    normal += terms * terms.transpose();
+    sums += skew.value * terms;
+  }
+  normal(1, 1) += 1e-3 * normal(0, 0);  // vertices that all lie in one place have no slope
+  const Eigen::Vector2d line = normal.llt().solve(sums);
+  std::vector<double> squares;
+  squares.reserve(skews.size());
+  for (const Skew& skew : skews) {
+    const double rest = skew.value - line(0) - line(1) * skew.vertex;
+    squares.push_back(rest * rest);
+  }
+  return squares;
+}
+
 }  // namespace
 
 double curve_misfit(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, double exponent) {
   const std::vector<HeightEntry> heights = height_table(z_um);
-  std::vector<double> skews;
+  std::vector<Skew> skews;
   double noise = 0.0;
   for (const CurveTuple& tuple : tuples) {
     const auto value = skew(tuple, heights[static_cast<std::size_t>(tuple.index)], exponent);
@@ -79,9 +105,7 @@ double curve_misfit(std::span<const CurveTuple> tuples, const std::vector<double
     noise += static_cast<double>(tuple.noise) * static_cast<double>(tuple.noise);
   }
   if (skews.size() < kLeastCurves) return 0.0;
-  const double middle = median(skews);  // of all: what the lens does to every curve moves every height alike
-  std::vector<double> squares;
-  for (const double value : skews) squares.push_back((value - middle) * (value - middle));
+  std::vector<double> squares = squares_about_line(skews);
   const double most = kMostMedians * median(squares);
   double sum = 0.0;
   for (const double square : squares) sum += std::min(square, most);

@@ -27,6 +27,9 @@ constexpr float kWeightOffset = 0.038F;
 constexpr float kOfDiagonals = 0.9F;
 constexpr float kOfDoubleBox = 0.76F;
 
+/// The share of the curves' misfit that moves a vertex where samples are bins, which differ in their tails alone.
+constexpr double kOfBins = 0.5;
+
 float weight_offset_px(const FocusSettings& settings) {
   return kWeightOffset * static_cast<float>(settings.window_px) *
          (settings.focus_operator == FocusOperator::kDiagonalLaplacian ? kOfDiagonals : 1.0F) *
@@ -265,7 +268,8 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
     map.stage.reason = "not asked for";
   }
   const CurveShape shape = curve_shape(tuples, corrected, pool);
-  const double misfit = curve_misfit(tuples, corrected, shape.exponent);
+  const double misfit =
+      curve_misfit(tuples, corrected, shape.exponent) * (settings.bin_slices > 1 ? kOfBins : 1.0);
   finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias, misfit));
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;

@@ -103,10 +103,17 @@ double sharpness(const ImageView& image, const FocusSettings& settings, int x, i
   return sharpness_code(settings, image.format).decode(sharpness_reference(image, settings).at(x, y));
 }
 
+FocusSettings modified_laplacian(int window_px, int distance_px) {
+  return {.focus_operator = FocusOperator::kModifiedLaplacian,
+          .window = FocusWindow::kBox,
+          .window_px = window_px,
+          .distance_px = distance_px};
+}
+
 TEST(SharpnessReference, IsTheModifiedLaplacianOnAKnownImage) {
   Plane<std::uint8_t> image(7, 7, 10);
   image.at(3, 3) = 20;  // ML 40 there, 10 at its four neighbours
-  const FocusSettings settings{.window_px = 3, .distance_px = 1};
+  const FocusSettings settings = modified_laplacian(3, 1);
   const ImageView view = image_view(image.view(), PixelFormat::kMono8);
   EXPECT_EQ(sharpness(view, settings, 3, 3), 80.0);
   EXPECT_EQ(sharpness(view, settings, 2, 2), 40.0 + 10.0 + 10.0);
@@ -128,10 +135,9 @@ TEST(SharpnessReference, SeesADiagonalLineThatTheModifiedLaplacianSeesLess) {
 
 TEST(SharpnessReference, WeightsADoubleBoxTowardsItsMiddle) {
   Plane<std::uint8_t> image(41, 41, 10);
-  image.at(20, 20) = 20;  // twice 40 + 20 + 20 there, but no more than 80 elsewhere
-  const FocusSettings box{.focus_operator = FocusOperator::kIntensity, .window_px = 9};
-  FocusSettings doubled = box;
-  doubled.window = FocusWindow::kDoubleBox;
+  image.at(20, 20) = 20;
+  const FocusSettings doubled{
+      .focus_operator = FocusOperator::kIntensity, .window = FocusWindow::kDoubleBox, .window_px = 9};
   const ImageView view = image_view(image.view(), PixelFormat::kMono8);
   const double background = sharpness(view, doubled, 5, 5);
   // Weights 5 in the middle, 5 two beside it, 1 at five; their sum is 35.
@@ -157,14 +163,14 @@ TEST(WindowSides, SpreadAsFarAsOneBox) {
     EXPECT_EQ(both.first % 2, 1);
     EXPECT_EQ(both.second % 2, 1);
   }
-  EXPECT_DOUBLE_EQ(window_norm({.window_px = 9}), 9.0);
+  EXPECT_DOUBLE_EQ(window_norm({.window = FocusWindow::kBox, .window_px = 9}), 9.0);
   EXPECT_DOUBLE_EQ(window_norm({.window = FocusWindow::kDoubleBox, .window_px = 9}), 135.0);
 }
 
 TEST(SharpnessReference, LooksAtNeighboursAtItsDistance) {
   Plane<std::uint8_t> image(9, 9, 10);
   image.at(4, 4) = 20;  // ML 40 there, 10 three pixels up, down, left and right of it, nothing in between
-  const FocusSettings settings{.window_px = 3, .distance_px = 3};
+  const FocusSettings settings = modified_laplacian(3, 3);
   const ImageView view = image_view(image.view(), PixelFormat::kMono8);
   EXPECT_EQ(sharpness(view, settings, 4, 4), 40.0);
   EXPECT_EQ(sharpness(view, settings, 4, 1), 10.0);
@@ -220,7 +226,7 @@ TEST(SharpnessReference, HoldsItsRangeAtFullContrast) {
     }
   }
   for (int window = 3; window <= 63; window += 2) {
-    const FocusSettings settings{.window_px = window, .distance_px = 1};
+    const FocusSettings settings = modified_laplacian(window, 1);
     const double area = window * window;
     const double expected_wide = area * 4 * 65535.0;
     EXPECT_NEAR(sharpness(image_view(wide.view(), PixelFormat::kMono16), settings, 32, 32), expected_wide,
