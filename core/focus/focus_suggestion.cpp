@@ -68,7 +68,7 @@ FocusSuggestion suggest_focus(const ImageView& sharp) {
                                    [&](double value) { return value >= kMinResponseShare * largest; });
   suggestion.distance_px = static_cast<int>(enough - response.begin()) + 1;
   suggestion.response_grey = *enough;
-  FocusSettings settings;
+  FocusSettings settings{.focus_operator = FocusOperator::kModifiedLaplacian, .window = FocusWindow::kBox};
   const auto noise_over_peak = [&](int window) {
     settings.window_px = window;
     return sample_noise(settings, suggestion.noise_grey, 0.0) / (window * window * suggestion.response_grey);

@@ -106,7 +106,7 @@ class TypedStack {
   [[nodiscard]] static std::size_t memory_bytes(int width, int height, const FocusSettings& settings, int bands) {
     return PeakAccumulator<Pixel>::memory_bytes(width, height, settings.bin_slices > 1) +
            static_cast<std::size_t>(bands) * StreamingFocusStack::kMaxBatch *
-               SharpnessRows<Pixel>::memory_bytes(width, settings.window_px);
+               SharpnessRows<Pixel>::memory_bytes(width, settings);
   }
 
  private:

@@ -70,6 +70,11 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   Overrides overrides;
   overrides.set("--operator", named<FocusOperator>(arguments.focus_operator, focus_operator_from_name),
                 recipe.focus.focus_operator);
+  overrides.set("--window-shape", named<FocusWindow>(arguments.window, focus_window_from_name), recipe.focus.window);
+  if (arguments.smooth_px) {
+    recipe.smooth_px = arguments.smooth_px;
+    overrides.note("--smooth");
+  }
   overrides.set("--window", arguments.window_px, recipe.focus.window_px);
   overrides.set("--distance", arguments.distance_px, recipe.focus.distance_px);
   overrides.set("--min-prominence", arguments.min_prominence, recipe.focus.min_prominence);
@@ -180,8 +185,12 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                      "side of the focus window in pixels, odd, 3..63, default 9; the intensity has none");
   command
       .add_option("--operator", a.focus_operator,
-                  "what is summed over the window as the measure of sharpness, default modified_laplacian")
+                  "what is summed over the window as the measure of sharpness, default diagonal_laplacian")
       ->check(CLI::IsMember(operator_names()));
+  command.add_option("--window-shape", a.window, "weights of the window, default double_box")
+      ->check(CLI::IsMember({"box", "double_box"}));
+  command.add_option("--smooth", a.smooth_px, "also a smoothed map, standard deviation of the weights in pixels")
+      ->check(CLI::Range(kMinSmoothPx, kMaxSmoothPx));
   command.add_option("--distance", a.distance_px,
                      "from a pixel to the neighbours its operator looks at, 1..7 pixels, default 2");
   command.add_option("--bin", a.bin_slices, "slices summed to one sample of the focus curve, 1..64, default 1");

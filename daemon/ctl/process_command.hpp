@@ -34,6 +34,8 @@ struct ProcessArguments {
   std::optional<int> window_px;
   std::optional<int> distance_px;
   std::optional<std::string> focus_operator;
+  std::optional<std::string> window;
+  std::optional<double> smooth_px;
   std::optional<int> bin_slices;
   bool stage_correction = false;
   std::optional<double> min_significance;

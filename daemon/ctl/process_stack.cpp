@@ -107,7 +107,7 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
   const auto finish_start = SteadyClock::now();
   reconstruct(focus, options.recipe, data);
   data.times.finish_ms = milliseconds_since(finish_start);
-  reconstruct_further(focus, options.recipe, data);
+  reconstruct_further(focus, options.recipe, pool, data);
 }
 
 }  // namespace

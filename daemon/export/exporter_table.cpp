@@ -19,6 +19,8 @@ std::span<const Exporter> exporter_table() {
       Exporter{"height.tiff", kResult, kQuick, height_tiff_file},
       Exporter{"height_*.tiff", kEachExtraMap, kQuick, height_tiff_file},
       Exporter{"sigma.tiff", kResult, kQuick, sigma_tiff_file},
+      Exporter{"height_smooth.tiff", kSmoothedMap, kQuick, smooth_height_tiff_file},
+      Exporter{"sigma_smooth.tiff", kSmoothedMap, kQuick, smooth_sigma_tiff_file},
       Exporter{"height.gsf", kResult, kQuick, gsf_file},
       Exporter{"mask.png", kResult, kQuick, mask_png_file},
       Exporter{"texture.png", kResult, kQuick, texture_png_file},

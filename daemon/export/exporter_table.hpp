@@ -15,6 +15,7 @@ namespace fvd {
 /// What an exporter reads, which also decides how many files it makes.
 enum class ExportNeed {
   kResult,        ///< the result with its height map: one file
+  kSmoothedMap,   ///< the smoothed heights: one file, none where they were not asked for
   kEachExtraMap,  ///< a height map of another peak method: one file per map, none where there is none
 };
 

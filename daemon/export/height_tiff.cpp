@@ -110,6 +110,15 @@ std::string height_tiff_file(const ExportInput& input) {
   return encode_height_tiff(input.map.height_m, tiff_tags(input, "height"));
 }
 
+std::string smooth_height_tiff_file(const ExportInput& input) {
+  return encode_height_tiff(input.data.smoothed.value().height_m, tiff_tags(input, "smoothed height"));
+}
+
+std::string smooth_sigma_tiff_file(const ExportInput& input) {
+  return encode_height_tiff(input.data.smoothed.value().sigma_m,
+                            tiff_tags(input, "standard error of smoothed heights"));
+}
+
 std::string sigma_tiff_file(const ExportInput& input) {
   return encode_height_tiff(input.map.sigma_m, tiff_tags(input, "standard error"));
 }

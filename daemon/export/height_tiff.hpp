@@ -24,5 +24,8 @@ struct TiffTags {
 /// The exporters: heights and standard errors of the input's map.
 [[nodiscard]] std::string height_tiff_file(const ExportInput& input);
 [[nodiscard]] std::string sigma_tiff_file(const ExportInput& input);
+/// Of data.smoothed, which is there.
+[[nodiscard]] std::string smooth_height_tiff_file(const ExportInput& input);
+[[nodiscard]] std::string smooth_sigma_tiff_file(const ExportInput& input);
 
 }  // namespace fvd

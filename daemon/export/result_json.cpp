@@ -87,7 +87,9 @@ Json focus(const Result::Focus& focus) {
   json["pixel_pitch_x_um"] = number_or_null(focus.pixel_pitch_x_um);
   json["pixel_pitch_y_um"] = number_or_null(focus.pixel_pitch_y_um);
   json["operator"] = focus_operator_name(focus.settings.focus_operator);
+  json["window"] = focus_window_name(focus.settings.window);
   json["window_px"] = focus.settings.window_px;
+  json["smooth_px"] = focus.smooth_px ? Json(*focus.smooth_px) : Json(nullptr);
   json["distance_px"] = focus.settings.distance_px;
   json["min_prominence"] = focus.settings.min_prominence;
   json["min_significance"] = focus.settings.min_significance;

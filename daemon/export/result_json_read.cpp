@@ -137,7 +137,12 @@ Result::Focus focus(const Node& node) {
   focus.pixel_pitch_x_um = node.at("pixel_pitch_x_um").optional_number();
   focus.pixel_pitch_y_um = node.at("pixel_pitch_y_um").optional_number();
   focus.settings.focus_operator = node.at("operator").named(focus_operator_from_name, "the name of a focus operator");
+  // Results of 0.2.0 had a box alone, and no smoothed map.
+  focus.settings.window = node.has("window")
+                              ? node.at("window").named(focus_window_from_name, "the name of a focus window")
+                              : FocusWindow::kBox;
   focus.settings.window_px = node.at("window_px").integer<int>();
+  if (node.has("smooth_px")) focus.smooth_px = node.at("smooth_px").optional_number();
   focus.settings.distance_px = node.at("distance_px").integer<int>();
   focus.settings.min_prominence = node.at("min_prominence").number();
   focus.settings.min_significance = node.at("min_significance").number();

@@ -43,10 +43,16 @@ std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ResultData
     tasks.push_back({with_method(exporter.name, peak), exporter.cost, exporter.encode, {data, map, peak, summary}});
   };
   for (const Exporter& exporter : exporters) {
-    if (exporter.need == ExportNeed::kResult) {
-      add(exporter, data.map, data.peak);
-    } else {
-      for (const auto& [method, map] : data.extra_maps) add(exporter, map, method);
+    switch (exporter.need) {
+      case ExportNeed::kResult:
+        add(exporter, data.map, data.peak);
+        break;
+      case ExportNeed::kSmoothedMap:
+        if (data.smoothed) add(exporter, data.map, data.peak);
+        break;
+      case ExportNeed::kEachExtraMap:
+        for (const auto& [method, map] : data.extra_maps) add(exporter, map, method);
+        break;
     }
   }
   return tasks;

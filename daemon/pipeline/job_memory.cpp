@@ -26,6 +26,7 @@ JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
   JobMemory needed;
   needed.state_bytes = stack - pixels * kMapBytesPerPixel;
   needed.maps_bytes = (1 + recipe.extra_peaks.size()) * pixels * kMapBytesPerPixel;
+  if (recipe.smooth_px) needed.maps_bytes += 2 * pixels * sizeof(float);
   needed.frames_bytes =
       pixels * static_cast<std::size_t>(bytes_per_pixel(format)) * static_cast<std::size_t>(recipe.camera.pool_frames);
   needed.encoding_bytes = pixels * kEncodingBytesPerPixel;

@@ -101,7 +101,7 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
   reconstruct(stack, recipe, result);
   result.times.finish_ms = milliseconds_since(deps.clock, acquired);
-  reconstruct_further(stack, recipe, result);
+  reconstruct_further(stack, recipe, deps.pool, result);
 }
 
 }  // namespace fvd

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/focus/fit/smooth_heights.hpp"
+
 namespace fvd {
 
 void note_recipe(const Recipe& recipe, ResultData& data) {
@@ -20,7 +22,12 @@ void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultD
   data.map = stack.finish(recipe.peak);
 }
 
-void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
+void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data) {
+  if (recipe.smooth_px) {
+    data.smooth_px = recipe.smooth_px;
+    data.smoothed =
+        smooth_heights(data.map.height_m, data.map.sigma_m, {*recipe.smooth_px, window_area_px2(data.focus)}, pool);
+  }
   for (const PeakMethod method : recipe.extra_peaks) {
     const bool done = method == recipe.peak || std::any_of(data.extra_maps.begin(), data.extra_maps.end(),
                                                            [method](const auto& map) { return map.first == method; });

@@ -3,6 +3,7 @@
 /// From the slices that a stack has seen to the surfaces of a recipe: the same for a live scan and for recorded slices.
 
 #include "core/focus/streaming_focus_stack.hpp"
+#include "core/runtime/worker_pool.hpp"
 #include "daemon/recipes/recipe.hpp"
 #include "daemon/result/result_data.hpp"
 
@@ -14,7 +15,7 @@ void note_recipe(const Recipe& recipe, ResultData& data);
 /// Heights by recipe.peak. Throws Error kBadSlice without slices, as the next.
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data);
 
-/// Heights by each of recipe.extra_peaks, once.
-void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data);
+/// The smoothed map where the recipe asks for it, and heights by each of recipe.extra_peaks, once.
+void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data);
 
 }  // namespace fvd

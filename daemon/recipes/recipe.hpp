@@ -32,8 +32,9 @@ struct Recipe {
 
   CameraSettings camera;
   FocusSettings focus;
-  double curve_width_um = 0.0;  ///< full width at half maximum of the focus curve, 0 = unknown
-  int bin_slices = 0;           ///< slices summed to one sample of the curve; 0 = by the curve's width
+  double curve_width_um = 0.0;      ///< full width at half maximum of the focus curve, 0 = unknown
+  int bin_slices = 0;               ///< slices summed to one sample of the curve; 0 = by the curve's width
+  std::optional<double> smooth_px;  ///< kMinSmoothPx..kMaxSmoothPx: also a smoothed map; see smooth_heights.hpp
   PeakMethod peak = PeakMethod::kFiveSample;
   std::vector<PeakMethod> extra_peaks;  ///< further height maps from the same scan, height_<method>.tiff
 

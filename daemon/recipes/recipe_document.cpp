@@ -69,13 +69,18 @@ void check_together(const Recipe& recipe, const Places& places, Problems& proble
       std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
     refuse(extra_peaks, peak_method_name(recipe.peak), "is the peak already; expected others only");
   }
-  if (!judged({"/export", extra_peaks}) || !recipe.extra_peaks.empty()) return;
+  const std::string smooth = "/reconstruct/smooth_px";
+  if (!judged({"/export", extra_peaks, smooth})) return;
   const auto chosen = chosen_exporters(recipe.exports.value_or(std::vector<std::string>{}));
-  const auto makes_none = [](const Exporter& exporter) { return exporter.need == ExportNeed::kEachExtraMap; };
+  const auto makes_none = [&recipe](const Exporter& exporter) {
+    return (exporter.need == ExportNeed::kEachExtraMap && recipe.extra_peaks.empty()) ||
+           (exporter.need == ExportNeed::kSmoothedMap && !recipe.smooth_px);
+  };
   if (chosen.empty() || !std::all_of(chosen.begin(), chosen.end(), makes_none)) return;
   refuse("/export", chosen.front().name,
-         "stands for the maps of extra_peaks, which is empty, so no file is made; expected extra_peaks at " +
-             extra_peaks + ", or names that make files: " + names_of_single_files());
+         "stands for maps that the recipe does not ask for, so no file is made; expected methods at " + extra_peaks +
+             " for height_*.tiff, a value at " + smooth +
+             " for the smoothed map, or names that make files: " + names_of_single_files());
 }
 
 }  // namespace

@@ -85,8 +85,14 @@ void describe_focus(Recipe& recipe, Fields& fields) {
   std::string op(focus_operator_name(recipe.focus.focus_operator));
   fields.choice("operator", op, operators, "what is summed over the window as the measure of sharpness");
   recipe.focus.focus_operator = focus_operator_from_name(op).value_or(recipe.focus.focus_operator);
+  std::vector<std::string> windows;
+  for (const FocusWindow window : kAllFocusWindows) windows.emplace_back(focus_window_name(window));
+  std::string window(focus_window_name(recipe.focus.window));
+  fields.choice("window", window, windows,
+                "weights of the window: box = all alike, double_box = falling to the rim, two boxes over each other");
+  recipe.focus.window = focus_window_from_name(window).value_or(recipe.focus.window);
   fields.integer("window_px", recipe.focus.window_px, {kMinWindowPx, kMaxWindowPx},
-                 "side of the square window, odd; the intensity has none");
+                 "side of the square window, odd; of a double box the box that spreads as far; the intensity has none");
   fields.integer("distance_px", recipe.focus.distance_px, {1, kMaxDistancePx},
                  "from a pixel to the neighbours that its operator looks at");
   fields.number("curve_width_um", recipe.curve_width_um, {0.0, 1e5},
@@ -154,6 +160,11 @@ void describe(Recipe& recipe, Fields& fields) {
   fields.require("acquire");
   fields.group("reconstruct", "how heights are made of them", [&](Fields& in) {
     describe_heights(recipe, in);
+    in.optional("smooth_px", recipe.smooth_px, [](Fields& inner, double& value) {
+      inner.number("smooth_px", value, {kMinSmoothPx, kMaxSmoothPx},
+                   "also a smoothed map: a quadratic through the heights about each point, weights of this standard "
+                   "deviation; absent = none");
+    });
     describe_min_valid_fraction(recipe, in);
   });
   fields.optional("export", recipe.exports, [](Fields& in, std::vector<std::string>& names) {

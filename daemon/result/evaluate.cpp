@@ -25,6 +25,7 @@ Result::Focus focus_of(const ResultData& data) {
   focus.pixel_pitch_x_um = data.pixel_pitch_x_um;
   focus.pixel_pitch_y_um = data.pixel_pitch_y_um;
   focus.settings = data.focus;
+  focus.smooth_px = data.smooth_px;
   focus.noise_grey = data.map.noise_grey;
   if (data.map.curve_width_um > 0.0) focus.curve_width_um = data.map.curve_width_um;
   focus.peak = data.peak;

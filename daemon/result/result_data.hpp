@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/focus/fit/height_map.hpp"
+#include "core/focus/fit/smooth_heights.hpp"
 #include "core/focus/measure/focus_settings.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_plan.hpp"
@@ -41,6 +42,8 @@ struct ResultData {
 
   HeightMap map;
   std::vector<std::pair<PeakMethod, HeightMap>> extra_maps;
+  std::optional<double> smooth_px;
+  std::optional<SmoothedHeights> smoothed;  ///< of `map`, where smooth_px is given
 
   ScanMode scan_mode = ScanMode::kStep;
   double speed_um_per_s = 0.0;  ///< of a continuous scan

@@ -27,9 +27,8 @@ ReferenceScan::ReferenceScan(const std::filesystem::path& folder, const Referenc
   }
 }
 
-ErrorSum ReferenceScan::figures(PeakMethod method) const {
+ErrorSum ReferenceScan::figures_of(const HeightMap& map) const {
   ErrorSum errors;
-  const HeightMap map = stack_->finish(method);
   for (int y = 0; y < map.mask.height(); ++y) {
     for (int x = 0; x < map.mask.width(); ++x) {
       const double truth = truth_slices_.at<double>(y, x);

@@ -115,9 +115,12 @@ class ReferenceScan {
   ReferenceScan(const std::filesystem::path& folder, const Reference& reference, const FocusSettings& settings,
                 WorkerPool& pool);
 
-  [[nodiscard]] ErrorSum figures(PeakMethod method) const;
+  [[nodiscard]] HeightMap map(PeakMethod method) const { return stack_->finish(method); }
+  [[nodiscard]] ErrorSum figures_of(const HeightMap& map) const;
+  [[nodiscard]] ErrorSum figures(PeakMethod method) const { return figures_of(map(method)); }
   /// Why the stage's errors were not corrected; empty if they were.
   [[nodiscard]] std::string stage_reason() const { return stack_->finish(PeakMethod::kFiveSample).stage.reason; }
+  [[nodiscard]] double truth(int x, int y) const { return truth_slices_.at<double>(y, x); }
   /// Number of points that have a truth.
   [[nodiscard]] double points() const { return points_; }
 

@@ -24,6 +24,7 @@ struct ReferenceCurve {
   std::optional<ReferenceSample> right2 = {};
   double minimum = 0.0;      ///< of the whole curve, as a share of full scale
   double noise = 0.0;        ///< standard deviation of a sample, as a share of full scale
+  double misfit = 0.0;       ///< what a sample has beside that, as a share of the curve's amplitude
   double shape_error = 0.0;  ///< kShapeError or kBinnedShapeError
   VertexBias bias = {};      ///< to be taken off
 };

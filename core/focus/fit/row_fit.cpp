@@ -15,16 +15,19 @@ namespace fvd {
 
 namespace {
 
-/// c of the modified Laplacian; measured on blurred textures, see README.md.
+/// c of the Laplacians; measured on blurred textures, see README.md.
 constexpr double kLaplacianNoise = 4.0;
+constexpr double kDiagonalNoise = 15.0;
 
 }  // namespace
 
 double sample_noise(const FocusSettings& settings, double noise_grey, double sharpness) noexcept {
-  const double window = settings.window_px;
+  const double window = window_norm(settings);
   switch (settings.focus_operator) {
     case FocusOperator::kModifiedLaplacian:
       return kLaplacianNoise * window * noise_grey;
+    case FocusOperator::kDiagonalLaplacian:
+      return kDiagonalNoise * window * noise_grey;
     case FocusOperator::kTenengrad:
       // g = (gx, gy) of white noise has 12 sigma^2 each; neighbouring gradients share pixels, which doubles the sum.
       return 2.0 * std::sqrt(2.0 * 12.0 * sharpness) * noise_grey;
@@ -35,11 +38,12 @@ double sample_noise(const FocusSettings& settings, double noise_grey, double sha
 }
 
 RowFit::RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
-               VertexBias bias)
+               VertexBias bias, double misfit)
     : settings_(settings),
       code_(sharpness_code(settings, format)),
       method_(method),
       bias_(bias),
+      misfit_(static_cast<float>(misfit)),
       z_um_(std::move(z_um)),
       heights_(height_table(z_um_)),
       bin_gain_(settings.bin_slices / std::ldexp(1.0, bin_shift(settings.bin_slices))) {}
@@ -66,6 +70,7 @@ void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amp
     const FitParameters parameters{static_cast<float>(settings_.min_prominence),
                                    static_cast<float>(settings_.min_significance),
                                    settings_.bin_slices > 1 ? kBinnedShapeError : kShapeError,
+                                   misfit_,
                                    static_cast<float>(SharpnessCode::kUnit),
                                    code_.root,
                                    bias_};

@@ -22,9 +22,9 @@ namespace fvd {
 /// context: const members from many threads.
 class RowFit {
  public:
-  /// z_um: measured z of each sample. bias: subtracted from the vertices of kFiveSample.
+  /// z_um: measured z of each sample. bias: subtracted from the vertices of kFiveSample. misfit: see curve_misfit.hpp.
   RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
-         VertexBias bias = {});
+         VertexBias bias = {}, double misfit = 0.0);
 
   /// Writes the standard deviation of a sample at the peak, as shares of full scale. noise_grey: standard deviation of
   /// each pixel in grey levels. Shape [width] each.
@@ -53,6 +53,7 @@ class RowFit {
   SharpnessCode code_;
   PeakMethod method_;
   VertexBias bias_;
+  float misfit_;
   std::vector<double> z_um_;
   std::vector<HeightEntry> heights_;
   double bin_gain_;  // from the mean code of a bin's slices to the bin's code

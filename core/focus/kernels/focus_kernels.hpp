@@ -65,6 +65,7 @@ struct FitParameters {
   float min_prominence;
   float min_significance;
   float shape_error;  ///< see five_sample_fit.hpp
+  float misfit;       ///< standard deviation of a sample beside its noise, as a share of the amplitude
   float code_unit;    ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
   bool root_code;
   VertexBias bias;  ///< to be subtracted from the vertex
@@ -78,6 +79,18 @@ struct FitRow {
   MaskReasons* mask;
 };
 
+/// A row of pixels and those around it that the diagonals reach.
+template <typename Pixel>
+struct DiagonalRows {
+  const Pixel* above;  ///< `distance` above
+  const Pixel* upper;  ///< `inner` above
+  const Pixel* row;
+  const Pixel* lower;  ///< `inner` below
+  const Pixel* below;  ///< `distance` below
+  int distance;        ///< px
+  int inner;           ///< px, the diagonals' first step, 1..distance
+};
+
 struct FocusKernels {
   std::string_view name;
 
@@ -85,22 +98,31 @@ struct FocusKernels {
   /// left unchanged.
   void (*laplacian_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                         int distance, std::uint32_t* out) noexcept;
+  /// The diagonal Laplacian, see sharpness_rows.hpp; ends as for the Laplacian.
+  void (*diagonal_u8)(const DiagonalRows<std::uint8_t>& rows, int width, std::uint32_t* out) noexcept;
+  void (*diagonal_u16)(const DiagonalRows<std::uint16_t>& rows, int width, std::uint32_t* out) noexcept;
   /// (gx^2 + gy^2) >> shift of the Sobel gradients; ends as for the Laplacian.
   void (*tenengrad_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
                        int distance, int shift, std::uint32_t* out) noexcept;
   void (*tenengrad_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
                         int distance, int shift, std::uint32_t* out) noexcept;
 
-  /// Modified Laplacian of an 8-bit row in one pass with the sums over the window's rows that it enters:
+  /// Modified or diagonal Laplacian of an 8-bit row in one pass with the sums over the window's rows that it enters:
   /// columns += value - slot; slot = value; scaled = columns / 2^shift, rounded. Ends as for the Laplacian.
   void (*enter_laplacian_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
                              int distance, int shift, std::uint16_t* columns, std::uint16_t* slot,
                              std::uint16_t* scaled) noexcept;
-  /// columns += entering - leaving; leaving = entering.
+  void (*enter_diagonal_u8)(const DiagonalRows<std::uint8_t>& rows, int width, int shift, std::uint16_t* columns,
+                            std::uint16_t* slot, std::uint16_t* scaled) noexcept;
+  /// columns += entering - leaving; leaving = entering; of 16 bit: scaled = columns / 2^shift, rounded.
+  void (*slide_u16)(std::uint16_t* columns, const std::uint16_t* entering, std::uint16_t* leaving, int width, int shift,
+                    std::uint16_t* scaled) noexcept;
   void (*slide_u32)(std::uint32_t* columns, const std::uint32_t* entering, std::uint32_t* leaving, int width) noexcept;
   /// out[x] = values[x] + .. + values[x + window - 1] for x = 0 .. width - window. window: 3 .. 63.
   void (*window_sums_u16)(const std::uint16_t* values, int window, int width, std::uint16_t* out) noexcept;
   void (*window_sums_u32)(const std::uint32_t* values, int window, int width, std::uint32_t* out) noexcept;
+  /// values /= 2^shift, rounded. shift >= 1.
+  void (*scale_u16)(std::uint16_t* values, int shift, int width) noexcept;
   /// out = round(gain * sqrt(sums)); sums < 2^31.
   void (*root_code)(const std::uint32_t* sums, float gain, int width, std::uint16_t* out) noexcept;
 

@@ -299,6 +299,7 @@ inline void find_heights(int count, const float* noise, const FitParameters& par
                          float* height_m, float* variance_m2) {
   const float shape_error = parameters.shape_error;
   const VertexBias bias = parameters.bias;
+  const float misfit = 0.25F * parameters.misfit * parameters.misfit;  // of G, near the peak
   const float half_per_unit = 0.5F / share_unit(parameters);
   FVD_NO_ALIASING
   for (int x = 0; x < count; ++x) {
@@ -320,7 +321,7 @@ inline void find_heights(int count, const float* noise, const FitParameters& par
     const float share = inside < 1.0F ? inside : 1.0F;
     const float vertex = u - (bias.linear + bias.cubic * near * near) * near * bend * share;
     const bool valid = at.mask[x] == 0;
-    const float spread = (variance * (relative_noise * relative_noise) + shape * shape) * (scale_m * scale_m);
+    const float spread = (variance * (relative_noise * relative_noise + misfit) + shape * shape) * (scale_m * scale_m);
     const float height = (at.z_um[x] + vertex * at.scale_um[x]) * 1e-6F;
     variance_m2[x] = valid ? spread : kNaN;
     height_m[x] = valid ? height : kNaN;

@@ -23,6 +23,36 @@ void laplacian_u16(const std::uint16_t* above, const std::uint16_t* row, const s
   }
 }
 
+inline __attribute__((always_inline)) int size_of(int value) { return value < 0 ? -value : value; }
+
+/// Twice the modified Laplacian and the diagonals at both steps.
+template <typename Pixel>
+inline __attribute__((always_inline)) std::uint32_t diagonal_value(const DiagonalRows<Pixel>& rows, int x) {
+  const int d = rows.distance;
+  const int s = rows.inner;
+  const int centre = 2 * rows.row[x];
+  const int straight = size_of(centre - rows.row[x - d] - rows.row[x + d]) + size_of(centre - rows.above[x] - rows.below[x]);
+  const int outer = size_of(centre - rows.above[x - d] - rows.below[x + d]) +
+                    size_of(centre - rows.above[x + d] - rows.below[x - d]);
+  const int inner = size_of(centre - rows.upper[x - s] - rows.lower[x + s]) +
+                    size_of(centre - rows.upper[x + s] - rows.lower[x - s]);
+  return static_cast<std::uint32_t>(2 * straight + outer + inner);
+}
+
+template <typename Pixel>
+inline __attribute__((always_inline)) void diagonal(const DiagonalRows<Pixel>& given, int width, std::uint32_t* out) {
+  const DiagonalRows<Pixel> rows = given;  // a copy that out cannot alias
+  FVD_NO_ALIASING
+  for (int x = rows.distance; x < width - rows.distance; ++x) out[x] = diagonal_value(rows, x);
+}
+
+void diagonal_u8(const DiagonalRows<std::uint8_t>& rows, int width, std::uint32_t* out) noexcept {
+  diagonal(rows, width, out);
+}
+void diagonal_u16(const DiagonalRows<std::uint16_t>& rows, int width, std::uint32_t* out) noexcept {
+  diagonal(rows, width, out);
+}
+
 template <typename Pixel>
 inline __attribute__((always_inline)) void tenengrad(const Pixel* above, const Pixel* row, const Pixel* below,
                                                      int width, int d, int prescale, int shift, std::uint32_t* out) {
@@ -48,6 +78,36 @@ void tenengrad_u16(const std::uint16_t* above, const std::uint16_t* row, const s
   tenengrad(above, row, below, width, distance, 3, shift, out);
 }
 
+/// A row's new values enter the column sums, those in the slot leave them; 16 pixels.
+inline __attribute__((always_inline)) void enter_values(const Codes& value, int shift, std::uint16_t* columns,
+                                                        std::uint16_t* slot, std::uint16_t* scaled) {
+  Codes sum;
+  Codes leaving;
+  load(columns, sum);
+  load(slot, leaving);
+  sum += value - leaving;
+  store(sum, columns);
+  store(value, slot);
+  if (shift > 0) scale_codes(shift, sum);
+  store(sum, scaled);
+}
+inline __attribute__((always_inline)) void enter_value(int value, int shift, std::uint16_t& column, std::uint16_t& slot,
+                                                       std::uint16_t& scaled) {
+  column = static_cast<std::uint16_t>(column + value - slot);
+  slot = static_cast<std::uint16_t>(value);
+  scaled = shift > 0 ? rounded_shift(column, shift) : column;
+}
+
+/// sum += |centre - one - other|
+inline __attribute__((always_inline)) void add_difference(const Codes& centre, const std::uint8_t* one,
+                                                          const std::uint8_t* other, Codes& sum) {
+  Codes a;
+  Codes b;
+  load_wide(one, a);
+  load_wide(other, b);
+  add_size(centre - a - b, sum);
+}
+
 // Laplacian and column sums in one pass. The differences lie within -510..510, so 16-bit lanes do.
 void enter_laplacian_u8(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
                         int distance, int shift, std::uint16_t* columns, std::uint16_t* slot,
@@ -69,26 +129,38 @@ void enter_laplacian_u8(const std::uint8_t* above, const std::uint8_t* row, cons
     Codes value{};
     add_size(centre - left - right, value);
     add_size(centre - upper - lower, value);
-    Codes sum;
-    Codes leaving;
-    load(columns + x, sum);
-    load(slot + x, leaving);
-    sum += value - leaving;
-    store(sum, columns + x);
-    store(value, slot + x);
-    if (shift > 0) {
-      sum >>= shift - 1;
-      halve(sum);
-    }
-    store(sum, scaled + x);
+    enter_values(value, shift, columns + x, slot + x, scaled + x);
   }
   for (; x < end; ++x) {
     const int horizontal = 2 * row[x] - row[x - distance] - row[x + distance];
     const int vertical = 2 * row[x] - above[x] - below[x];
-    const int value = (horizontal < 0 ? -horizontal : horizontal) + (vertical < 0 ? -vertical : vertical);
-    columns[x] = static_cast<std::uint16_t>(columns[x] + value - slot[x]);
-    slot[x] = static_cast<std::uint16_t>(value);
-    scaled[x] = shift > 0 ? rounded_shift(columns[x], shift) : columns[x];
+    enter_value(size_of(horizontal) + size_of(vertical), shift, columns[x], slot[x], scaled[x]);
+  }
+}
+
+void enter_diagonal_u8(const DiagonalRows<std::uint8_t>& given, int width, int shift, std::uint16_t* columns,
+                       std::uint16_t* slot, std::uint16_t* scaled) noexcept {
+  const DiagonalRows<std::uint8_t> rows = given;
+  const int d = rows.distance;
+  const int s = rows.inner;
+  int x = d;
+  const int end = width - d;
+  for (; x + 16 <= end; x += 16) {
+    Codes centre;
+    load_wide(rows.row + x, centre);
+    centre += centre;
+    Codes value{};
+    add_difference(centre, rows.row + x - d, rows.row + x + d, value);
+    add_difference(centre, rows.above + x, rows.below + x, value);
+    value += value;
+    add_difference(centre, rows.above + x - d, rows.below + x + d, value);
+    add_difference(centre, rows.above + x + d, rows.below + x - d, value);
+    add_difference(centre, rows.upper + x - s, rows.lower + x + s, value);
+    add_difference(centre, rows.upper + x + s, rows.lower + x - s, value);
+    enter_values(value, shift, columns + x, slot + x, scaled + x);
+  }
+  for (; x < end; ++x) {
+    enter_value(static_cast<int>(diagonal_value(rows, x)), shift, columns[x], slot[x], scaled[x]);
   }
 }
 

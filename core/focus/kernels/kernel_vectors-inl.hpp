@@ -65,6 +65,12 @@ inline __attribute__((always_inline)) void halve(Codes& value) {
 #endif
 }
 
+/// 16 values / 2^shift, rounded; shift >= 1.
+inline __attribute__((always_inline)) void scale_codes(int shift, Codes& values) {
+  values >>= shift - 1;
+  halve(values);
+}
+
 /// v / 2^shift rounded, without overflow at the top of the range. shift >= 1.
 inline std::uint16_t rounded_shift(std::uint16_t value, int shift) {
   return static_cast<std::uint16_t>((value >> shift) + ((value >> (shift - 1)) & 1));

@@ -7,6 +7,7 @@
 // three, each an addition of whole rows.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
+#include "core/focus/kernels/kernel_vectors-inl.hpp"
 
 namespace fvd::FVD_KERNEL_NAMESPACE {
 
@@ -16,6 +17,40 @@ void slide_u32(std::uint32_t* columns, const std::uint32_t* entering, std::uint3
     columns[x] += entering[x] - leaving[x];
     leaving[x] = entering[x];
   }
+}
+
+void slide_u16(std::uint16_t* columns, const std::uint16_t* entering, std::uint16_t* leaving, int width, int shift,
+               std::uint16_t* scaled) noexcept {
+  int x = 0;
+  for (; x + 16 <= width; x += 16) {
+    Codes sum;
+    Codes in;
+    Codes out;
+    load(columns + x, sum);
+    load(entering + x, in);
+    load(leaving + x, out);
+    sum += in - out;
+    store(sum, columns + x);
+    store(in, leaving + x);
+    if (shift > 0) scale_codes(shift, sum);
+    store(sum, scaled + x);
+  }
+  for (; x < width; ++x) {
+    columns[x] = static_cast<std::uint16_t>(columns[x] + entering[x] - leaving[x]);
+    leaving[x] = entering[x];
+    scaled[x] = shift > 0 ? rounded_shift(columns[x], shift) : columns[x];
+  }
+}
+
+void scale_u16(std::uint16_t* values, int shift, int width) noexcept {
+  int x = 0;
+  for (; x + 16 <= width; x += 16) {
+    Codes some;
+    load(values + x, some);
+    scale_codes(shift, some);
+    store(some, values + x);
+  }
+  for (; x < width; ++x) values[x] = rounded_shift(values[x], shift);
 }
 
 /// out[x] = sum of the rows at x. The pointers are parameters: from an array g++ would load them anew for every x.

@@ -35,6 +35,8 @@ std::string_view focus_operator_name(FocusOperator op) noexcept {
   switch (op) {
     case FocusOperator::kModifiedLaplacian:
       return "modified_laplacian";
+    case FocusOperator::kDiagonalLaplacian:
+      return "diagonal_laplacian";
     case FocusOperator::kTenengrad:
       return "tenengrad";
     case FocusOperator::kIntensity:
@@ -48,6 +50,53 @@ std::optional<FocusOperator> focus_operator_from_name(std::string_view name) noe
     if (name == focus_operator_name(op)) return op;
   }
   return std::nullopt;
+}
+
+std::string_view focus_window_name(FocusWindow window) noexcept {
+  switch (window) {
+    case FocusWindow::kBox:
+      return "box";
+    case FocusWindow::kDoubleBox:
+      return "double_box";
+  }
+  return "box";
+}
+
+std::optional<FocusWindow> focus_window_from_name(std::string_view name) noexcept {
+  for (const FocusWindow window : kAllFocusWindows) {
+    if (name == focus_window_name(window)) return window;
+  }
+  return std::nullopt;
+}
+
+WindowSides window_sides(const FocusSettings& settings) noexcept {
+  const int window = settings.window_px;
+  if (settings.window == FocusWindow::kBox || window < kMinWindowPx) return {window, 1};
+  const auto fits = [&](int first, int second) { return first * first + second * second <= window * window + 1; };
+  WindowSides sides{kMinWindowPx, 1};
+  while (true) {
+    const WindowSides wider = sides.first == sides.second ? WindowSides{sides.first + 2, sides.second}
+                                                          : WindowSides{sides.first, sides.first};
+    if (!fits(wider.first, wider.second)) return sides;
+    sides = wider;
+  }
+}
+
+double window_norm(const FocusSettings& settings) noexcept {
+  const WindowSides sides = window_sides(settings);
+  double squares = 0.0;  // of the weights along one direction; those of the window are their products
+  for (int x = 0; x < sides.first + sides.second - 1; ++x) {
+    const int weight = std::min({x + 1, sides.second, sides.first, sides.first + sides.second - 1 - x});
+    squares += static_cast<double>(weight) * weight;
+  }
+  return squares;
+}
+
+double window_area_px2(const FocusSettings& settings) noexcept {
+  const WindowSides sides = window_sides(settings);
+  const double weights = static_cast<double>(sides.first) * sides.second;  // their sum along one direction
+  const double along = weights * weights / window_norm(settings);          // px
+  return along * along;
 }
 
 int choose_bin_slices(double step_um, double curve_width_um) noexcept {

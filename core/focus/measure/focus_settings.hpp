@@ -26,15 +26,27 @@ inline constexpr std::array kAllPeakMethods{PeakMethod::kNearest, PeakMethod::kP
 /// The operator whose values are summed over the window.
 enum class FocusOperator {
   kModifiedLaplacian,  ///< absolute second differences along x and y (Nayar and Nakagawa 1994)
+  kDiagonalLaplacian,  ///< the same and half of those along the diagonals (Thelen et al. 2009), see sharpness_rows.hpp
   kTenengrad,          ///< squared Sobel gradients (Tenenbaum 1970)
   kIntensity,          ///< the grey level itself, the response of a confocal microscope
 };
-inline constexpr std::array kAllFocusOperators{FocusOperator::kModifiedLaplacian, FocusOperator::kTenengrad,
-                                               FocusOperator::kIntensity};
+inline constexpr std::array kAllFocusOperators{FocusOperator::kModifiedLaplacian, FocusOperator::kDiagonalLaplacian,
+                                               FocusOperator::kTenengrad, FocusOperator::kIntensity};
 
-/// "modified_laplacian", "tenengrad", "intensity".
+/// "modified_laplacian", "diagonal_laplacian", "tenengrad", "intensity".
 [[nodiscard]] std::string_view focus_operator_name(FocusOperator op) noexcept;
 [[nodiscard]] std::optional<FocusOperator> focus_operator_from_name(std::string_view name) noexcept;
+
+/// How the operator's values are weighted over the window.
+enum class FocusWindow {
+  kBox,        ///< all alike
+  kDoubleBox,  ///< the mean of a box over the means of another: weights that fall towards the rim, see WindowSides
+};
+inline constexpr std::array kAllFocusWindows{FocusWindow::kBox, FocusWindow::kDoubleBox};
+
+/// "box", "double_box".
+[[nodiscard]] std::string_view focus_window_name(FocusWindow window) noexcept;
+[[nodiscard]] std::optional<FocusWindow> focus_window_from_name(std::string_view name) noexcept;
 
 inline constexpr int kMinWindowPx = 3;
 inline constexpr int kMaxWindowPx = 63;
@@ -43,7 +55,8 @@ inline constexpr int kMaxDistancePx = 7;
 inline constexpr int kMaxBinSlices = 64;
 
 struct FocusSettings {
-  FocusOperator focus_operator = FocusOperator::kModifiedLaplacian;
+  FocusOperator focus_operator = FocusOperator::kDiagonalLaplacian;
+  FocusWindow window = FocusWindow::kDoubleBox;
   int window_px = 9;              ///< side of the square window of the sum, odd, 3..63; 1 for the intensity
   int distance_px = 2;            ///< from a pixel to the neighbours that its operator uses, 1..7
   double min_prominence = 0.5;    ///< (peak - minimum) / peak of the focus curve, 0..1; below it a point is a hole
@@ -51,6 +64,24 @@ struct FocusSettings {
   int bin_slices = 1;             ///< successive slices whose sharpness is summed to one sample of the curve, 1..64
   bool stage_correction = true;   ///< see stage_correction.hpp; with the five-sample peak only
 };
+
+/// The sides of the boxes that are laid over each other.
+struct WindowSides {
+  int first = 0;   ///< px, odd
+  int second = 1;  ///< px, odd; 1 where the window is a single box
+};
+
+/// Of a double box: the largest two odd sides, equal or 2 px apart, whose weights spread no further than those of one
+/// box of window_px: the variance of a box of side n is (n^2 - 1) / 12 px^2 and those of both add up. 7 and 5 for 9 px.
+[[nodiscard]] WindowSides window_sides(const FocusSettings& settings) noexcept;
+
+/// The root of the sum of the squared weights, so many single values does the noise of the sum amount to: window_px for
+/// a box.
+[[nodiscard]] double window_norm(const FocusSettings& settings) noexcept;
+
+/// The square of the sum of the weights over the sum of their squares: the area over which the noise of neighbouring
+/// sums is one. window_px^2 for a box.
+[[nodiscard]] double window_area_px2(const FocusSettings& settings) noexcept;
 
 /// The number of slices per bin with which samples lie about 0.4 of the curve's full width at half maximum apart. There
 /// the peak is located best: closer samples differ by more noise than signal. 1 if the width is unknown (0).

@@ -2,7 +2,7 @@
 
 /// The 16-bit code of a window's sum, which is what is kept per sample.
 ///
-///   linear:  code = F * gain               8-bit modified Laplacian; gain is a power of 1/2
+///   linear:  code = F * gain               8-bit Laplacians of windows that 16-bit sums hold; gain is a power of 1/2
 ///   root:    code = round(gain * sqrt(F))  everything wider: 16 bits keep the precision of small sums
 ///
 /// Both rise with F, so a peak of codes is a peak of F. share(F), linear code / 65535 or its square for root codes, is
@@ -18,6 +18,8 @@ namespace fvd {
 struct SharpnessCode {
   bool root = false;
   int shift = 0;           ///< linear: right shift of the sum over a column, 0..6 bits
+  int second_shift = 0;    ///< linear, double box: right shift of the sum of such sums over the second box's column, bits
+  int third_shift = 0;     ///< linear, double box: right shift of the sum of those along the row over the first box, bits
   int operator_shift = 0;  ///< right shift of an operator's value before it is summed, bits
   double gain = 1.0;       ///< from F, the sum of the operator's unshifted values, to the code
 
@@ -29,6 +31,10 @@ struct SharpnessCode {
     return root ? value * value : value;
   }
 };
+
+/// What the root kernel multiplies the root of a sum with, whose values lack operator_shift bits and, being squares,
+/// twice gradient_shift.
+[[nodiscard]] float root_gain(const SharpnessCode& code, int gradient_shift) noexcept;
 
 [[nodiscard]] SharpnessCode sharpness_code(const FocusSettings& settings, PixelFormat format) noexcept;
 

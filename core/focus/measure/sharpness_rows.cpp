@@ -1,88 +1,15 @@
 #include "core/focus/measure/sharpness_rows.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
+
+#include "core/focus/measure/operator_value.hpp"
 
 namespace fvd {
 
 namespace {
 
-/// The bits a 16-bit gradient loses before it is squared; see the kernel.
-template <typename Pixel>
-constexpr int kGradientShift = sizeof(Pixel) == 1 ? 0 : 3;
-
-/// The operator anywhere in the image; the law for the kernels and what they leave at the ends of a row.
-template <typename Pixel>
-std::uint32_t operator_value(FocusOperator op, const Pixel* above, const Pixel* row, const Pixel* below, int x,
-                             int width, int distance, int shift) {
-  const int left = std::max(x - distance, 0);
-  const int right = std::min(x + distance, width - 1);
-  switch (op) {
-    case FocusOperator::kModifiedLaplacian:
-      return static_cast<std::uint32_t>(std::abs(2 * row[x] - row[left] - row[right]) +
-                                        std::abs(2 * row[x] - above[x] - below[x]));
-    case FocusOperator::kTenengrad: {
-      const int gx = (above[right] + 2 * row[right] + below[right] - above[left] - 2 * row[left] - below[left]) >>
-                     kGradientShift<Pixel>;
-      const int gy = (below[left] + 2 * below[x] + below[right] - above[left] - 2 * above[x] - above[right]) >>
-                     kGradientShift<Pixel>;
-      return static_cast<std::uint32_t>(gx * gx + gy * gy) >> shift;
-    }
-    case FocusOperator::kIntensity:
-      return row[x];
-  }
-  return 0;
-}
-
-std::uint16_t linear_code(std::uint64_t column_sum, int shift) {
-  return static_cast<std::uint16_t>(shift == 0 ? column_sum : (column_sum + (1U << (shift - 1))) >> shift);
-}
-
-/// The root kernel's arithmetic, in its order and precision.
-std::uint16_t root_code(std::uint64_t sum, float gain) {
-  return static_cast<std::uint16_t>(
-      static_cast<std::int32_t>(gain * std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum))) + 0.5F));
-}
-
-float root_gain(const SharpnessCode& code, int gradient_shift) {
-  // The sums lack the bits that were shifted out of their values.
-  return static_cast<float>(code.gain * std::sqrt(std::ldexp(1.0, code.operator_shift + 2 * gradient_shift)));
-}
-
-template <typename Pixel>
-int gradient_shift(FocusOperator op) {
-  return op == FocusOperator::kTenengrad ? kGradientShift<Pixel> : 0;
-}
-
-template <typename Pixel>
-Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings& settings, const SharpnessCode& code) {
-  Plane<std::uint32_t> values(image.width, image.height);
-  for (int y = 0; y < image.height; ++y) {
-    const Pixel* above = image.row(std::max(y - settings.distance_px, 0));
-    const Pixel* below = image.row(std::min(y + settings.distance_px, image.height - 1));
-    for (int x = 0; x < image.width; ++x) {
-      values.at(x, y) = operator_value(settings.focus_operator, above, image.row(y), below, x, image.width,
-                                       settings.distance_px, code.operator_shift);
-    }
-  }
-  Plane<std::uint16_t> codes(image.width, image.height);
-  const int radius = settings.window_px / 2;
-  const float gain = root_gain(code, gradient_shift<Pixel>(settings.focus_operator));
-  for (int y = 0; y < image.height; ++y) {
-    const WindowReach rows(y, radius, image.height);
-    for (int x = 0; x < image.width; ++x) {
-      const WindowReach columns(x, radius, image.width);
-      std::uint64_t sum = 0;
-      for (int u = columns.first; u <= columns.last; ++u) {
-        std::uint64_t column = 0;
-        for (int v = rows.first; v <= rows.last; ++v) column += values.at(u, v);
-        sum += code.root ? column : linear_code(column, code.shift);
-      }
-      codes.at(x, y) = code.root ? root_code(sum, gain) : static_cast<std::uint16_t>(sum);
-    }
-  }
-  return codes;
+std::uint16_t linear_code(std::uint32_t sum, int shift) {
+  return static_cast<std::uint16_t>(shift == 0 ? sum : (sum + (1U << (shift - 1))) >> shift);
 }
 
 /// Windows about x = first .. end - 1, each from the one before: their ends only move to the right.
@@ -114,7 +41,7 @@ SharpnessRows<Pixel>::SharpnessRows(int width, const FocusSettings& settings, Pi
     : kernels_(focus_kernels()),
       width_(width),
       window_(settings.window_px),
-      radius_(settings.window_px / 2),
+      sides_(window_sides(settings)),
       distance_(settings.distance_px),
       operator_(settings.focus_operator),
       code_(sharpness_code(settings, format)),
@@ -135,14 +62,19 @@ template <typename Pixel>
 template <typename Sum>
 void SharpnessRows<Pixel>::resize(Columns<Sum>& columns) {
   const auto width = static_cast<std::size_t>(width_);
-  columns.ring.resize(width * static_cast<std::size_t>(window_));
+  columns.ring.resize(width * static_cast<std::size_t>(sides_.first));
   for (auto* row : {&columns.fresh, &columns.sums, &columns.scaled, &columns.windows}) row->resize(width);
+  if (sides_.second == 1) return;
+  columns.second_ring.resize(width * static_cast<std::size_t>(sides_.second));
+  for (auto* row : {&columns.second_sums, &columns.second_scaled}) row->resize(width);
 }
 
 template <typename Pixel>
-std::size_t SharpnessRows<Pixel>::memory_bytes(int width, int window) {
+std::size_t SharpnessRows<Pixel>::memory_bytes(int width, const FocusSettings& settings) {
+  const WindowSides sides = window_sides(settings);
+  const int rows = sides.first + 4 + (sides.second == 1 ? 0 : sides.second + 2);
   return static_cast<std::size_t>(width) *
-         ((static_cast<std::size_t>(window) + 4) * sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t) + 1);
+         (static_cast<std::size_t>(rows) * sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t) + 1);
 }
 
 template <typename Pixel>
@@ -154,8 +86,9 @@ bool SharpnessRows<Pixel>::row_saturated(int y) const noexcept {
 template <typename Pixel>
 template <typename Sum>
 void SharpnessRows<Pixel>::clear(Columns<Sum>& columns) noexcept {
-  std::fill(columns.ring.begin(), columns.ring.end(), Sum{0});
-  std::fill(columns.sums.begin(), columns.sums.end(), Sum{0});
+  for (auto* rows : {&columns.ring, &columns.sums, &columns.second_ring, &columns.second_sums}) {
+    std::fill(rows->begin(), rows->end(), Sum{0});
+  }
 }
 
 template <typename Pixel>
@@ -169,29 +102,40 @@ void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first) noexce
     clear(wide_columns_);
   }
   std::fill(saturated_columns_.begin(), saturated_columns_.end(), std::uint16_t{0});
-  low_ = WindowReach(first, radius_, image.height).first;
-  high_ = low_;
+  counted_.begin(first, window_, image.height);
+  second_.begin(first, sides_.second, image.height);
+  first_.begin(second_.low, sides_.first, image.height);
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::compute_row(int y, std::uint32_t* out) noexcept {
-  const Pixel* above = image_.row(std::max(y - distance_, 0));
-  const Pixel* row = image_.row(y);
-  const Pixel* below = image_.row(std::min(y + distance_, image_.height - 1));
-  if (operator_ == FocusOperator::kIntensity) {
-    std::copy_n(row, width_, out);
-    return;
+  const auto rows = rows_about(image_, y, distance_);
+  switch (operator_) {
+    case FocusOperator::kIntensity:
+      std::copy_n(rows.row, width_, out);
+      return;
+    case FocusOperator::kTenengrad:
+      if constexpr (sizeof(Pixel) == 1) {
+        kernels_.tenengrad_u8(rows.above, rows.row, rows.below, width_, distance_, code_.operator_shift, out);
+      } else {
+        kernels_.tenengrad_u16(rows.above, rows.row, rows.below, width_, distance_, code_.operator_shift, out);
+      }
+      break;
+    case FocusOperator::kDiagonalLaplacian:
+      if constexpr (sizeof(Pixel) == 1) {
+        kernels_.diagonal_u8(rows, width_, out);
+      } else {
+        kernels_.diagonal_u16(rows, width_, out);
+      }
+      break;
+    case FocusOperator::kModifiedLaplacian:
+      // Of 8 bits it always fits narrow sums.
+      if constexpr (sizeof(Pixel) == 2) {
+        kernels_.laplacian_u16(rows.above, rows.row, rows.below, width_, distance_, out);
+      }
+      break;
   }
-  if constexpr (sizeof(Pixel) == 1) {
-    kernels_.tenengrad_u8(above, row, below, width_, distance_, code_.operator_shift, out);
-  } else if (operator_ == FocusOperator::kTenengrad) {
-    kernels_.tenengrad_u16(above, row, below, width_, distance_, code_.operator_shift, out);
-  } else {
-    kernels_.laplacian_u16(above, row, below, width_, distance_, out);
-  }
-  for_ends([&](int x) {
-    out[x] = operator_value(operator_, above, row, below, x, width_, distance_, code_.operator_shift);
-  });
+  for_ends([&](int x) { out[x] = operator_value(operator_, rows, x, width_, code_.operator_shift); });
 }
 
 /// Calls at(x) for the columns whose neighbours lie beyond the image.
@@ -216,18 +160,18 @@ void SharpnessRows<Pixel>::prefetch_row(int y) const noexcept {
 template <typename Pixel>
 void SharpnessRows<Pixel>::enter(Narrow& columns, int y) noexcept {
   if constexpr (sizeof(Pixel) == 1) {
-    // The slot holds the row that leaves, `window` rows above, or zeros.
-    std::uint16_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
-    const Pixel* above = image_.row(std::max(y - distance_, 0));
-    const Pixel* row = image_.row(y);
-    const Pixel* below = image_.row(std::min(y + distance_, image_.height - 1));
+    std::uint16_t* slot = slot_of(columns.ring, y, sides_.first);
+    const auto rows = rows_about(image_, y, distance_);
     prefetch_row(y + 1 + distance_);
-    kernels_.enter_laplacian_u8(above, row, below, width_, distance_, code_.shift, columns.sums.data(), slot,
-                                columns.scaled.data());
+    if (operator_ == FocusOperator::kDiagonalLaplacian) {
+      kernels_.enter_diagonal_u8(rows, width_, code_.shift, columns.sums.data(), slot, columns.scaled.data());
+    } else {
+      kernels_.enter_laplacian_u8(rows.above, rows.row, rows.below, width_, distance_, code_.shift,
+                                  columns.sums.data(), slot, columns.scaled.data());
+    }
     for_ends([&](int x) {
       const auto column = static_cast<std::size_t>(x);
-      const auto value =
-          static_cast<std::uint16_t>(operator_value(operator_, above, row, below, x, width_, distance_, 0));
+      const auto value = static_cast<std::uint16_t>(operator_value(operator_, rows, x, width_, 0));
       columns.sums[column] = static_cast<std::uint16_t>(columns.sums[column] + value - slot[x]);
       slot[x] = value;
       columns.scaled[column] = linear_code(columns.sums[column], code_.shift);
@@ -238,26 +182,46 @@ void SharpnessRows<Pixel>::enter(Narrow& columns, int y) noexcept {
 template <typename Pixel>
 void SharpnessRows<Pixel>::enter(Wide& columns, int y) noexcept {
   compute_row(y, columns.fresh.data());
-  std::uint32_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
-  kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
+  kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot_of(columns.ring, y, sides_.first), width_);
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::leave(Narrow& columns, int y) noexcept {
-  std::uint16_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
-  for (int x = 0; x < width_; ++x) {
-    const auto column = static_cast<std::size_t>(x);
-    columns.sums[column] = static_cast<std::uint16_t>(columns.sums[column] - slot[x]);
-    columns.scaled[column] = linear_code(columns.sums[column], code_.shift);
-    slot[x] = 0;
-  }
+  std::fill(columns.fresh.begin(), columns.fresh.end(), std::uint16_t{0});
+  kernels_.slide_u16(columns.sums.data(), columns.fresh.data(), slot_of(columns.ring, y, sides_.first), width_,
+                     code_.shift, columns.scaled.data());
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::leave(Wide& columns, int y) noexcept {
-  std::uint32_t* slot = columns.ring.data() + static_cast<std::ptrdiff_t>(y % window_) * width_;
   std::fill(columns.fresh.begin(), columns.fresh.end(), 0U);
-  kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot, width_);
+  kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot_of(columns.ring, y, sides_.first), width_);
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::enter_second(Narrow& columns, int y) noexcept {
+  kernels_.slide_u16(columns.second_sums.data(), columns.scaled.data(), slot_of(columns.second_ring, y, sides_.second),
+                     width_, code_.second_shift, columns.second_scaled.data());
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::enter_second(Wide& columns, int y) noexcept {
+  kernels_.slide_u32(columns.second_sums.data(), columns.sums.data(), slot_of(columns.second_ring, y, sides_.second),
+                     width_);
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::leave_second(Narrow& columns, int y) noexcept {
+  std::fill(columns.fresh.begin(), columns.fresh.end(), std::uint16_t{0});
+  kernels_.slide_u16(columns.second_sums.data(), columns.fresh.data(), slot_of(columns.second_ring, y, sides_.second),
+                     width_, code_.second_shift, columns.second_scaled.data());
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::leave_second(Wide& columns, int y) noexcept {
+  std::fill(columns.fresh.begin(), columns.fresh.end(), 0U);
+  kernels_.slide_u32(columns.second_sums.data(), columns.fresh.data(), slot_of(columns.second_ring, y, sides_.second),
+                     width_);
 }
 
 template <typename Pixel>
@@ -273,38 +237,37 @@ void SharpnessRows<Pixel>::count_saturated(int y, int change) noexcept {
 }
 
 template <typename Pixel>
-void SharpnessRows<Pixel>::enter(int y) noexcept {
-  if (narrow_) {
-    enter(narrow_columns_, y);
-  } else {
-    enter(wide_columns_, y);
+template <typename Sum>
+void SharpnessRows<Pixel>::move_to(Columns<Sum>& columns) noexcept {
+  const auto to_row = [&](int y) {
+    first_.move_to(y, sides_.first, image_.height, [&](int row) { enter(columns, row); },
+                   [&](int row) { leave(columns, row); });
+  };
+  if (sides_.second == 1) {
+    to_row(y_);
+    return;
   }
-  count_saturated(y, 1);
-  if (y - window_ < low_) return;
-  count_saturated(low_, -1);  // its slot was taken over
-  ++low_;
-}
-
-template <typename Pixel>
-void SharpnessRows<Pixel>::leave(int y) noexcept {
-  if (narrow_) {
-    leave(narrow_columns_, y);
-  } else {
-    leave(wide_columns_, y);
-  }
-  count_saturated(y, -1);
+  second_.move_to(
+      y_, sides_.second, image_.height,
+      [&](int row) {
+        to_row(row);
+        enter_second(columns, row);
+      },
+      [&](int row) { leave_second(columns, row); });
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::next() noexcept {
-  const WindowReach reach(y_, radius_, image_.height);
-  while (high_ <= reach.last) enter(high_++);
-  while (low_ < reach.first) leave(low_++);
   if (narrow_) {
+    move_to(narrow_columns_);
     emit_narrow();
   } else {
+    move_to(wide_columns_);
     emit_wide();
   }
+  const WindowReach reach(y_, window_ / 2, image_.height);
+  while (counted_.high <= reach.last) count_saturated(counted_.high++, 1);
+  while (counted_.low < reach.first) count_saturated(counted_.low++, -1);
   find_saturated();
   ++y_;
 }
@@ -312,20 +275,39 @@ void SharpnessRows<Pixel>::next() noexcept {
 template <typename Pixel>
 void SharpnessRows<Pixel>::emit_narrow() noexcept {
   Narrow& columns = narrow_columns_;
-  if (width_ >= window_) {
-    kernels_.window_sums_u16(columns.scaled.data(), window_, width_, codes_.data() + radius_);
+  if (sides_.second == 1) {
+    sum_windows(columns.scaled.data(), sides_.first, codes_.data());
+    return;
   }
-  sum_ends(columns.scaled.data(), width_, radius_, codes_.data());
+  sum_windows(columns.second_scaled.data(), sides_.first, columns.windows.data());
+  if (code_.third_shift > 0) kernels_.scale_u16(columns.windows.data(), code_.third_shift, width_);
+  sum_windows(columns.windows.data(), sides_.second, codes_.data());
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::emit_wide() noexcept {
   Wide& columns = wide_columns_;
-  if (width_ >= window_) {
-    kernels_.window_sums_u32(columns.sums.data(), window_, width_, columns.windows.data() + radius_);
+  if (sides_.second == 1) {
+    sum_windows(columns.sums.data(), sides_.first, columns.windows.data());
+  } else {
+    sum_windows(columns.second_sums.data(), sides_.first, columns.fresh.data());
+    sum_windows(columns.fresh.data(), sides_.second, columns.windows.data());
   }
-  sum_ends(columns.sums.data(), width_, radius_, columns.windows.data());
   kernels_.root_code(columns.windows.data(), root_gain(code_, gradient_shift<Pixel>(operator_)), width_, codes_.data());
+}
+
+/// out[x] = the sum over `window` columns about x.
+template <typename Pixel>
+void SharpnessRows<Pixel>::sum_windows(const std::uint16_t* values, int window, std::uint16_t* out) const noexcept {
+  const int radius = window / 2;
+  if (width_ >= window) kernels_.window_sums_u16(values, window, width_, out + radius);
+  sum_ends(values, width_, radius, out);
+}
+template <typename Pixel>
+void SharpnessRows<Pixel>::sum_windows(const std::uint32_t* values, int window, std::uint32_t* out) const noexcept {
+  const int radius = window / 2;
+  if (width_ >= window) kernels_.window_sums_u32(values, window, width_, out + radius);
+  sum_ends(values, width_, radius, out);
 }
 
 template <typename Pixel>
@@ -336,18 +318,9 @@ void SharpnessRows<Pixel>::find_saturated() noexcept {
     return;
   }
   saturated_clear_ = false;
-  std::uint16_t* counts = saturated_counts_.data();
-  if (width_ >= window_) {
-    kernels_.window_sums_u16(saturated_columns_.data(), window_, width_, counts + radius_);
-  }
-  sum_ends(saturated_columns_.data(), width_, radius_, counts);
+  const std::uint16_t* counts = saturated_counts_.data();
+  sum_windows(saturated_columns_.data(), window_, saturated_counts_.data());
   for (int x = 0; x < width_; ++x) saturated_[static_cast<std::size_t>(x)] = counts[x] > 0 ? 1 : 0;
-}
-
-Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings) {
-  const SharpnessCode code = sharpness_code(settings, image.format);
-  return image.format == PixelFormat::kMono8 ? reference(image.as<std::uint8_t>(), settings, code)
-                                             : reference(image.as<std::uint16_t>(), settings, code);
 }
 
 template class SharpnessRows<std::uint8_t>;

@@ -2,7 +2,10 @@
 
 /// The focus measure row by row, in memory that does not grow with the image's height.
 ///
-///   F(x,y) = sum of the operator's values over the window about (x,y)
+///   F(x,y) = sum of the operator's values over the window about (x,y), weighted
+///
+/// A window is one box, or two laid over each other (see WindowSides), whose weights fall towards the rim: the spatial
+/// frequencies that a box turns over in sign hardly pass.
 ///
 /// Outside the image the edge pixel is repeated. Near the image's border the window shrinks on both sides alike, to
 /// half its size at the least, so that it stays centred: the centre of a clipped window would lie beside the pixel,
@@ -11,6 +14,9 @@
 /// Operators, with neighbours at distance d:
 ///   modified Laplacian (Nayar and Nakagawa, IEEE PAMI 16(8), 1994): |2 I - I(x-d) - I(x+d)| + |2 I - I(y-d) - I(y+d)|;
 ///     the absolute values are summed so that curvatures of opposite sign do not cancel
+///   diagonal Laplacian: twice the modified Laplacian, and the absolute second differences along both diagonals at d and
+///     at half of d, at least 1 (the extension to the diagonals: Thelen, Frey, Hirsch, Hering, IEEE T-IP 18(1), 2009; the
+///     weights: core/focus/README.md). All in one integer; only its size against others of the same operator counts
 ///   Tenengrad (Tenenbaum, Stanford, 1970): gx^2 + gy^2 of the 3 x 3 Sobel operator, its rows and columns d apart
 ///   intensity: I
 ///
@@ -56,17 +62,43 @@ class SharpnessRows {
   /// Shape [width], 1 where a pixel inside the window is saturated, else 0.
   [[nodiscard]] const std::uint8_t* saturated() const noexcept { return saturated_.data(); }
 
-  [[nodiscard]] static std::size_t memory_bytes(int width, int window);
+  [[nodiscard]] static std::size_t memory_bytes(int width, const FocusSettings& settings);
 
  private:
-  /// The sums of one width of integer: 16 bit for the 8-bit modified Laplacian, 32 bit for all else.
+  /// The sums of one width of integer: 16 bit for linear codes, 32 bit for all else. What is called second is empty for
+  /// a single box.
   template <typename Sum>
   struct Columns {
-    std::vector<Sum> ring;     // [window][width], values of the rows inside the window, 0 where there is none
-    std::vector<Sum> fresh;    // [width], the row that enters
-    std::vector<Sum> sums;     // [width], over the window's rows
-    std::vector<Sum> scaled;   // [width], what is summed along the row
-    std::vector<Sum> windows;  // [width]
+    std::vector<Sum> ring;           // [first side][width], values of the rows in the box, 0 where there is none
+    std::vector<Sum> fresh;          // [width], the row that enters
+    std::vector<Sum> sums;           // [width], over the box's rows
+    std::vector<Sum> scaled;         // [width], the same, shifted
+    std::vector<Sum> second_ring;    // [second side][width], such sums of the rows in the second box
+    std::vector<Sum> second_sums;    // [width], over the second box's rows
+    std::vector<Sum> second_scaled;  // [width], the same, shifted
+    std::vector<Sum> windows;        // [width]
+  };
+  /// The rows that are inside a box: [low, high).
+  struct RowRange {
+    int low = 0;
+    int high = 0;
+    /// Before any row: about `y`, the first.
+    void begin(int y, int side, int height) noexcept {
+      low = WindowReach(y, side / 2, height).first;
+      high = low;
+    }
+    /// Rows enter and leave until the box is about `y`. A row that enters takes the slot of the one that is `side` rows
+    /// above, which leaves by that.
+    template <typename Enter, typename Leave>
+    void move_to(int y, int side, int height, Enter enter, Leave leave) noexcept {
+      const WindowReach reach(y, side / 2, height);
+      while (high <= reach.last) {
+        enter(high);
+        if (high - side >= low) ++low;
+        ++high;
+      }
+      while (low < reach.first) leave(low++);
+    }
   };
   using Narrow = Columns<std::uint16_t>;
   using Wide = Columns<std::uint32_t>;
@@ -79,8 +111,18 @@ class SharpnessRows {
   void enter(Wide& columns, int y) noexcept;
   void leave(Narrow& columns, int y) noexcept;
   void leave(Wide& columns, int y) noexcept;
-  void enter(int y) noexcept;
-  void leave(int y) noexcept;
+  void enter_second(Narrow& columns, int y) noexcept;
+  void enter_second(Wide& columns, int y) noexcept;
+  void leave_second(Narrow& columns, int y) noexcept;
+  void leave_second(Wide& columns, int y) noexcept;
+  template <typename Sum>
+  void move_to(Columns<Sum>& columns) noexcept;
+  template <typename Sum>
+  [[nodiscard]] Sum* slot_of(std::vector<Sum>& ring, int y, int side) const noexcept {
+    return ring.data() + static_cast<std::ptrdiff_t>(y % side) * width_;
+  }
+  void sum_windows(const std::uint16_t* values, int window, std::uint16_t* out) const noexcept;
+  void sum_windows(const std::uint32_t* values, int window, std::uint32_t* out) const noexcept;
   void prefetch_row(int y) const noexcept;
   void compute_row(int y, std::uint32_t* out) noexcept;
   template <typename At>
@@ -94,16 +136,17 @@ class SharpnessRows {
   const FocusKernels& kernels_;
   int width_;
   int window_;
-  int radius_;
+  WindowSides sides_;
   int distance_;
   FocusOperator operator_;
   SharpnessCode code_;
   int saturation_;
   bool narrow_;
   PlaneView<const Pixel> image_;
-  int y_ = 0;    // next row to emit
-  int low_ = 0;  // rows [low_, high_) are inside the window
-  int high_ = 0;
+  int y_ = 0;  // next row to emit
+  RowRange first_;
+  RowRange second_;
+  RowRange counted_;        // those whose saturated pixels are counted
   int saturated_rows_ = 0;  // rows inside the window that hold a saturated pixel
   Narrow narrow_columns_;
   Wide wide_columns_;

@@ -27,6 +27,9 @@ using testing::ElementsAreArray;
 ResultData result_with_extra_map() {
   ResultData data = test::sample_result();
   data.extra_maps.emplace_back(PeakMethod::kNearest, test::sample_map(7, 2));
+  data.smoothed.emplace();
+  data.smoothed->height_m = Plane<float>(6, 3);
+  data.smoothed->sigma_m = Plane<float>(6, 3);
   return data;
 }
 

@@ -123,10 +123,11 @@ struct Curves {
   std::vector<float> least;
 };
 
-void expect_as_the_reference(PixelFormat format, int bin_slices, VertexBias bias, unsigned seed) {
+void expect_as_the_reference(PixelFormat format, int bin_slices, VertexBias bias, unsigned seed,
+                             double misfit = 0.0) {
   const FocusSettings settings{.min_prominence = 0.0, .min_significance = 0.0, .bin_slices = bin_slices};
   Curves curves(sharpness_code(settings, format).root, seed);
-  const RowFit fit(curves.z_um, settings, format, PeakMethod::kFiveSample, bias);
+  const RowFit fit(curves.z_um, settings, format, PeakMethod::kFiveSample, bias, misfit);
   std::vector<float> height_m(Curves::kWidth);
   std::vector<float> variance_m2(Curves::kWidth);
   std::vector<float> prominence(Curves::kWidth);
@@ -142,6 +143,7 @@ void expect_as_the_reference(PixelFormat format, int bin_slices, VertexBias bias
     if (curve) {
       curve->shape_error = static_cast<double>(bin_slices > 1 ? kBinnedShapeError : kShapeError);
       curve->bias = bias;
+      curve->misfit = misfit;
       expected = fit_reference(*curve);
     }
     ASSERT_EQ(mask[x] == 0, expected.has_value());
@@ -165,6 +167,10 @@ TEST(FiveSampleFit, FollowsTheReferenceWithBins) { expect_as_the_reference(Pixel
 
 TEST(FiveSampleFit, FollowsTheReferenceWithTheCurvesShapeTakenOff) {
   expect_as_the_reference(PixelFormat::kMono8, 1, {-0.12F, 0.45F}, 4);
+}
+
+TEST(FiveSampleFit, FollowsTheReferenceWhereCurvesDifferInShape) {
+  expect_as_the_reference(PixelFormat::kMono8, 1, {}, 5, 0.03);
 }
 
 }  // namespace

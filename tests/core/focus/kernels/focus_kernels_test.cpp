@@ -251,7 +251,7 @@ TEST(FocusKernels, FitAlike) {
       std::vector<float> floats(static_cast<std::size_t>(3 * width + kGuard), 5.0F);
       std::vector<MaskReasons> mask(static_cast<std::size_t>(width + kGuard), 0x5A5A);
       kernels.fit_five(curves.row(), table, noise.data(), least.data(), width,
-                       {0.4F, 3.0F, 0.05F, 1.0F / 65535.0F, root, {-0.1F, 0.4F}},
+                       {0.4F, 3.0F, 0.05F, 0.02F, 1.0F / 65535.0F, root, {-0.1F, 0.4F}},
                        {floats.data(), floats.data() + width, floats.data() + 2 * width, mask.data()});
       std::vector<std::uint32_t> all(floats.size());
       std::memcpy(all.data(), floats.data(), floats.size() * sizeof(float));

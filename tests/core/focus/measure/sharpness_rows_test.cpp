@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "gtest/gtest.h"
@@ -35,16 +36,24 @@ TYPED_TEST_SUITE(SharpnessRowsOf, Pixels);
 constexpr PixelFormat format_of(std::uint8_t) { return PixelFormat::kMono8; }
 constexpr PixelFormat format_of(std::uint16_t) { return PixelFormat::kMono16; }
 
+std::vector<std::pair<FocusOperator, FocusWindow>> operators_and_windows() {
+  std::vector<std::pair<FocusOperator, FocusWindow>> all;
+  for (const FocusOperator op : kAllFocusOperators) {
+    for (const FocusWindow window : kAllFocusWindows) all.emplace_back(op, window);
+  }
+  return all;
+}
+
 TYPED_TEST(SharpnessRowsOf, EqualTheReferenceForEverySizeWindowOperatorAndStart) {
   for (const int width : {1, 2, 3, 4, 7, 8, 16, 31, 33, 64, 100}) {
     for (const int height : {1, 2, 3, 5, 9, 20}) {
       const PaddedImage<TypeParam> image(width, height, static_cast<unsigned>(width * 100 + height));
       const PixelFormat format = format_of(TypeParam{});
       for (const int window : {1, 3, 5, 9, 31, 63}) {
-        for (const FocusOperator op : kAllFocusOperators) {
+        for (const auto& [op, shape] : operators_and_windows()) {
           if (window == 1 && op != FocusOperator::kIntensity) continue;
           const FocusSettings settings{
-              .focus_operator = op, .window_px = window, .distance_px = 1 + (width + window) % 7};
+              .focus_operator = op, .window = shape, .window_px = window, .distance_px = 1 + (width + window) % 7};
           const auto expected = sharpness_reference(image_view(image.view, format), settings);
           SharpnessRows<TypeParam> rows(width, settings, format);
           for (const int first : {0, height / 2, height - 1}) {
@@ -52,7 +61,7 @@ TYPED_TEST(SharpnessRowsOf, EqualTheReferenceForEverySizeWindowOperatorAndStart)
             for (int y = first; y < height; ++y) {
               rows.next();
               ASSERT_TRUE(std::equal(rows.codes(), rows.codes() + width, expected.row(y)))
-                  << focus_operator_name(op) << ' ' << width << " x " << height << " window " << window << " from row "
+                  << focus_operator_name(op) << ' ' << focus_window_name(shape) << ' ' << width << " x " << height << " window " << window << " from row "
                   << first << " at row " << y;
             }
           }
@@ -94,20 +103,74 @@ double sharpness(const ImageView& image, const FocusSettings& settings, int x, i
   return sharpness_code(settings, image.format).decode(sharpness_reference(image, settings).at(x, y));
 }
 
+FocusSettings modified_laplacian(int window_px, int distance_px) {
+  return {.focus_operator = FocusOperator::kModifiedLaplacian,
+          .window = FocusWindow::kBox,
+          .window_px = window_px,
+          .distance_px = distance_px};
+}
+
 TEST(SharpnessReference, IsTheModifiedLaplacianOnAKnownImage) {
   Plane<std::uint8_t> image(7, 7, 10);
   image.at(3, 3) = 20;  // ML 40 there, 10 at its four neighbours
-  const FocusSettings settings{.window_px = 3, .distance_px = 1};
+  const FocusSettings settings = modified_laplacian(3, 1);
   const ImageView view = image_view(image.view(), PixelFormat::kMono8);
   EXPECT_EQ(sharpness(view, settings, 3, 3), 80.0);
   EXPECT_EQ(sharpness(view, settings, 2, 2), 40.0 + 10.0 + 10.0);
   EXPECT_EQ(sharpness(view, settings, 0, 0), 0.0);
 }
 
+TEST(SharpnessReference, SeesADiagonalLineThatTheModifiedLaplacianSeesLess) {
+  Plane<std::uint8_t> image(15, 15, 10);
+  image.at(7, 7) = 20;
+  const FocusSettings settings{
+      .focus_operator = FocusOperator::kDiagonalLaplacian, .window_px = 3, .distance_px = 2};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  // At the pixel itself twice two and four differences of 20; none of its eight neighbours sees it but the four
+  // diagonal ones, by one difference of 10 each.
+  EXPECT_EQ(sharpness(view, settings, 7, 7), 8 * 20.0 + 4 * 10.0);
+  // Two pixels to the right: that one by twice 10, and the two beside it that are one pixel off diagonally.
+  EXPECT_EQ(sharpness(view, settings, 9, 7), 2 * 10.0 + 2 * 10.0);
+}
+
+TEST(SharpnessReference, WeightsADoubleBoxTowardsItsMiddle) {
+  Plane<std::uint8_t> image(41, 41, 10);
+  image.at(20, 20) = 20;
+  const FocusSettings doubled{
+      .focus_operator = FocusOperator::kIntensity, .window = FocusWindow::kDoubleBox, .window_px = 9};
+  const ImageView view = image_view(image.view(), PixelFormat::kMono8);
+  const double background = sharpness(view, doubled, 5, 5);
+  // Weights 5 in the middle, 5 two beside it, 1 at five; their sum is 35.
+  const double unit = background / (35.0 * 35.0 * 10.0);
+  EXPECT_NEAR((sharpness(view, doubled, 20, 20) - background) / unit, 25 * 10.0, 60.0);
+  EXPECT_NEAR((sharpness(view, doubled, 22, 20) - background) / unit, 25 * 10.0, 60.0);
+  EXPECT_NEAR((sharpness(view, doubled, 24, 20) - background) / unit, 10 * 10.0, 60.0);
+  EXPECT_NEAR((sharpness(view, doubled, 26, 20) - background) / unit, 0.0, 60.0);
+}
+
+TEST(WindowSides, SpreadAsFarAsOneBox) {
+  const auto sides = [](int window) {
+    return window_sides({.window = FocusWindow::kDoubleBox, .window_px = window});
+  };
+  EXPECT_EQ(sides(9).first, 7);
+  EXPECT_EQ(sides(9).second, 5);
+  EXPECT_EQ(sides(5).first, 3);
+  EXPECT_EQ(sides(5).second, 3);
+  for (int window = 3; window <= kMaxWindowPx; window += 2) {
+    const WindowSides both = sides(window);
+    EXPECT_LE(both.first * both.first + both.second * both.second, window * window + 1);
+    EXPECT_GE(both.first, both.second);
+    EXPECT_EQ(both.first % 2, 1);
+    EXPECT_EQ(both.second % 2, 1);
+  }
+  EXPECT_DOUBLE_EQ(window_norm({.window = FocusWindow::kBox, .window_px = 9}), 9.0);
+  EXPECT_DOUBLE_EQ(window_norm({.window = FocusWindow::kDoubleBox, .window_px = 9}), 135.0);
+}
+
 TEST(SharpnessReference, LooksAtNeighboursAtItsDistance) {
   Plane<std::uint8_t> image(9, 9, 10);
   image.at(4, 4) = 20;  // ML 40 there, 10 three pixels up, down, left and right of it, nothing in between
-  const FocusSettings settings{.window_px = 3, .distance_px = 3};
+  const FocusSettings settings = modified_laplacian(3, 3);
   const ImageView view = image_view(image.view(), PixelFormat::kMono8);
   EXPECT_EQ(sharpness(view, settings, 4, 4), 40.0);
   EXPECT_EQ(sharpness(view, settings, 4, 1), 10.0);
@@ -163,7 +226,7 @@ TEST(SharpnessReference, HoldsItsRangeAtFullContrast) {
     }
   }
   for (int window = 3; window <= 63; window += 2) {
-    const FocusSettings settings{.window_px = window, .distance_px = 1};
+    const FocusSettings settings = modified_laplacian(window, 1);
     const double area = window * window;
     const double expected_wide = area * 4 * 65535.0;
     EXPECT_NEAR(sharpness(image_view(wide.view(), PixelFormat::kMono16), settings, 32, 32), expected_wide,

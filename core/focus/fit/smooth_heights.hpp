@@ -1,0 +1,40 @@
+#pragma once
+
+/// A second map beside the measured one: each height from a quadratic surface that is fitted to the heights about it.
+///
+/// Local polynomial regression (W. S. Cleveland, JASA 74(368), 1979) of degree 2 with Gaussian weights of standard
+/// deviation s: slopes and curvatures pass, noise is averaged over about 8 s^2 pixels. The heights of a focus map are
+/// noisy with the correlation of its window, so a small window and this make less error than a large window of the same
+/// lateral resolution, which also averages curves of different heights to one that fits neither.
+///
+/// Valid points alone are used and changed: what was a hole stays one.
+
+#include "core/image/image.hpp"
+#include "core/runtime/worker_pool.hpp"
+
+namespace fvd {
+
+inline constexpr double kMinSmoothPx = 1.0;
+inline constexpr double kMaxSmoothPx = 16.0;
+
+struct SmoothSettings {
+  double sigma_px = 4.0;       ///< standard deviation of the weights, kMinSmoothPx..kMaxSmoothPx
+  double correlated_px = 1.0;  ///< area over which the errors of the heights are one, px^2, >= 1
+};
+
+/// Shape of the input; NaN where the input is.
+struct SmoothedHeights {
+  Plane<float> height_m;
+  /// Standard error: the mean one of the points used, or what they scatter about the quadratic if that is more, over
+  /// the root of the number of independent points.
+  Plane<float> sigma_m;
+};
+
+/// height_m: metres, NaN in holes; sigma_m: of one shape with it, metres. A point in whose neighbourhood a quadratic is
+/// not determined stays as it was measured. Takes 8 * (6 * sigma + 1) rows of float per thread beside the result.
+/// Throws Error kBadInput for a sigma_px or correlated_px outside its range.
+/// context: one thread at a time per pool; spreads its work over the pool.
+[[nodiscard]] SmoothedHeights smooth_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
+                                             const SmoothSettings& settings, WorkerPool& pool);
+
+}  // namespace fvd
