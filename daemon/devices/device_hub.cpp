@@ -53,7 +53,7 @@ std::optional<DeviceFailure> DeviceHub::after_failure(ErrorCode code, const std:
   if (code == axis_.lost()) axis_.drop();  // whatever it says of itself: nothing more is asked of it
   std::optional<DeviceFailure> failure = lost();
   if (axis_.connected()) {
-    if (auto moving = measure_standstill()) failure = std::move(moving);
+    if (auto moving = standstill_or_drop()) failure = std::move(moving);
   }
   for (const Row& row : rows_) {
     if (row.slot.lost() == code) {
@@ -80,7 +80,13 @@ DeviceFacts DeviceHub::facts() const {
 std::optional<DeviceFailure> DeviceHub::check_axis() {
   const bool checked = std::exchange(checked_opening_, axis_.openings()) == axis_.openings() && at_rest_;
   if (checked && !moved_unasked()) return std::nullopt;
-  return measure_standstill();
+  return standstill_or_drop();
+}
+
+std::optional<DeviceFailure> DeviceHub::standstill_or_drop() {
+  auto failure = measure_standstill();
+  if (failure && failure->code == axis_.lost()) axis_.drop();
+  return failure;
 }
 
 bool DeviceHub::moved_unasked() const {
@@ -103,7 +109,6 @@ std::optional<DeviceFailure> DeviceHub::measure_standstill() {
     }
   } catch (const Error& error) {
     restless_ = {error.code(), error.what()};
-    if (error.code() == axis_.lost()) axis_.drop();
   } catch (const std::exception& error) {
     restless_ = {ErrorCode::kInternal, error.what()};
   }
