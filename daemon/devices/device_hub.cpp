@@ -80,6 +80,7 @@ DeviceFacts DeviceHub::facts() const {
 std::optional<DeviceFailure> DeviceHub::check_axis() {
   const bool checked = std::exchange(checked_opening_, axis_.openings()) == axis_.openings() && at_rest_;
   if (checked && !moved_unasked()) return std::nullopt;
+  set_at_rest(false);  // until it is measured
   return standstill_or_drop();
 }
 
@@ -90,10 +91,12 @@ std::optional<DeviceFailure> DeviceHub::standstill_or_drop() {
 }
 
 bool DeviceHub::moved_unasked() const {
+  // A report of motion alone is none: some drives say so for every disturbance of a servo that holds.
   const std::optional<StageStatus> seen = axis_.get().last_seen();
-  if (!seen || (!reports_motion(*seen) && abs(seen->position - rest_) <= RestDetector::kWindow)) return false;
+  const Micrometers window = rest_window(axis_.get().info().feedback_resolution) * 2.0;
+  if (!seen || abs(seen->position - rest_) <= window) return false;
   spdlog::warn(
-      "the stage is at {} um and rested at {} um, and nobody moved it through fvd: by hand, or by another master?",
+      "the stage is at {} um and rested at {} um, and fvd did not move it: was it moved by hand, or by another master?",
       seen->position.value, rest_.value);
   return true;
 }
