@@ -75,6 +75,10 @@ TEST_F(AnEngine, EndsAJobWhoseStageIsLostWhileItsRestIsMeasured) {
   EXPECT_FALSE(now->signals.part_release);
   EXPECT_EQ(state_behind_executing(), ScanState::kError);
   bench_.lost_at_rest = false;
+  {
+    const std::lock_guard lock(bench_.mutex);
+    bench_.axis_plugged = true;
+  }
   ASSERT_TRUE(await_state(ScanState::kInitialized)) << "it is opened anew";
 }
 

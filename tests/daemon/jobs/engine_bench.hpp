@@ -74,7 +74,7 @@ class BenchAxis final : public sim::FakeAxis {
  public:
   BenchAxis(sim::FakeClock& clock, Bench& bench) : FakeAxis(clock), bench_(bench) {}
   StageStatus status() override {
-    if (bench_.lost_at_rest && moved_) connected_ = false;
+    if (bench_.lost_at_rest && moved_) unplug();
     require_line();
     StageStatus status = FakeAxis::status();
     status.moving = bench_.axis_moves;
@@ -82,9 +82,7 @@ class BenchAxis final : public sim::FakeAxis {
   }
   MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) override {
     if (bench_.moves_until_lost >= 0 && bench_.moves_until_lost-- == 0) {
-      connected_ = false;
-      const std::lock_guard lock(bench_.mutex);
-      bench_.axis_plugged = false;
+      unplug();
     }
     require_line();
     MoveRecord move = FakeAxis::move_to(target, criterion, std::move(stop));
@@ -99,6 +97,11 @@ class BenchAxis final : public sim::FakeAxis {
   [[nodiscard]] bool connected() const noexcept override { return connected_; }
 
  private:
+  void unplug() {
+    connected_ = false;
+    const std::lock_guard lock(bench_.mutex);
+    bench_.axis_plugged = false;
+  }
   void require_line() const {
     if (!connected_) throw Error(ErrorCode::kStageDisconnected, "the fake axis was unplugged");
   }
