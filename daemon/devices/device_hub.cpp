@@ -53,7 +53,7 @@ std::optional<DeviceFailure> DeviceHub::after_failure(ErrorCode code, const std:
   if (code == axis_.lost()) axis_.drop();  // whatever it says of itself: nothing more is asked of it
   std::optional<DeviceFailure> failure = lost();
   if (axis_.connected()) {
-    if (auto moving = measure_standstill()) failure = std::move(moving);
+    if (auto moving = standstill_or_drop()) failure = std::move(moving);
   }
   for (const Row& row : rows_) {
     if (row.slot.lost() == code) {
@@ -80,14 +80,23 @@ DeviceFacts DeviceHub::facts() const {
 std::optional<DeviceFailure> DeviceHub::check_axis() {
   const bool checked = std::exchange(checked_opening_, axis_.openings()) == axis_.openings() && at_rest_;
   if (checked && !moved_unasked()) return std::nullopt;
-  return measure_standstill();
+  set_at_rest(false);  // until it is measured
+  return standstill_or_drop();
+}
+
+std::optional<DeviceFailure> DeviceHub::standstill_or_drop() {
+  auto failure = measure_standstill();
+  if (failure && failure->code == axis_.lost()) axis_.drop();
+  return failure;
 }
 
 bool DeviceHub::moved_unasked() const {
+  // A report of motion alone is none: some drives say so for every disturbance of a servo that holds.
   const std::optional<StageStatus> seen = axis_.get().last_seen();
-  if (!seen || (!reports_motion(*seen) && abs(seen->position - rest_) <= RestDetector::kWindow)) return false;
+  const Micrometers window = rest_window(axis_.get().info().feedback_resolution) * 2.0;
+  if (!seen || abs(seen->position - rest_) <= window) return false;
   spdlog::warn(
-      "the stage is at {} um and rested at {} um, and nobody moved it through fvd: by hand, or by another master?",
+      "the stage is at {} um and rested at {} um, and fvd did not move it: was it moved by hand, or by another master?",
       seen->position.value, rest_.value);
   return true;
 }
@@ -103,7 +112,6 @@ std::optional<DeviceFailure> DeviceHub::measure_standstill() {
     }
   } catch (const Error& error) {
     restless_ = {error.code(), error.what()};
-    if (error.code() == axis_.lost()) axis_.drop();
   } catch (const std::exception& error) {
     restless_ = {ErrorCode::kInternal, error.what()};
   }

@@ -40,7 +40,8 @@ class DeviceHub {
   /// measured and was not.
   [[nodiscard]] std::optional<DeviceFailure> failure();
 
-  /// Measures that the axis stands still after a motion that was commanded; at_rest() tells.
+  /// Measures that the axis stands still after a motion that was commanded; at_rest() and failure() tell. Drops
+  /// nothing: whoever commanded the motion may still hold the axis.
   void confirm_rest();
 
   /// After a job or a command that ended by an error: gives up the device that the error says is lost or needs to be
@@ -73,6 +74,7 @@ class DeviceHub {
   [[nodiscard]] std::optional<DeviceFailure> lost();
   [[nodiscard]] bool moved_unasked() const;
   [[nodiscard]] std::optional<DeviceFailure> measure_standstill();
+  [[nodiscard]] std::optional<DeviceFailure> standstill_or_drop();
   void set_at_rest(bool at_rest);
 
   Clock& clock_;

@@ -11,6 +11,8 @@ namespace fvd {
 namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{20};
+/// One that still moves then is looked at again later: nothing here can be interrupted.
+constexpr std::chrono::milliseconds kStoppingTime{1000};
 
 }  // namespace
 
@@ -21,8 +23,8 @@ bool reports_motion(const StageStatus& status) {
 
 std::optional<Micrometers> bring_to_rest(Axis& axis, Clock& clock, const std::function<void()>& on_motion) {
   const StageInfo info = axis.info();
-  const HostTime deadline = clock.now() + standstill_timeout(info.speed_um_per_s, info.acceleration_um_per_s2);
-  RestDetector rest;
+  const HostTime deadline = clock.now() + kStoppingTime;
+  RestDetector rest(rest_window(info.feedback_resolution));
   bool told_to_stop = false;
   for (;;) {
     const StageStatus status = axis.status();

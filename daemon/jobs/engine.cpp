@@ -9,8 +9,9 @@ namespace fvd {
 
 namespace {
 
-/// Longest time that one slice, one opening of a device, one search for the reference or one file may take.
-constexpr std::chrono::minutes kLongestStep{10};
+/// Longest time that one slice of a job, one opening of a device or one whole command may take; an autofocus may have a
+/// thousand looks.
+constexpr std::chrono::minutes kLongestStep{60};
 
 int thread_count(int configured) {
   if (configured > 0) return configured;

@@ -133,7 +133,7 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
   JobStatus ended = deps_.board.read().job.value_or(job.status);
   ended.state = end.state;
   ended.phase.clear();
-  ended.acquired = ended.acquired || !end.used_devices || deps_.hub.at_rest();
+  ended.acquired = ended.acquired || deps_.board.read().state.at_rest;
   ended.error = end.error;
   ended.error_message = end.message;
   // The row is durable before anybody can see the job's end; a database that fails must not hide how it ended.

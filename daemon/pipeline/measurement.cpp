@@ -91,16 +91,18 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   const HostTime scan_started = deps.clock.now();
   MeasurementObserver timed = observer;
   HostTime acquired{};
+  HostTime told{};  // which may wait for the stage's rest
   timed.on_acquired = [&] {
     acquired = deps.clock.now();
     observer.on_acquired();
+    told = deps.clock.now();
   };
   ScanPlan plan = scan_plan(recipe);
   plan.time_offset = deps.time_offset;
   acquire(plan, settings, deps, timed, stack, result, stop);
   result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
   reconstruct(stack, recipe, result);
-  result.times.finish_ms = milliseconds_since(deps.clock, acquired);
+  result.times.finish_ms = milliseconds_since(deps.clock, told);
   reconstruct_further(stack, recipe, deps.pool, result);
 }
 

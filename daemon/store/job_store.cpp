@@ -24,18 +24,13 @@ constexpr std::array kAllJobStates{JobState::kProcessing, JobState::kCompleted, 
 #define FVD_JOB_COLUMNS                                                                                            \
   "job_id, client, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done, slices_planned, " \
   "frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale, frames_underrun, result_dir, "     \
-  "result_json"
+  "result_json, acquired"
 
 JobState state_from_name(const std::string& name) {
   for (const JobState state : kAllJobStates) {
     if (job_state_name(state) == name) return state;
   }
   return JobState::kFailed;
-}
-
-/// Nobody measured where the stage was when a job ended so.
-bool ends_in_motion(const std::optional<ErrorCode>& error) {
-  return error == ErrorCode::kInterrupted || error == ErrorCode::kStageDisconnected;
 }
 
 StoredJob read_row(const Statement& row) {
@@ -64,7 +59,7 @@ StoredJob read_row(const Statement& row) {
   status.frames.underrun = count();
   job.result_dir = text();
   job.result_json = text();
-  status.acquired = status.state != JobState::kProcessing && !ends_in_motion(status.error);
+  status.acquired = integer() != 0;
   return job;
 }
 
@@ -233,7 +228,7 @@ void JobStore::Impl::store_end_locked(const StoredJob& end) {
   Statement(database,
             "UPDATE jobs SET state = ?, error = ?, error_message = ?, slices_done = ?, slices_planned = ?, "
             "frames_expected = ?, frames_ok = ?, frames_incomplete = ?, frames_missing = ?, frames_stale = ?, "
-            "frames_underrun = ?, result_dir = ?, result_json = ?, "
+            "frames_underrun = ?, result_dir = ?, result_json = ?, acquired = ?, "
             "ended_utc = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE job_id = ?")
       .bind(job_state_name(ended.state))
       .bind(ended.error ? error_name(*ended.error) : std::string_view())
@@ -248,6 +243,7 @@ void JobStore::Impl::store_end_locked(const StoredJob& end) {
       .bind(integer(ended.frames.underrun))
       .bind(end.result_dir)
       .bind(end.result_json)
+      .bind(std::int64_t{ended.acquired})
       .bind(ended.job_id)
       .run();
   transaction.commit();

@@ -109,10 +109,19 @@ CREATE TABLE recipe_versions (
 )");
 }
 
+/// Version 4: whether the part could be moved when a job ended. Of older rows it is known where the stage was there.
+void keep_whether_the_part_was_free(Database& database) {
+  database.execute(R"(
+ALTER TABLE jobs ADD COLUMN acquired INTEGER NOT NULL DEFAULT 0;
+UPDATE jobs SET acquired = 1 WHERE state <> 'processing' AND error NOT IN ('interrupted', 'stage_disconnected');
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
     MigrationStep{"versions of recipes", keep_recipe_versions},
+    MigrationStep{"whether the part was free at a job's end", keep_whether_the_part_was_free},
 };
 
 void require_own_file(const Database& database, int version) {

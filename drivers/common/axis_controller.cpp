@@ -218,7 +218,7 @@ class AxisController final : public Axis {
 
   void wait_until_homed(HostTime started, const std::stop_token& stop) {
     bool moved = false;
-    RestDetector rest;
+    RestDetector rest(rest_window(traits_.feedback_resolution));
     for (HostTime last = HostClock::now();;) {
       const AxisSample sample = poller_.sample_after(last, stop);
       last = sample.begun;

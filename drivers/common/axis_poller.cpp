@@ -96,10 +96,26 @@ bool AxisPoller::reachable(const AxisSample& from, const AxisSample& to) const {
   return std::abs((to.position - from.position).value) <= reach_um;
 }
 
+namespace {
+
+/// The third lies on the way from the first to the second: an axis that is faster than it is commanded to be, because
+/// it homes at a speed of the drive's own or is turned by hand.
+bool continues(const AxisSample& first, const AxisSample& second, const AxisSample& third) {
+  const auto speed = [](const AxisSample& from, const AxisSample& to) {
+    return (to.position - from.position).value / std::chrono::duration<double>(to.time - from.time).count();
+  };
+  const double before = speed(first, second);
+  const double now = speed(second, third);
+  return before * now >= 0.0 && std::abs(now) <= kSpeedFactor * std::abs(before);
+}
+
+}  // namespace
+
 bool AxisPoller::publish(const AxisSample& sample, const std::optional<AxisSample>& doubtful) {
   const MutexLock lock(mutex_);
   const auto last = log_.latest();
-  if (last && !reachable(*last, sample) && !(doubtful && reachable(*doubtful, sample))) return false;
+  const bool agrees = doubtful && (reachable(*doubtful, sample) || (last && continues(*last, *doubtful, sample)));
+  if (last && !reachable(*last, sample) && !agrees) return false;
   log_.add(sample);
   sampled_.notify_all();
   return true;

@@ -18,10 +18,11 @@ namespace fvd {
 
 /// A controller that stops answering is lost for good: everything throws kStageDisconnected from then on, and if the
 /// axis moved it is told to stop, once. A position that the axis cannot have reached since the last sample is
-/// believed when another reading agrees; five that contradict one another are a loss. context: thread-safe.
+/// believed when another reading agrees, or lies further on the same way; five that contradict one another are a loss.
+/// context: thread-safe.
 class AxisPoller {
  public:
-  /// Takes the first sample. max_speed_um_per_s: what the axis is commanded to; homing may be as fast. The port
+  /// Takes the first sample. max_speed_um_per_s: what the axis is commanded to; homing may be faster. The port
   /// outlives the poller. Throws Error kStageDisconnected.
   AxisPoller(AxisPort& port, double max_speed_um_per_s);
   AxisPoller(const AxisPoller&) = delete;

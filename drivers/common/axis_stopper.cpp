@@ -63,7 +63,7 @@ bool AxisStopper::rests() {
 }
 
 bool AxisStopper::wait_for_standstill(HostTime deadline, bool patient) {
-  RestDetector rest;
+  RestDetector rest(rest_window(port_.traits().feedback_resolution));
   for (HostTime last = HostClock::now(); HostClock::now() < deadline;) {
     const AxisSample sample = poller_.sample_after(last, {}, deadline + kSampleGrace);
     last = sample.begun;

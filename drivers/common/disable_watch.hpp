@@ -3,6 +3,7 @@
 /// Tells a drive that somebody else has disabled - an emergency stop, a power cut - from one that a stop of ours did:
 /// the former may have been moved by hand since.
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 
@@ -19,13 +20,17 @@ class DisableWatch {
 
   /// A stop is sent, which disables some drives. It explains nothing about a drive that was disabled before.
   void stopping(const AxisSample& latest) noexcept {
-    if (latest.enabled) expects_enabled_ = false;
     stopped_ = HostClock::now();
+    if (latest.enabled) expects_enabled_ = false;
   }
 
-  /// A drive that is still enabled so long after a stop was not disabled by it.
+  /// A drive that is still enabled so long after a stop, and after the braking that followed, was not disabled by it.
   void saw(const AxisSample& sample) noexcept {
-    if (sample.enabled && sample.begun > stopped_.load() + kDisablingTime) expects_enabled_ = true;
+    if (sample.moving) {
+      stopped_ = std::max(stopped_.load(), sample.begun);
+    } else if (sample.enabled && sample.begun > stopped_.load() + kDisablingTime) {
+      expects_enabled_ = true;
+    }
   }
 
   [[nodiscard]] bool somebody_else_disabled(const AxisSample& sample) const noexcept {

@@ -17,7 +17,7 @@ bool RestDetector::add(HostTime time, Micrometers position, bool reports_rest) {
     return false;
   }
   const auto [low, high] = std::minmax({low_, high_, position});
-  if (count_ == 0 || high - low > kWindow) {
+  if (count_ == 0 || high - low > window_) {
     ++restarts_;
     count_ = 1;
     first_ = time;

@@ -201,7 +201,7 @@ std::optional<std::vector<std::string>> TextLine::exchange(std::string_view text
   begin(urgent);
   std::optional<std::vector<std::string>> answers;
   // What came since the last exchange answers no question that is still to be asked.
-  if (fd_ >= 0 && has_input()) {
+  if (fd_ >= 0 && !urgent && has_input()) {  // a stop goes out whatever the line has said
     close();
     doubtful_ = true;
   }

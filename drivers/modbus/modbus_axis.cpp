@@ -165,9 +165,9 @@ class ModbusPort final : public AxisPort {
     traits_.tells_homed = profile_.homed.has_value();
     traits_.start_within = profile_.start_within;
     traits_.home_timeout = profile_.home_timeout;
-    // Two readings of every block, each tried three times, behind one start of a move with its handshakes.
+    // Five readings of every block, each tried three times, behind one start of a move with its handshakes.
     traits_.sample_timeout = std::chrono::seconds(5) +
-                             6 * static_cast<int>(profile_.poll.size() + 1) * (config.response_timeout + config.quiet);
+                             15 * static_cast<int>(profile_.poll.size() + 1) * (config.response_timeout + config.quiet);
   }
 
   [[nodiscard]] std::optional<std::pair<Micrometers, Micrometers>> soft_limits() {

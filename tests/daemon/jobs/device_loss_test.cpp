@@ -62,6 +62,26 @@ TEST_P(AStageLossAtMove, EndsTheJobAndHoldsThePart) {
   EXPECT_TRUE(signals().part_release);
 }
 
+TEST_F(AnEngine, EndsAJobWhoseStageIsLostWhileItsRestIsMeasured) {
+  bench_.lost_at_rest = true;
+  bench_.moves_until_rest = 5;  // the last slice's
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  jobs().start({1, "a", "part"});
+  ASSERT_TRUE(await_end_of(1));
+  const auto now = machine().snapshot();
+  EXPECT_EQ(now->job->state, JobState::kCompleted) << "its slices are good";
+  EXPECT_FALSE(now->job->acquired);
+  EXPECT_FALSE(now->signals.part_release);
+  EXPECT_EQ(state_behind_executing(), ScanState::kError);
+  bench_.lost_at_rest = false;
+  {
+    const std::lock_guard lock(bench_.mutex);
+    bench_.axis_plugged = true;
+  }
+  ASSERT_TRUE(await_state(ScanState::kInitialized)) << "it is opened anew";
+}
+
 TEST_F(AnEngine, HoldsThePartOfAScanWhoseStageDoesNotComeToRest) {
   bench_.moves_until_restless = 5;  // the last slice's
   bench_.stop_works = false;

@@ -40,7 +40,9 @@ struct Bench {
   std::atomic<bool> stop_works{true};
   std::atomic<int> stops{0};
   std::atomic<int> moves_until_restless{-1};  ///< the axis goes on moving after the move that counts this to 0
-  std::atomic<int> moves_until_lost{-1};      ///< the axis is lost at the move that counts this to 0; < 0 = never
+  std::atomic<bool> lost_at_rest{false};      ///< the axis is lost when it is looked at after that many moves:
+  std::atomic<int> moves_until_rest{-1};
+  std::atomic<int> moves_until_lost{-1};  ///< the axis is lost at the move that counts this to 0; < 0 = never
   std::deque<sim::TriggerOutcome> script;
 };
 
@@ -72,6 +74,7 @@ class BenchAxis final : public sim::FakeAxis {
  public:
   BenchAxis(sim::FakeClock& clock, Bench& bench) : FakeAxis(clock), bench_(bench) {}
   StageStatus status() override {
+    if (bench_.lost_at_rest && moved_) unplug();
     require_line();
     StageStatus status = FakeAxis::status();
     status.moving = bench_.axis_moves;
@@ -79,12 +82,11 @@ class BenchAxis final : public sim::FakeAxis {
   }
   MoveRecord move_to(Micrometers target, const SettleCriterion& criterion, std::stop_token stop) override {
     if (bench_.moves_until_lost >= 0 && bench_.moves_until_lost-- == 0) {
-      connected_ = false;
-      const std::lock_guard lock(bench_.mutex);
-      bench_.axis_plugged = false;
+      unplug();
     }
     require_line();
     MoveRecord move = FakeAxis::move_to(target, criterion, std::move(stop));
+    moved_ = bench_.moves_until_rest >= 0 && bench_.moves_until_rest-- == 0;
     if (bench_.moves_until_restless >= 0 && bench_.moves_until_restless-- == 0) bench_.axis_moves = true;
     return move;
   }
@@ -95,11 +97,17 @@ class BenchAxis final : public sim::FakeAxis {
   [[nodiscard]] bool connected() const noexcept override { return connected_; }
 
  private:
+  void unplug() {
+    connected_ = false;
+    const std::lock_guard lock(bench_.mutex);
+    bench_.axis_plugged = false;
+  }
   void require_line() const {
     if (!connected_) throw Error(ErrorCode::kStageDisconnected, "the fake axis was unplugged");
   }
   Bench& bench_;
   std::atomic<bool> connected_{true};
+  std::atomic<bool> moved_{false};
 };
 
 /// Work that says that it began and goes on until it is let go.

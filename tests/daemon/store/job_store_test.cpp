@@ -153,6 +153,7 @@ TEST_F(AJobStore, KeepsEverythingOfAnEndedJob) {
   job.slices_planned = 21;
   job.frames = {.expected = 6, .ok = 1, .incomplete = 2, .missing = 1, .stale = 1, .underrun = 1};
 
+  job.acquired = true;
   store_->finish(job, "/results/x", "{\"a\":1}");
   reopen();
 
