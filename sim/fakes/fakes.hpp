@@ -82,7 +82,7 @@ class FakeCamera : public Camera, private FrameRecycler {
   CameraHealth health_;
   std::uint64_t next_id_ = 1;
   int triggers_ = 0;
-  int lent_ = 0;
+  std::atomic<int> lent_{0};  // taken on the scan's thread, given back on any
   bool connected_ = true;
   std::atomic<bool> interrupted_{false};
 };
