@@ -12,11 +12,10 @@ namespace {
 double operator_spread(FocusOperator op) noexcept {
   switch (op) {
     case FocusOperator::kModifiedLaplacian:
-      return 0.40;
     case FocusOperator::kDiagonalLaplacian:
-      return 0.40;
+      return 0.15;
     case FocusOperator::kTenengrad:
-      return 0.40;
+      return 0.72;
     case FocusOperator::kIntensity:
       break;
   }

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "config/strict_json.hpp"
+#include "core/focus/fit/smooth_heights.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_stack.hpp"
 #include "daemon/ctl/progress_line.hpp"
