@@ -90,6 +90,9 @@ Json focus(const Result::Focus& focus) {
   json["window"] = focus_window_name(focus.settings.window);
   json["window_px"] = focus.settings.window_px;
   json["smooth_px"] = focus.smooth_px ? Json(*focus.smooth_px) : Json(nullptr);
+  json["lateral_period_px"] = rounded(focus.lateral_period_px, 2);
+  json["smooth_lateral_period_px"] =
+      focus.smooth_lateral_period_px ? Json(rounded(*focus.smooth_lateral_period_px, 2)) : Json(nullptr);
   json["distance_px"] = focus.settings.distance_px;
   json["min_prominence"] = focus.settings.min_prominence;
   json["min_significance"] = focus.settings.min_significance;

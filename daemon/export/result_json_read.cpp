@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.hpp"
+#include "core/focus/lateral_period.hpp"
 #include "daemon/export/json_values.hpp"
 #include "daemon/export/result_json.hpp"
 
@@ -143,6 +144,11 @@ Result::Focus focus(const Node& node) {
                               : FocusWindow::kBox;
   focus.settings.window_px = node.at("window_px").integer<int>();
   if (node.has("smooth_px")) focus.smooth_px = node.at("smooth_px").optional_number();
+  focus.lateral_period_px =
+      node.has("lateral_period_px") ? node.at("lateral_period_px").number() : lateral_period_px(focus.settings, {});
+  if (node.has("smooth_lateral_period_px")) {
+    focus.smooth_lateral_period_px = node.at("smooth_lateral_period_px").optional_number();
+  }
   focus.settings.distance_px = node.at("distance_px").integer<int>();
   focus.settings.min_prominence = node.at("min_prominence").number();
   focus.settings.min_significance = node.at("min_significance").number();

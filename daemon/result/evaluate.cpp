@@ -3,6 +3,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/focus/lateral_period.hpp"
+
 namespace fvd {
 
 namespace {
@@ -26,6 +28,8 @@ Result::Focus focus_of(const ResultData& data) {
   focus.pixel_pitch_y_um = data.pixel_pitch_y_um;
   focus.settings = data.focus;
   focus.smooth_px = data.smooth_px;
+  focus.lateral_period_px = lateral_period_px(data.focus, {});
+  if (data.smooth_px) focus.smooth_lateral_period_px = lateral_period_px(data.focus, data.smooth_px);
   focus.noise_grey = data.map.noise_grey;
   if (data.map.curve_width_um > 0.0) focus.curve_width_um = data.map.curve_width_um;
   focus.peak = data.peak;

@@ -88,8 +88,10 @@ struct Result {
     int height_px = 0;
     std::optional<double> pixel_pitch_x_um;  ///< absent = unknown
     std::optional<double> pixel_pitch_y_um;
-    FocusSettings settings;           ///< all but stage_correction
-    std::optional<double> smooth_px;  ///< of the smoothed map; nothing = there is none
+    FocusSettings settings;                          ///< all but stage_correction
+    std::optional<double> smooth_px;                 ///< of the smoothed map; nothing = there is none
+    double lateral_period_px = 0.0;                  ///< see lateral_period.hpp
+    std::optional<double> smooth_lateral_period_px;  ///< of the smoothed map
     double noise_grey = 0.0;
     std::optional<double> curve_width_um;
     PeakMethod peak = PeakMethod::kParabola;

@@ -203,11 +203,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{with_camera(R"({"exposure": 1})"), "/acquire/camera/exposure", "did you mean 'exposure_us'?"},
         BadRecipe{with_reconstruct(R"({"lateral": {"pixel_pitch_x_um": -1}})"), "/reconstruct/lateral/pixel_pitch_x_um",
                   "above 0"},
-        BadRecipe{with_reconstruct(R"({"smooth_px": 2})"), "/reconstruct/smooth_px", "unknown key"},
+        BadRecipe{with_reconstruct(R"({"smooth_px": 0.5})"), "/reconstruct/smooth_px", "1..16"},
+        BadRecipe{with_focus(R"({"window": "round"})"), "/reconstruct/focus/window", "double_box"},
+        BadRecipe{with("", R"(, "export": ["height_smooth.tiff"])"), "/export", "a value at /reconstruct/smooth_px"},
         BadRecipe{with("", R"(, "export": ["height.csv"])"), "/export", "\"height.tiff\""},
         BadRecipe{with("", R"(, "export": ["height_*.tiff"])"), "/export",
-                  "height_*.tiff stands for the maps of extra_peaks, which is empty, so no file is made; expected "
-                  "extra_peaks at /reconstruct/focus/extra_peaks, or names that make files: height.tiff, sigma.tiff"},
+                  "height_*.tiff stands for maps that the recipe does not ask for, so no file is made; expected "
+                  "methods at /reconstruct/focus/extra_peaks"},
         BadRecipe{with("", R"(, "keep": {"slices": "yes"})"), "/keep/slices", "true or false"},
         BadRecipe{with("", R"(, "evaluation": {})"), "/evaluation", "unknown key"},
         BadRecipe{with("", R"(, "report": {})"), "/report", "unknown key"},
