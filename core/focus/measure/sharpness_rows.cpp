@@ -41,8 +41,9 @@ std::uint16_t linear_code(std::uint64_t column_sum, int shift) {
 
 /// The root kernel's arithmetic, in its order and precision.
 std::uint16_t root_code(std::uint64_t sum, float gain) {
-  return static_cast<std::uint16_t>(
-      static_cast<std::int32_t>(gain * std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum))) + 0.5F));
+  const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum)));
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings)
+  return static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
 }
 
 float root_gain(const SharpnessCode& code, int gradient_shift) {
