@@ -42,7 +42,7 @@ std::uint16_t linear_code(std::uint64_t column_sum, int shift) {
 /// The root kernel's arithmetic, in its order and precision.
 std::uint16_t root_code(std::uint64_t sum, float gain) {
   const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum)));
-  // NOLINTNEXTLINE(bugprone-incorrect-roundings)
+  // As the kernel rounds, whose values are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
   return static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
 }
 
