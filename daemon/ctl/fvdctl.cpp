@@ -214,7 +214,7 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
 
   sub = command("result", "print the result of a job", [&] { return result(a, terminal); });
   sub->add_option("job", a.job, job_help);
-  sub->add_option("--format", a.format, "compact: 440 bytes; full: 1400")
+  sub->add_option("--format", a.format, "compact: at most 512 bytes; full: at most 2560 bytes, and the warnings")
       ->check(CLI::IsMember({"compact", "full"}))
       ->capture_default_str();
 

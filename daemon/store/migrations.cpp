@@ -109,7 +109,8 @@ CREATE TABLE recipe_versions (
 )");
 }
 
-/// Version 4: whether the part could be moved when a job ended. Of older rows it is known where the stage was there.
+/// Version 4: whether the part could be moved when a job ended. A row of before says so unless its error says that the
+/// stage was not seen at the end.
 void keep_whether_the_part_was_free(Database& database) {
   database.execute(R"(
 ALTER TABLE jobs ADD COLUMN acquired INTEGER NOT NULL DEFAULT 0;

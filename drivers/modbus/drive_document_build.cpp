@@ -100,6 +100,11 @@ class ProfileBuilder {
     return found->second;
   }
 
+  void require_fits(const std::string& pointer, const DriveRegister& reg, std::int64_t value) {
+    if (reg.name.empty() || holds(reg, value)) return;  // what is wrong with a register without a name was said
+    report(pointer, std::to_string(value) + " does not fit into '" + reg.name + "'");
+  }
+
   DriveCondition condition(const std::string& pointer, const ConditionDocument& text) {
     if (text.kind != "register") {
       const std::string all = pointer + "/" + text.kind;
@@ -154,10 +159,7 @@ class ProfileBuilder {
       if (texts[i].variable == "$speed") value = DriveVariable::kSpeed;
       if (texts[i].variable == "$acceleration") value = DriveVariable::kAcceleration;
       RegisterWrite write{reg(at + "/0", texts[i].reg, !frame), value};
-      if (const auto* plain = std::get_if<std::int64_t>(&value); plain != nullptr && !write.reg.name.empty()) {
-        if (!holds(write.reg, *plain))
-          report(at, std::to_string(*plain) + " does not fit into '" + write.reg.name + "'");
-      }
+      if (const auto* plain = std::get_if<std::int64_t>(&value)) require_fits(at, write.reg, *plain);
       const bool known = !write.reg.name.empty() && (writes.empty() || !writes.back().reg.name.empty());
       if (frame && known && !writes.empty()) {
         const DriveRegister& last = writes.back().reg;
@@ -254,6 +256,8 @@ class ProfileBuilder {
     }
     if (const auto& text = document_.watchdog) {
       profile_.watchdog = {reg("/watchdog/register", text->reg, true), text->armed, text->disarmed};
+      require_fits("/watchdog/armed", profile_.watchdog->reg, text->armed);
+      require_fits("/watchdog/disarmed", profile_.watchdog->reg, text->disarmed);
     }
     if (const auto& text = document_.soft_limits) {
       profile_.soft_limits = {reg("/soft_limits/positive", text->positive, true),

@@ -33,8 +33,8 @@ struct DriveRegister {
 
 /// Whether the register can hold the value.
 [[nodiscard]] bool holds(const DriveRegister& reg, std::int64_t value) noexcept;
-/// The register's words, or its bit, as they stand on the wire. A value that does not fit is cut to its low words;
-/// callers clamp.
+/// The register's words, or its bit, as they stand on the wire. A value for which holds() is false is cut to
+/// its low words: ask before.
 [[nodiscard]] std::vector<std::uint16_t> encode(const DriveRegister& reg, std::int64_t value);
 /// words: reg.words() of them.
 [[nodiscard]] std::int64_t decode(const DriveRegister& reg, const std::uint16_t* words);

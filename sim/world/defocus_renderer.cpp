@@ -74,6 +74,7 @@ void DefocusRenderer::render_row(int row, double z_um, const ExposureRequest& re
   for (int x = 0; x < request.width; ++x) {
     const std::size_t i = first + static_cast<std::size_t>(x);
     const float step = std::min(std::abs(z - heights[i]) * steps_per_um, static_cast<float>(kWeightSteps));
+    // Not negative, and lround() is no vector instruction. NOLINTNEXTLINE(bugprone-incorrect-roundings)
     const TransferWeights& w = weights[static_cast<int>(step + 0.5F)];
     const std::int16_t* level_at = levels + static_cast<std::size_t>(w.first) * plane + i;
     const float level =

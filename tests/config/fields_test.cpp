@@ -8,15 +8,17 @@
 
 #include <gmock/gmock.h>
 
-#include "config/field_reader.hpp"
 #include "config/field_writer.hpp"
+#include "tests/config/read_fields.hpp"
 
 namespace fvd {
 namespace {
 
 using nlohmann::json;
+using test::problem;
+using test::problems_of;
+using test::read;
 using ::testing::ElementsAre;
-using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -59,22 +61,6 @@ void describe(Fields& fields, Plan& plan) {
   });
 }
 
-Problems read(const std::string& text, Plan& plan) {
-  Problems problems;
-  read_document(
-      text, [&](Fields& fields) { describe(fields, plan); }, problems);
-  return problems;
-}
-
-Problems problems_of(const std::string& text) {
-  Plan plan;
-  return read(text, plan);
-}
-
-auto problem(const std::string& place, const std::string& part) {
-  return ::testing::AllOf(Field(&Problem::pointer, place), Field(&Problem::message, HasSubstr(part)));
-}
-
 json schema() {
   Plan plan;
   return json::parse(fields_to_schema([&](Fields& fields) { describe(fields, plan); }, "plan").dump());
@@ -110,9 +96,10 @@ TEST(ListOfObjects, NamesThePlaceOfEveryWrongElementAndKeepsTheOldOnes) {
 }
 
 TEST(ListOfObjects, RefusesWhatIsNoListAndTooMany) {
-  EXPECT_THAT(problems_of(R"({"steps": {"name": "a"}})"), ElementsAre(problem("/steps", "a list of 0..5 objects")));
-  EXPECT_THAT(problems_of(R"({"steps": null})"), ElementsAre(problem("/steps", "a list of 0..5 objects")));
-  EXPECT_THAT(problems_of(R"({"steps": [{}, {}, {}, {}, {}, {}]})"),
+  EXPECT_THAT(problems_of<Plan>(R"({"steps": {"name": "a"}})"),
+              ElementsAre(problem("/steps", "a list of 0..5 objects")));
+  EXPECT_THAT(problems_of<Plan>(R"({"steps": null})"), ElementsAre(problem("/steps", "a list of 0..5 objects")));
+  EXPECT_THAT(problems_of<Plan>(R"({"steps": [{}, {}, {}, {}, {}, {}]})"),
               ElementsAre(problem("/steps", "a list of 0..5 objects")));
 }
 
@@ -121,21 +108,21 @@ TEST(Variant, HasTheMembersOfItsShape) {
   EXPECT_THAT(read(R"({"kind": "laser", "port": "b"})", plan), IsEmpty());
   EXPECT_EQ(plan.kind, "laser");
   EXPECT_EQ(plan.port, "b");
-  EXPECT_THAT(problems_of(R"({"current_ma": 5})"), IsEmpty()) << "the default shape needs no key";
+  EXPECT_THAT(problems_of<Plan>(R"({"current_ma": 5})"), IsEmpty()) << "the default shape needs no key";
 }
 
 TEST(Variant, RefusesMembersOfAnotherShapeAndMissingOnes) {
-  EXPECT_THAT(problems_of(R"({"kind": "laser", "current_ma": 5})"),
+  EXPECT_THAT(problems_of<Plan>(R"({"kind": "laser", "current_ma": 5})"),
               ElementsAre(problem("/port", "is missing"), problem("/current_ma", "unknown key")));
-  EXPECT_THAT(problems_of(R"({"kind": "led", "port": "b"})"), ElementsAre(problem("/port", "unknown key")));
-  EXPECT_THAT(problems_of(R"({"kind": "led", "current_ma": "5"})"),
+  EXPECT_THAT(problems_of<Plan>(R"({"kind": "led", "port": "b"})"), ElementsAre(problem("/port", "unknown key")));
+  EXPECT_THAT(problems_of<Plan>(R"({"kind": "led", "current_ma": "5"})"),
               ElementsAre(problem("/current_ma", "is not accepted")));
 }
 
 TEST(Variant, UnknownIsOneProblemWithAllShapesNamed) {
-  EXPECT_THAT(problems_of(R"({"kind": "lamp", "port": "b", "current_ma": 5})"),
+  EXPECT_THAT(problems_of<Plan>(R"({"kind": "lamp", "port": "b", "current_ma": 5})"),
               ElementsAre(problem("/kind", R"("lamp" is not accepted; expected one of "led", "laser")")));
-  EXPECT_THAT(problems_of(R"({"kind": 3, "other": 1})"),
+  EXPECT_THAT(problems_of<Plan>(R"({"kind": 3, "other": 1})"),
               ElementsAre(problem("/kind", "3 is not accepted"), problem("/other", "unknown key")));
 }
 
@@ -156,18 +143,18 @@ TEST(OptionalValue, StaysAbsentWhereItIsWrong) {
 }
 
 TEST(RelationOfKeys, NamesBothKeysAndTheirValues) {
-  EXPECT_THAT(problems_of(R"({"low": 7})"), IsEmpty());
-  EXPECT_THAT(problems_of(R"({"low": 8})"),
+  EXPECT_THAT(problems_of<Plan>(R"({"low": 7})"), IsEmpty());
+  EXPECT_THAT(problems_of<Plan>(R"({"low": 8})"),
               ElementsAre(problem("/low", "low is 8; expected at most high - 3, and high is 10")));
 }
 
 TEST(RelationOfKeys, IsNotJudgedWhereOneOfThemIsWrong) {
-  EXPECT_THAT(problems_of(R"({"low": 50, "high": 101})"), ElementsAre(problem("/high", "101 is not accepted")));
-  EXPECT_THAT(problems_of(R"({"low": "x", "high": 1})"), ElementsAre(problem("/low", "is not accepted")));
+  EXPECT_THAT(problems_of<Plan>(R"({"low": 50, "high": 101})"), ElementsAre(problem("/high", "101 is not accepted")));
+  EXPECT_THAT(problems_of<Plan>(R"({"low": "x", "high": 1})"), ElementsAre(problem("/low", "is not accepted")));
 }
 
 TEST(RelationOfKeys, IsJudgedBesideAProblemOfAnotherKey) {
-  EXPECT_THAT(problems_of(R"({"low": 9, "kind": 5})"),
+  EXPECT_THAT(problems_of<Plan>(R"({"low": 9, "kind": 5})"),
               ::testing::UnorderedElementsAre(problem("/kind", "not accepted"), problem("/low", "at most high - 3")));
 }
 

@@ -8,21 +8,18 @@
 
 #include <gmock/gmock.h>
 
-#include "config/field_reader.hpp"
 #include "config/field_writer.hpp"
+#include "tests/config/read_fields.hpp"
 
 namespace fvd {
 namespace {
 
 using nlohmann::json;
+using test::problem;
+using test::problems_of;
+using test::read;
 using ::testing::ElementsAre;
-using ::testing::Field;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-auto problem(const std::string& place, const std::string& part) {
-  return ::testing::AllOf(Field(&Problem::pointer, place), Field(&Problem::message, HasSubstr(part)));
-}
 
 /// A condition contains conditions; its shape is the one whose key it has.
 struct Condition {
@@ -78,18 +75,6 @@ void describe(Fields& fields, Sheet& sheet) {
   });
 }
 
-Problems read(const std::string& text, Sheet& sheet) {
-  Problems problems;
-  read_document(
-      text, [&](Fields& fields) { describe(fields, sheet); }, problems);
-  return problems;
-}
-
-Problems problems_of_sheet(const std::string& text) {
-  Sheet sheet;
-  return read(text, sheet);
-}
-
 constexpr const char* kSheet = R"({"condition": {"all": [{"mask": "0x1F"}, {"not": {"mask": 3}}]},
                                    "writes": [["a", "$speed"], ["b", -5]], "factors": {"x": 1.5, "y": 2}})";
 
@@ -104,20 +89,20 @@ TEST(KeyedVariant, IsReadAsDeepAsItIsWritten) {
 }
 
 TEST(KeyedVariant, NamesThePlaceOfAMistakeWithin) {
-  EXPECT_THAT(problems_of_sheet(R"({"condition": {"all": [{"not": {"mask": 65536}}]}})"),
+  EXPECT_THAT(problems_of<Sheet>(R"({"condition": {"all": [{"not": {"mask": 65536}}]}})"),
               ElementsAre(problem("/condition/all/0/not/mask", R"(integer or "0x.." within 0..65535)")));
-  EXPECT_THAT(problems_of_sheet(R"({"condition": {"none": []}})"),
+  EXPECT_THAT(problems_of<Sheet>(R"({"condition": {"none": []}})"),
               ElementsAre(problem("/condition", R"(one of the keys "mask", "not", "all")"),
                           problem("/condition/none", "unknown key")));
-  EXPECT_THAT(problems_of_sheet(R"({"condition": {"mask": 1, "not": {"mask": 2}}})"),
+  EXPECT_THAT(problems_of<Sheet>(R"({"condition": {"mask": 1, "not": {"mask": 2}}})"),
               ElementsAre(problem("/condition/not", "unknown key")));
-  EXPECT_THAT(problems_of_sheet(R"({"condition": {"all": [7]}})"),
+  EXPECT_THAT(problems_of<Sheet>(R"({"condition": {"all": [7]}})"),
               ElementsAre(problem("/condition/all/0", "not an object")));
 }
 
 TEST(HexNumbers, AreTextsOfDigitsAndNothingElse) {
   for (const char* text : {"0x", "0x1G", "0x-1", "1F", "0x10000", "0x100000000", " 0x1", ""}) {
-    EXPECT_THAT(problems_of_sheet(R"({"condition": {"mask": ")" + std::string(text) + R"("}})"),
+    EXPECT_THAT(problems_of<Sheet>(R"({"condition": {"mask": ")" + std::string(text) + R"("}})"),
                 ElementsAre(problem("/condition/mask", "not accepted")))
         << text;
   }
@@ -134,7 +119,7 @@ TEST(ARow, IsReadByPosition) {
 }
 
 TEST(ARow, NamesThePositionOfAMistake) {
-  EXPECT_THAT(problems_of_sheet(R"({"writes": [["a", "$sped"], ["b", 6], ["c"], ["d", 1, 2], "e"]})"),
+  EXPECT_THAT(problems_of<Sheet>(R"({"writes": [["a", "$sped"], ["b", 6], ["c"], ["d", 1, 2], "e"]})"),
               ElementsAre(problem("/writes/0/1", R"(or one of "$target", "$speed")"),
                           problem("/writes/1/1", R"(within -5..5, or one of)"), problem("/writes/2/1", "is missing"),
                           problem("/writes/3/2", "one too many"), problem("/writes/4", "is not a list")));

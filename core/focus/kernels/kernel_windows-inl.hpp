@@ -151,6 +151,7 @@ void root_code(const std::uint32_t* sums, float gain, int width, std::uint16_t* 
   for (int x = 0; x < width; ++x) {
     // Through int: there is no vector instruction from unsigned to float before AVX-512.
     const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sums[x])));
+    // Not negative, and lround() is no vector instruction. NOLINTNEXTLINE(bugprone-incorrect-roundings)
     out[x] = static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
   }
 }

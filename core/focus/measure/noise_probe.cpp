@@ -51,7 +51,7 @@ void NoiseProbe::add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept 
   for (int column = 0; column < columns_; ++column) {
     const int values = rows * (tile_right(column) - tile_left(column) - 2);
     if (values <= 0) continue;
-    double& least = least_[static_cast<std::size_t>(tile_row * columns_ + column)];
+    double& least = least_[tile_index(column, tile_row)];
     least = std::min(least, static_cast<double>(sums[column]) / static_cast<double>(values));
   }
 }
@@ -71,7 +71,7 @@ void NoiseProbe::add(const ImageView& slice, WorkerPool& pool) noexcept {
 }
 
 float NoiseProbe::sigma(int column, int tile_row) const noexcept {
-  const double least = least_[static_cast<std::size_t>(tile_row * columns_ + column)];
+  const double least = least_[tile_index(column, tile_row)];
   if (!std::isfinite(least)) return static_cast<float>(kRounding);  // too small an image to see noise in
   return static_cast<float>(std::max(kRounding, kMinimumBias * std::sqrt(std::numbers::pi / 2) / 6.0 * least));
 }

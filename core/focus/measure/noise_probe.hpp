@@ -7,6 +7,7 @@
 /// smooth images; of white noise it makes sigma = sqrt(pi / 2) / 6 * mean |response|. Here the mean is taken over tiles
 /// of about 128 x 128 pixels, every sixteenth row of each, and each tile keeps its smallest mean of all slices.
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -36,6 +37,9 @@ class NoiseProbe {
   [[nodiscard]] double least() const;
 
  private:
+  [[nodiscard]] std::size_t tile_index(int column, int tile_row) const noexcept {
+    return static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+  }
   template <typename Pixel>
   void add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept;
   [[nodiscard]] int tile_left(int column) const noexcept;  // with the neighbours that the mask needs

@@ -8,6 +8,13 @@ namespace fvd {
 
 namespace {
 
+/// The root kernel's arithmetic, in its order and precision.
+std::uint16_t root_code(std::uint64_t sum, float gain) {
+  const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum)));
+  // As the kernel rounds, whose values are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+  return static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
+}
+
 using Sums = Plane<std::uint64_t>;
 
 std::uint64_t rounded(std::uint64_t value, int shift) {
@@ -61,11 +68,7 @@ Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const std::uint64_t sum = sums.at(x, y);
-      // The root kernel's arithmetic, in its order and precision.
-      codes.at(x, y) = static_cast<std::uint16_t>(
-          code.root ? static_cast<std::uint64_t>(static_cast<std::int32_t>(
-                          gain * std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum))) + 0.5F))
-                    : sum);
+      codes.at(x, y) = code.root ? root_code(sum, gain) : static_cast<std::uint16_t>(sum);
     }
   }
   return codes;

@@ -17,7 +17,7 @@ struct GetParams {
   void describe(Fields& fields) {
     job.describe(fields);
     fields.choice("format", format, {"compact", "full"},
-                  "compact: at most 640 bytes; full: some 2 KiB, and more with warnings");
+                  "compact: at most 512 bytes; full: at most 2560 bytes, and the warnings");
     client.describe(fields);
   }
 };

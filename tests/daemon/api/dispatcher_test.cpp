@@ -4,8 +4,11 @@
 
 #include "core/base/error.hpp"
 #include "daemon/api/rpc_errors.hpp"
+#include "daemon/export/result_json.hpp"
+#include "daemon/result/evaluate.hpp"
 #include "gtest/gtest.h"
 #include "tests/daemon/api/dispatcher_fixture.hpp"
+#include "tests/daemon/export/sample_result.hpp"
 
 namespace fvd {
 namespace {
@@ -316,19 +319,21 @@ TEST_F(ADispatcher, RefusesWaitsItCannotKeep) {
 
 TEST_F(ADispatcher, KeepsRepliesWithinWhatPlcsCanTake) {
   const std::string client(32, 'c');
-  result_of("job.start", {{"seq", 3}, {"part_id", std::string(64, 'p')}, {"client", client}});
+  const ResultData sample = test::sample_result();
+  service_.result = result_json_text(evaluate(sample, test::summary_of(sample.map)));
+  result_of("job.start", {{"seq", 3}, {"part_id", std::string(64, '"')}, {"client", client}});  // two bytes each
   service_.change({3, client}, [](JobStatus& job) {
     job.state = JobState::kCompleted;
-    job.error_message = std::string(5000, 'x');
+    job.error_message = std::string(5000, '"');
   });
   const auto size = [&](const char* method, const json& params) {
     return dispatcher_
         .handle(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump(), caller_)
         .reply->size();
   };
-  EXPECT_LE(size("result.get", {{"seq", 3}, {"client", client}}), 440U);
-  EXPECT_LE(size("result.next", json::object()), 440U);
-  EXPECT_LE(size("result.get", {{"seq", 3}, {"format", "full"}, {"client", client}}), 1400U);
+  EXPECT_LE(size("result.get", {{"seq", 3}, {"client", client}}), 512U);
+  EXPECT_LE(size("result.next", json::object()), 512U);
+  EXPECT_LE(size("result.get", {{"seq", 3}, {"format", "full"}, {"client", client}}), 2560U);
   EXPECT_LE(size("job.status", {{"seq", 3}, {"client", client}}), 1400U);
   EXPECT_LE(size("system.state", json::object()), 1400U);
 }

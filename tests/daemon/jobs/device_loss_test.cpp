@@ -62,18 +62,27 @@ TEST_P(AStageLossAtMove, EndsTheJobAndHoldsThePart) {
   EXPECT_TRUE(signals().part_release);
 }
 
-TEST_F(AnEngine, EndsAJobWhoseStageIsLostWhileItsRestIsMeasured) {
+/// A scan whose slices are good and whose stage is not known to rest after it.
+class AGoodScanWithoutRest : public AnEngine {
+ protected:
+  void run_it() {
+    open();
+    ASSERT_TRUE(await_state(ScanState::kInitialized));
+    jobs().start({1, "a", "part"});
+    ASSERT_TRUE(await_end_of(1));
+    const auto now = machine().snapshot();
+    EXPECT_EQ(now->job->state, JobState::kCompleted);
+    EXPECT_FALSE(now->job->acquired);
+    EXPECT_FALSE(now->signals.part_release);
+    EXPECT_EQ(state_behind_executing(), ScanState::kError) << "not ready";
+    EXPECT_FALSE(store_->find(JobKey{now->job->job_id}).status.acquired) << "and after a restart";
+  }
+};
+
+TEST_F(AGoodScanWithoutRest, EndsTheJobWhenItsStageIsLostMeanwhile) {
   bench_.lost_at_rest = true;
   bench_.moves_until_rest = 5;  // the last slice's
-  open();
-  ASSERT_TRUE(await_state(ScanState::kInitialized));
-  jobs().start({1, "a", "part"});
-  ASSERT_TRUE(await_end_of(1));
-  const auto now = machine().snapshot();
-  EXPECT_EQ(now->job->state, JobState::kCompleted) << "its slices are good";
-  EXPECT_FALSE(now->job->acquired);
-  EXPECT_FALSE(now->signals.part_release);
-  EXPECT_EQ(state_behind_executing(), ScanState::kError);
+  run_it();
   bench_.lost_at_rest = false;
   {
     const std::lock_guard lock(bench_.mutex);
@@ -82,18 +91,10 @@ TEST_F(AnEngine, EndsAJobWhoseStageIsLostWhileItsRestIsMeasured) {
   ASSERT_TRUE(await_state(ScanState::kInitialized)) << "it is opened anew";
 }
 
-TEST_F(AnEngine, HoldsThePartOfAScanWhoseStageDoesNotComeToRest) {
+TEST_F(AGoodScanWithoutRest, HoldsThePartUntilTheStageStands) {
   bench_.moves_until_restless = 5;  // the last slice's
   bench_.stop_works = false;
-  open();
-  ASSERT_TRUE(await_state(ScanState::kInitialized));
-  jobs().start({1, "a", "part"});
-  ASSERT_TRUE(await_end_of(1));
-  const auto now = machine().snapshot();
-  EXPECT_EQ(now->job->state, JobState::kCompleted) << "its slices are good";
-  EXPECT_FALSE(now->job->acquired);
-  EXPECT_FALSE(now->signals.part_release);
-  EXPECT_EQ(state_behind_executing(), ScanState::kError) << "not ready while it moves";
+  run_it();
   EXPECT_GE(bench_.stops, 1);
   bench_.stop_works = true;
   ASSERT_TRUE(await([](const MachineStatus& status) { return status.signals.part_release; }));
