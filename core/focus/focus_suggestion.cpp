@@ -17,8 +17,7 @@ namespace fvd {
 namespace {
 
 constexpr double kMinResponseShare = 0.5;  // of the largest response
-constexpr double kMaxNoiseShare = 0.01;    // of the peak
-constexpr int kMinWindow_px = 5;
+constexpr double kMaxNoiseShare = 0.03;    // of the peak
 constexpr int kMaxWindow_px = 31;
 constexpr int kMinSide_px = 32;
 
@@ -37,18 +36,22 @@ double mean_laplacian(PlaneView<const Pixel> image, int distance) {
   return sum / count;
 }
 
+double noise_in(const ImageView& image) {
+  WorkerPool pool(1);
+  NoiseProbe probe(image.width, image.height);
+  probe.add(image, pool);
+  return probe.least();
+}
+
 }  // namespace
 
-FocusSuggestion suggest_focus(const ImageView& sharp) {
+FocusSuggestion suggest_focus(const ImageView& sharp, std::optional<double> noise_grey) {
   if (sharp.width < kMinSide_px || sharp.height < kMinSide_px) {
     throw Error(ErrorCode::kBadInput, "an image of " + std::to_string(sharp.width) + " x " +
                                           std::to_string(sharp.height) + " pixels: at least 32 x 32 are needed");
   }
-  WorkerPool pool(1);
-  NoiseProbe probe(sharp.width, sharp.height);
-  probe.add(sharp, pool);
   FocusSuggestion suggestion;
-  suggestion.noise_grey = probe.least();
+  suggestion.noise_grey = noise_grey ? *noise_grey : noise_in(sharp);
   // |2 I - I - I| of white noise is that of a normal distribution of 6 sigma^2, twice.
   const double of_noise = 2.0 * std::sqrt(2.0 / std::numbers::pi * 6.0) * suggestion.noise_grey;
   std::array<double, kMaxDistancePx> response{};
@@ -64,20 +67,26 @@ FocusSuggestion suggest_focus(const ImageView& sharp) {
                                           std::to_string(suggestion.noise_grey) +
                                           " grey levels: is it in focus, and lit so that the surface shows?");
   }
-  const auto enough = std::find_if(response.begin(), response.end(),
-                                   [&](double value) { return value >= kMinResponseShare * largest; });
-  suggestion.distance_px = static_cast<int>(enough - response.begin()) + 1;
-  suggestion.response_grey = *enough;
+  // In terms of the modified Laplacian and a box, whose noise is known for every distance; the double box spreads as
+  // far.
   FocusSettings settings{.focus_operator = FocusOperator::kModifiedLaplacian, .window = FocusWindow::kBox};
-  const auto noise_over_peak = [&](int window) {
+  const auto response_at = [&](int distance) { return response[static_cast<std::size_t>(distance - 1)]; };
+  const auto noise_over_peak = [&](int distance, int window) {
     settings.window_px = window;
-    return sample_noise(settings, suggestion.noise_grey, 0.0) / (window * window * suggestion.response_grey);
+    return sample_noise(settings, suggestion.noise_grey, 0.0) / (window * window * response_at(distance));
   };
-  suggestion.window_px = kMinWindow_px;
-  while (suggestion.window_px < kMaxWindow_px && noise_over_peak(suggestion.window_px) > kMaxNoiseShare) {
+  const FocusSettings usual;
+  suggestion.distance_px = usual.distance_px;
+  suggestion.window_px = usual.window_px;
+  if (!(noise_over_peak(usual.distance_px, usual.window_px) <= kMaxNoiseShare)) {
+    while (response_at(suggestion.distance_px) < kMinResponseShare * largest) ++suggestion.distance_px;
+  }
+  while (suggestion.window_px < kMaxWindow_px &&
+         !(noise_over_peak(suggestion.distance_px, suggestion.window_px) <= kMaxNoiseShare)) {
     suggestion.window_px += 2;
   }
-  suggestion.sample_noise = noise_over_peak(suggestion.window_px);
+  suggestion.response_grey = response_at(suggestion.distance_px);
+  suggestion.sample_noise = noise_over_peak(suggestion.distance_px, suggestion.window_px);
   return suggestion;
 }
 

@@ -230,9 +230,11 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_recipe_commands(
       app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
 
-  command("suggest", "suggest a recipe's focus settings from one sharp image of a surface",
+  command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
           [&] { return run_suggest(a.image, terminal); })
-      ->add_option("image", a.image, "PNG, TIFF, JPEG or PGM; a slice where most of the surface is in focus")
+      ->add_option("image", a.image,
+                   "folder of slices, multi-page TIFF, or one image (PNG, TIFF, JPEG, PGM) where most of the surface "
+                   "is in focus")
       ->required();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The command `fvdctl suggest`: focus settings for a surface from one sharp image of it.
+/// The command `fvdctl suggest`: focus settings for a surface from recorded slices or one sharp image of it.
 
 #include <string>
 
@@ -8,7 +8,8 @@
 
 namespace fvd::ctl {
 
-/// Prints the settings as keys of a recipe, and what they rest on. Throws Error kBadInput naming the file.
-[[nodiscard]] int run_suggest(const std::string& image, const Terminal& terminal);
+/// source: an image file, a folder of slices, a multi-page TIFF. Prints the settings as keys of a recipe, and what they
+/// rest on. Throws Error kBadInput naming the file.
+[[nodiscard]] int run_suggest(const std::string& source, const Terminal& terminal);
 
 }  // namespace fvd::ctl

@@ -29,21 +29,34 @@ FocusSuggestion suggest(const Plane<std::uint8_t>& image) {
   return suggest_focus(image_view(image.view(), PixelFormat::kMono8));
 }
 
-TEST(FocusSuggestion, FollowsTheTexturesPeriod) {
-  EXPECT_EQ(suggest(waves(3.0, 40.0, 1.0)).distance_px, 1);
-  EXPECT_EQ(suggest(waves(5.0, 40.0, 1.0)).distance_px, 2);
-  EXPECT_EQ(suggest(waves(8.0, 40.0, 1.0)).distance_px, 2);
-  EXPECT_EQ(suggest(waves(40.0, 40.0, 1.0)).distance_px, 5);
+TEST(FocusSuggestion, LeavesTheDefaultsWhereNoiseIsSmallAgainstTheTexture) {
+  for (const double period_px : {3.0, 5.0, 8.0, 14.0}) {
+    const FocusSuggestion suggestion = suggest(waves(period_px, 60.0, 0.5));
+    EXPECT_EQ(suggestion.distance_px, FocusSettings{}.distance_px) << period_px;
+    EXPECT_EQ(suggestion.window_px, FocusSettings{}.window_px) << period_px;
+    EXPECT_LE(suggestion.sample_noise, 0.03) << period_px;
+  }
 }
 
-TEST(FocusSuggestion, AsksForALargerWindowWhereNoiseIsLargerAgainstTheTexture) {
-  const FocusSuggestion clean = suggest(waves(6.0, 60.0, 1.0));
-  EXPECT_NEAR(clean.noise_grey, 1.0, 0.15);
-  EXPECT_LE(clean.window_px, 7);
-  const FocusSuggestion noisy = suggest(waves(6.0, 30.0, 2.5));
+TEST(FocusSuggestion, AsksForALargerWindowWhereNoiseIsLargeAgainstTheTexture) {
+  const FocusSuggestion noisy = suggest(waves(6.0, 12.0, 2.5));
   EXPECT_NEAR(noisy.noise_grey, 2.5, 0.3);
-  EXPECT_GT(noisy.window_px, 11);
-  EXPECT_LE(noisy.sample_noise, 0.01);
+  EXPECT_EQ(noisy.distance_px, 2);
+  EXPECT_GT(noisy.window_px, 9);
+  EXPECT_LE(noisy.sample_noise, 0.03);
+}
+
+TEST(FocusSuggestion, AsksForFartherNeighboursWhereNoiseIsLargeAndTheTextureCoarse) {
+  const FocusSuggestion coarse = suggest(waves(40.0, 40.0, 1.5));
+  EXPECT_GT(coarse.distance_px, 3);
+  EXPECT_LE(coarse.sample_noise, 0.03);
+}
+
+TEST(FocusSuggestion, TakesTheNoiseFromOutside) {
+  const Plane<std::uint8_t> image = waves(3.0, 40.0, 0.0);
+  const FocusSuggestion suggestion = suggest_focus(image_view(image.view(), PixelFormat::kMono8), 4.0);
+  EXPECT_EQ(suggestion.noise_grey, 4.0);
+  EXPECT_GT(suggestion.window_px, 9);
 }
 
 TEST(FocusSuggestion, RefusesAnImageThatShowsNothing) {
