@@ -103,7 +103,6 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   options.part_id = arguments.part_id;
   if (arguments.recipe.empty()) {
     options.recipe.focus.stage_correction = false;  // recorded z are taken as they are unless asked for
-    options.recipe.bin_slices = 1;
   } else {
     const std::filesystem::path file = arguments.recipe;
     options.recipe = parse_recipe(read_text_file(file), file.stem().string());
@@ -194,7 +193,8 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
       ->check(CLI::Range(kMinSmoothPx, kMaxSmoothPx));
   command.add_option("--distance", a.distance_px,
                      "from a pixel to the neighbours its operator looks at, 1..7 pixels, default 2");
-  command.add_option("--bin", a.bin_slices, "slices summed to one sample of the focus curve, 1..64, default 1");
+  command.add_option("--bin", a.bin_slices,
+                     "slices summed to one sample of the focus curve, 1..64; default: by the curve's width");
   command.add_option("--peak", a.peak, "how heights are taken from the focus curve, default five_sample")
       ->check(CLI::IsMember(peak_names()));
   command.add_option("--extra-peak", a.extra_peaks, "further height maps, may be repeated")

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -89,25 +90,63 @@ void push_slices(StreamingFocusStack& focus, WorkerPool& pool, const RecordedSta
   }
 }
 
-/// From the slices to the maps. The memory of curves and slices is free again when the result is written.
+/// One pass over the slices, to their map.
+class Pass {
+ public:
+  Pass(const Recipe& recipe, const RecordedStack& stack, WorkerPool& pool)
+      : recipe_(recipe),
+        pool_(pool),
+        focus_(stack.width(), stack.height(), stack.format(), focus_settings(recipe), pool, stack.colour()) {}
+
+  void run(const RecordedStack& stack, const std::vector<double>& z_um, ResultData& data,
+           const std::function<void(int, int)>& on_slice) {
+    const auto scan_start = SteadyClock::now();
+    push_slices(focus_, pool_, stack, z_um, data, on_slice);
+    data.times.scan_ms += milliseconds_since(scan_start);
+    const auto finish_start = SteadyClock::now();
+    reconstruct(focus_, recipe_, data);
+    data.times.finish_ms += milliseconds_since(finish_start);
+  }
+  void further(ResultData& data) { reconstruct_further(focus_, recipe_, pool_, data); }
+
+ private:
+  const Recipe& recipe_;
+  WorkerPool& pool_;
+  StreamingFocusStack focus_;
+};
+
+/// Whether a pass without bins told a width that wants them.
+bool wants_bins(const Recipe& recipe, const HeightMap& map) {
+  return learns_bins(recipe) && !recipe.learnt_width && choose_bin_slices(recipe.step_um, map.curve_width_um) > 1;
+}
+
+/// From the slices to the maps; twice where the first pass finds the steps so fine that bins are better. The memory of
+/// curves and slices is free again when the result is written.
 void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyClock::time_point start,
              const std::function<void(int, int)>& on_slice, ResultData& data) {
   const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
   for (Warning& warning : check_stack(options, z_um)) data.warnings.push_back(std::move(warning));
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
-  StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), focus_settings(options.recipe), pool,
-                            stack.colour());
+  Recipe recipe = options.recipe;
+  if (!options.recipe_plans_scan) recipe.step_um = median_step_um(z_um);
+  const std::vector<Warning> warnings = data.warnings;
+  auto pass = std::make_unique<Pass>(recipe, stack, pool);
   data.times.prepare_ms = milliseconds_since(start);
-
-  const auto scan_start = SteadyClock::now();
-  push_slices(focus, pool, stack, z_um, data, on_slice);
-  data.times.scan_ms = milliseconds_since(scan_start);
-
-  const auto finish_start = SteadyClock::now();
-  reconstruct(focus, options.recipe, data);
-  data.times.finish_ms = milliseconds_since(finish_start);
-  reconstruct_further(focus, options.recipe, pool, data);
+  pass->run(stack, z_um, data, on_slice);
+  if (wants_bins(recipe, data.map)) {
+    recipe.learnt_width = LearntWidth{.width_um = data.map.curve_width_um};
+    data.warnings = warnings;
+    data.frames = {};
+    data.steps.clear();
+    data.map = {};
+    data.focus = focus_settings(recipe);
+    data.bins_by = bin_choice(recipe);
+    pass.reset();  // its memory first
+    pass = std::make_unique<Pass>(recipe, stack, pool);
+    pass->run(stack, z_um, data, on_slice);
+  }
+  pass->further(data);
 }
 
 }  // namespace

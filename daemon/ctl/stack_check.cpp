@@ -23,15 +23,6 @@ constexpr double kMaxUsualStep_um = 1000.0;
 constexpr const char* kSayTheUnit =
     "if its numbers are not in um, give --z-file with --z-unit mm or m; if they are, --z-unit um";
 
-/// The median of the distances, which slices that are missing in between do not change.
-double median_step_um(const std::vector<double>& z_um) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < z_um.size(); ++i) steps.push_back(std::abs(z_um[i] - z_um[i - 1]));
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 void require_enough_slices(const ProcessOptions& options, int slices) {
   const FocusSettings focus = focus_settings(options.recipe);
   const int least = (kSamplesOfAPeak - 1) * focus.bin_slices + 1;
@@ -54,6 +45,14 @@ void require_plausible_unit(const ProcessOptions& options, double step_um) {
 }
 
 }  // namespace
+
+double median_step_um(const std::vector<double>& z_um) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < z_um.size(); ++i) steps.push_back(std::abs(z_um[i] - z_um[i - 1]));
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
 
 std::vector<Warning> check_stack(const ProcessOptions& options, const std::vector<double>& z_um) {
   const Recipe& recipe = options.recipe;

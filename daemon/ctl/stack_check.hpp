@@ -14,4 +14,8 @@ namespace fvd::ctl {
 /// slices than a peak needs, and for a file whose unit nobody said with steps far from the recipe's.
 [[nodiscard]] std::vector<Warning> check_stack(const ProcessOptions& options, const std::vector<double>& z_um);
 
+/// The median of the distances between neighbours, which slices that are missing in between do not change. At least
+/// two.
+[[nodiscard]] double median_step_um(const std::vector<double>& z_um);
+
 }  // namespace fvd::ctl

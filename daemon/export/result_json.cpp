@@ -97,6 +97,7 @@ Json focus(const Result::Focus& focus) {
   json["min_prominence"] = focus.settings.min_prominence;
   json["min_significance"] = focus.settings.min_significance;
   json["bin_slices"] = focus.settings.bin_slices;
+  json["bins_by"] = bin_choice_name(focus.bins_by);
   json["noise_grey"] = rounded(focus.noise_grey, 3);
   json["curve_width_um"] = um_or_null(focus.curve_width_um);
   json["peak"] = peak_method_name(focus.peak);

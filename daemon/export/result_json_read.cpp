@@ -153,6 +153,9 @@ Result::Focus focus(const Node& node) {
   focus.settings.min_prominence = node.at("min_prominence").number();
   focus.settings.min_significance = node.at("min_significance").number();
   focus.settings.bin_slices = node.at("bin_slices").integer<int>();
+  // Of before 0.3.0, when the recipe alone chose.
+  focus.bins_by = node.has("bins_by") ? node.at("bins_by").named(bin_choice_from_name, "the name of a choice of bins")
+                                      : BinChoice::kRecipe;
   focus.noise_grey = node.at("noise_grey").number();
   focus.curve_width_um = node.at("curve_width_um").optional_number();
   focus.peak = peak(node.at("peak"));

@@ -14,7 +14,28 @@ namespace fvd {
 
 namespace {
 
-ResultData described(const AcceptedJob& job, const Config& config) {
+/// The recipe with what its earlier scans told of the focus curve. A database that cannot tell costs accuracy, not the
+/// job.
+Recipe with_learnt_width(Recipe recipe, const CurveWidthTable& widths) {
+  if (!learns_bins(recipe)) return recipe;
+  try {
+    recipe.learnt_width = widths.find(recipe);
+  } catch (const Error& failure) {
+    spdlog::warn("recipe {}: the focus curve's width is not remembered: {}", recipe.id, failure.what());
+  }
+  return recipe;
+}
+
+void learn_width(const Recipe& recipe, double width_um, CurveWidthTable& widths) {
+  if (!learns_bins(recipe) || !(width_um > 0.0)) return;
+  try {
+    widths.learn(recipe, width_um);
+  } catch (const Error& failure) {
+    spdlog::warn("recipe {}: the focus curve's width cannot be remembered: {}", recipe.id, failure.what());
+  }
+}
+
+ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config& config) {
   ResultData result;
   result.software_version = kVersion;
   result.created = std::chrono::system_clock::now();
@@ -22,7 +43,7 @@ ResultData described(const AcceptedJob& job, const Config& config) {
   result.job_id = job.status.job_id;
   result.seq = job.status.request.seq;
   result.part_id = job.status.request.part_id;
-  note_recipe(job.recipe, result);
+  note_recipe(recipe, result);
   return result;
 }
 
@@ -69,24 +90,27 @@ JobRunner::JobEnd JobRunner::measured(const AcceptedJob& job, const std::stop_to
 }
 
 JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_token& stop) {
-  ResultData acquired = described(job, deps_.config);
+  const Recipe recipe = with_learnt_width(job.recipe, deps_.store.curve_widths());
+  ResultData acquired = described(job, recipe, deps_.config);
   AtomicDirectory directory(deps_.config.paths.state_dir / "results" / job.status.job_id);
   MeasurementObserver observer = this->observer();
   std::optional<SliceRecorder> recorder;
-  if (job.recipe.keep_slices) recorder.emplace(directory);
+  if (recipe.keep_slices) recorder.emplace(directory);
   observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
     if (recorder) recorder->add(pixels, z_um);
     deps_.preview.offer(pixels, z_um);
   };
-  measure(job.recipe,
+  measure(recipe,
           {deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.pool, deps_.pages,
            static_cast<std::size_t>(deps_.config.compute.queue_slices), deps_.config.camera.time_offset},
           observer, acquired, stop);
   observer.on_phase("storing");
   // In a continuous scan nobody commands the stage to be just there.
-  if (job.recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
+  if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
   if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
-  return deps_.make_result(directory, acquired);
+  JobResult result = deps_.make_result(directory, acquired);
+  if (!result.error) learn_width(recipe, acquired.map.curve_width_um, deps_.store.curve_widths());
+  return result;
 }
 
 JobRunner::JobEnd JobRunner::failed(ErrorCode code, const std::string& message) {

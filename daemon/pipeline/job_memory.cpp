@@ -1,5 +1,6 @@
 #include "daemon/pipeline/job_memory.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <sstream>
 
@@ -22,7 +23,9 @@ std::size_t mebibytes(std::size_t bytes) { return bytes >> 20U; }
 JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   const PixelFormat format = recipe.camera.slice_format();
-  const std::size_t stack = StreamingFocusStack::memory_bytes(width, height, format, focus_settings(recipe), threads);
+  FocusSettings focus = focus_settings(recipe);
+  if (learns_bins(recipe)) focus.bin_slices = std::max(focus.bin_slices, 2);  // they may be known when it begins
+  const std::size_t stack = StreamingFocusStack::memory_bytes(width, height, format, focus, threads);
   JobMemory needed;
   needed.state_bytes = stack - pixels * kMapBytesPerPixel;
   needed.maps_bytes = (1 + recipe.extra_peaks.size()) * pixels * kMapBytesPerPixel;

@@ -1,15 +1,23 @@
 #include "daemon/pipeline/reconstruct.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "core/focus/fit/smooth_heights.hpp"
 
 namespace fvd {
 
+BinChoice bin_choice(const Recipe& recipe) {
+  if (!learns_bins(recipe)) return BinChoice::kRecipe;
+  if (!recipe.learnt_width) return BinChoice::kUnknownWidth;
+  return recipe.learnt_width->scans > 0 ? BinChoice::kEarlierScans : BinChoice::kSlices;
+}
+
 void note_recipe(const Recipe& recipe, ResultData& data) {
   data.recipe_id = recipe.id;
   data.recipe_sha256 = recipe.sha256;
   data.focus = focus_settings(recipe);
+  data.bins_by = bin_choice(recipe);
   data.peak = recipe.peak;
   data.pixel_pitch_x_um = recipe.pixel_pitch_x_um;
   data.pixel_pitch_y_um = recipe.pixel_pitch_y_um;
@@ -20,6 +28,14 @@ void note_recipe(const Recipe& recipe, ResultData& data) {
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
   data.state_bytes_per_pixel = stack.state_bytes_per_pixel();
   data.map = stack.finish(recipe.peak);
+  const int wanted = choose_bin_slices(recipe.step_um, data.map.curve_width_um);
+  if (data.bins_by != BinChoice::kUnknownWidth || wanted == data.focus.bin_slices) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "the step of " << recipe.step_um << " um is " << recipe.step_um / data.map.curve_width_um
+       << " of the focus curve's width of " << data.map.curve_width_um << " um, which nothing had told before: bins of "
+       << wanted << " slices would make less error; the next scan of the recipe has them, or say curve_width_um";
+  data.warnings.push_back({"bins_unknown", text.str()});
 }
 
 void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data) {

@@ -12,7 +12,11 @@ namespace fvd {
 /// Notes of the recipe what its result tells: id, digest, settings, scale, what it asks for.
 void note_recipe(const Recipe& recipe, ResultData& data);
 
-/// Heights by recipe.peak. Throws Error kBadSlice without slices, as the next.
+/// What the bins follow from. context: pure.
+[[nodiscard]] BinChoice bin_choice(const Recipe& recipe);
+
+/// Heights by recipe.peak; a warning where the curves turn out so wide against the step that bins would have made less
+/// error, and nothing had told their width before. Throws Error kBadSlice without slices, as the next.
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data);
 
 /// The smoothed map where the recipe asks for it, and heights by each of recipe.extra_peaks, once.

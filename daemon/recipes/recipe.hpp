@@ -13,6 +13,12 @@
 
 namespace fvd {
 
+/// A focus curve's width that was measured, not given.
+struct LearntWidth {
+  double width_um = 0.0;  ///< full width at half maximum
+  int scans = 0;          ///< that told it; 0 = the slices themselves, which were looked at first
+};
+
 struct Recipe {
   std::string id;  ///< file name without .json: [A-Za-z0-9_-]{1,32}
   std::string description;
@@ -32,9 +38,10 @@ struct Recipe {
 
   CameraSettings camera;
   FocusSettings focus;
-  double curve_width_um = 0.0;      ///< full width at half maximum of the focus curve, 0 = unknown
-  int bin_slices = 0;               ///< slices summed to one sample of the curve; 0 = by the curve's width
-  std::optional<double> smooth_px;  ///< kMinSmoothPx..kMaxSmoothPx: also a smoothed map; see smooth_heights.hpp
+  double curve_width_um = 0.0;              ///< full width at half maximum of the focus curve, 0 = unknown
+  int bin_slices = 0;                       ///< slices summed to one sample of the curve; 0 = by the curve's width
+  std::optional<LearntWidth> learnt_width;  ///< takes the place of a curve_width_um of 0; not of the document
+  std::optional<double> smooth_px;          ///< kMinSmoothPx..kMaxSmoothPx: also a smoothed map; see smooth_heights.hpp
   PeakMethod peak = PeakMethod::kFiveSample;
   std::vector<PeakMethod> extra_peaks;  ///< further height maps from the same scan, height_<method>.tiff
 
@@ -46,11 +53,17 @@ struct Recipe {
   bool keep_slices = false;  ///< also keep the slices (PGM) and their z in the result's folder slices/
 };
 
+/// Whether the bins follow from a width that the document does not tell.
+[[nodiscard]] inline bool learns_bins(const Recipe& recipe) {
+  return recipe.bin_slices == 0 && recipe.curve_width_um == 0.0;
+}
+
 /// The focus settings of a scan: recipe.focus with its bins chosen, and no window for the intensity.
 [[nodiscard]] inline FocusSettings focus_settings(const Recipe& recipe) {
   FocusSettings settings = recipe.focus;
-  settings.bin_slices =
-      recipe.bin_slices > 0 ? recipe.bin_slices : choose_bin_slices(recipe.step_um, recipe.curve_width_um);
+  const double learnt_um = recipe.learnt_width ? recipe.learnt_width->width_um : 0.0;
+  const double width_um = recipe.curve_width_um > 0.0 ? recipe.curve_width_um : learnt_um;
+  settings.bin_slices = recipe.bin_slices > 0 ? recipe.bin_slices : choose_bin_slices(recipe.step_um, width_um);
   if (settings.focus_operator == FocusOperator::kIntensity) settings.window_px = 1;
   return settings;
 }

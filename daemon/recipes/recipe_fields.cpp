@@ -96,9 +96,9 @@ void describe_focus(Recipe& recipe, Fields& fields) {
   fields.integer("distance_px", recipe.focus.distance_px, {1, kMaxDistancePx},
                  "from a pixel to the neighbours that its operator looks at");
   fields.number("curve_width_um", recipe.curve_width_um, {0.0, 1e5},
-                "full width at half maximum of the focus curve, as a result tells it; 0 = unknown");
+                "full width at half maximum of the focus curve; 0 = as the recipe's last good scans told it");
   fields.integer("bin_slices", recipe.bin_slices, {0, kMaxBinSlices},
-                 "slices summed to one sample of the curve; 0 = by curve_width_um, 1 where that is unknown");
+                 "slices summed to one sample of the curve; 0 = by the curve's width, 1 where that is unknown");
   std::string peak(peak_method_name(recipe.peak));
   fields.choice("peak", peak, peak_names(), "how a height is taken from the samples around the sharpest");
   recipe.peak = peak_method_from_name(peak).value_or(recipe.peak);

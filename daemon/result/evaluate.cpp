@@ -27,6 +27,7 @@ Result::Focus focus_of(const ResultData& data) {
   focus.pixel_pitch_x_um = data.pixel_pitch_x_um;
   focus.pixel_pitch_y_um = data.pixel_pitch_y_um;
   focus.settings = data.focus;
+  focus.bins_by = data.bins_by;
   focus.smooth_px = data.smooth_px;
   focus.lateral_period_px = lateral_period_px(data.focus, {});
   if (data.smooth_px) focus.smooth_lateral_period_px = lateral_period_px(data.focus, data.smooth_px);
@@ -120,6 +121,27 @@ std::optional<Verdict> verdict_of(const std::vector<MeasuredValue>& measurements
 }
 
 }  // namespace
+
+std::string_view bin_choice_name(BinChoice choice) noexcept {
+  switch (choice) {
+    case BinChoice::kRecipe:
+      return "recipe";
+    case BinChoice::kEarlierScans:
+      return "earlier_scans";
+    case BinChoice::kSlices:
+      return "slices";
+    case BinChoice::kUnknownWidth:
+      return "unknown_width";
+  }
+  return "unknown_width";
+}
+
+std::optional<BinChoice> bin_choice_from_name(std::string_view name) noexcept {
+  for (const BinChoice choice : kAllBinChoices) {
+    if (name == bin_choice_name(choice)) return choice;
+  }
+  return std::nullopt;
+}
 
 Result evaluate(const ResultData& data, const HeightSummary& summary) {
   Result result;

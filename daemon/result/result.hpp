@@ -2,6 +2,7 @@
 
 /// The result of a job or of recorded slices: everything but its pixels.
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -51,6 +52,20 @@ struct PhaseTimes {
   bool operator==(const PhaseTimes&) const = default;
 };
 
+/// What the number of slices in a bin was taken from.
+enum class BinChoice {
+  kRecipe,        ///< the recipe, or an option, tells it or the curve's width
+  kEarlierScans,  ///< the curve's width in the recipe's last good scans
+  kSlices,        ///< the curve's width in the slices themselves, which were looked at first
+  kUnknownWidth,  ///< nothing was known of the width: no bins
+};
+inline constexpr std::array kAllBinChoices{BinChoice::kRecipe, BinChoice::kEarlierScans, BinChoice::kSlices,
+                                           BinChoice::kUnknownWidth};
+
+/// "recipe", "earlier_scans", "slices", "unknown_width".
+[[nodiscard]] std::string_view bin_choice_name(BinChoice choice) noexcept;
+[[nodiscard]] std::optional<BinChoice> bin_choice_from_name(std::string_view name) noexcept;
+
 /// Heights of another peak method.
 struct FurtherHeights {
   PeakMethod peak = PeakMethod::kParabola;
@@ -89,6 +104,7 @@ struct Result {
     std::optional<double> pixel_pitch_x_um;  ///< absent = unknown
     std::optional<double> pixel_pitch_y_um;
     FocusSettings settings;                          ///< all but stage_correction
+    BinChoice bins_by = BinChoice::kUnknownWidth;    ///< why settings.bin_slices is what it is
     std::optional<double> smooth_px;                 ///< of the smoothed map; nothing = there is none
     double lateral_period_px = 0.0;                  ///< see lateral_period.hpp
     std::optional<double> smooth_lateral_period_px;  ///< of the smoothed map

@@ -36,6 +36,7 @@ struct ResultData {
   PeakMethod peak = PeakMethod::kParabola;
   std::optional<double> pixel_pitch_x_um;  ///< absent = unknown: files then carry pixels
   std::optional<double> pixel_pitch_y_um;
+  BinChoice bins_by = BinChoice::kUnknownWidth;
   double min_valid_fraction = 0.0;                  ///< that the recipe asks for; 0 = it does not judge
   std::optional<std::vector<std::string>> exports;  ///< files that the recipe asks for, by name; absent = all
   double state_bytes_per_pixel = 0.0;

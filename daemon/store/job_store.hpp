@@ -9,6 +9,7 @@
 #include <string>
 
 #include "daemon/recipes/recipe_versions.hpp"
+#include "daemon/store/curve_width_table.hpp"
 #include "daemon/store/job_status.hpp"
 
 namespace fvd {
@@ -63,6 +64,9 @@ class JobStore {
 
   /// In the same file; as long as the store. context: thread-safe.
   [[nodiscard]] RecipeVersions& recipe_versions() noexcept;
+
+  /// In the same file; as long as the store. context: thread-safe.
+  [[nodiscard]] CurveWidthTable& curve_widths() noexcept;
 
   /// Counts the times this database was opened, from 1.
   [[nodiscard]] std::int64_t epoch() const noexcept;

@@ -118,11 +118,24 @@ UPDATE jobs SET acquired = 1 WHERE state <> 'processing' AND error NOT IN ('inte
 )");
 }
 
+/// Version 5: the width of the focus curve by which the next scan of a recipe is binned.
+void remember_curve_widths(Database& database) {
+  database.execute(R"(
+CREATE TABLE curve_widths (
+  recipe   TEXT    NOT NULL PRIMARY KEY,
+  settings TEXT    NOT NULL,
+  width_nm INTEGER NOT NULL,
+  scans    INTEGER NOT NULL
+) STRICT;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
     MigrationStep{"versions of recipes", keep_recipe_versions},
     MigrationStep{"whether the part was free at a job's end", keep_whether_the_part_was_free},
+    MigrationStep{"widths of focus curves", remember_curve_widths},
 };
 
 void require_own_file(const Database& database, int version) {

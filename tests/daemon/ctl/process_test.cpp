@@ -53,10 +53,25 @@ TEST(Suggest, PrintsSettingsForARecipeAndRefusesWhatItCannotRead) {
   };
   const Outcome good = suggest((scratch / "in/s2.png").string());
   EXPECT_EQ(good.code, kExitOk) << good.err;
-  EXPECT_THAT(good.out, HasSubstr("\"distance_px\": 1"));
+  EXPECT_THAT(good.out, HasSubstr("\"distance_px\": 2, \"window_px\": 9 }  (the defaults)"));
   const Outcome bad = suggest((scratch / "in/s9.png").string());
   EXPECT_NE(bad.code, kExitOk);
   EXPECT_THAT(bad.err, HasSubstr("s9.png"));
+}
+
+TEST(Suggest, LooksAtAWholeStack) {
+  const ScratchDir scratch;
+  fs::create_directories(scratch / "in");
+  for (int i = 10; i < 41; ++i) {
+    cv::Mat slice;
+    cv::repeat(test::pattern_slice(i, 24.0, CV_8UC1), 2, 2, slice);
+    cv::imwrite((scratch / "in" / ("s" + std::to_string(i) + ".png")).string(), slice);
+  }
+  std::ostringstream out;
+  std::ostringstream err;
+  ASSERT_EQ(run_fvdctl({"suggest", scratch / "in"}, {out, err, false, false}), kExitOk) << err.str();
+  EXPECT_THAT(out.str(), HasSubstr("\"window_px\": 9"));
+  EXPECT_THAT(out.str(), HasSubstr("slices wide at half its height"));
 }
 
 TEST(Process, MakesTheAllInFocusImageInTheColoursOfTheSlices) {
@@ -75,7 +90,7 @@ TEST(Process, MakesAHeightMapOfRecordedSlices) {
   const ScratchDir scratch;
   test::write_stack(scratch / "in", "s", ".png", 11, 4.0);
   const Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--z-start-um", "-7", "--extra-peak", "nearest",
-                                   "--pixel-pitch-um", "2", "--out", scratch / "out"});
+                                   "--bin", "1", "--pixel-pitch-um", "2", "--out", scratch / "out"});
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("s*.png (11 files), 40 x 30 pixels"));
   EXPECT_THAT(outcome.err, HasSubstr("slice 11/11"));
@@ -91,6 +106,28 @@ TEST(Process, MakesAHeightMapOfRecordedSlices) {
   EXPECT_EQ(result["focus"]["pixel_pitch_x_um"], 2.0);
   EXPECT_EQ(result["job"]["part_id"], "in");
   EXPECT_THAT(result["provenance"]["source"].get<std::string>(), HasSubstr("s*.png"));
+}
+
+TEST(Process, ChoosesItsBinsByTheWidthThatAFirstPassTells) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 31, 14.0);
+  const auto focus_of = [&](const std::string& out, std::vector<std::string> options) {
+    options.insert(options.begin(), {scratch / "in", "--z-step-um", "10", "--out", scratch / out});
+    const Outcome outcome = process(options);
+    EXPECT_EQ(outcome.code, kExitOk) << outcome.err;
+    const auto result = nlohmann::json::parse(test::read_text(scratch / out / "result.json"));
+    EXPECT_EQ(result["frames"]["ok"], 31);
+    EXPECT_EQ(result["slices"]["measured"], 31);
+    EXPECT_THAT(result["warnings"], ::testing::IsEmpty());
+    return result["focus"];
+  };
+  const auto without = focus_of("without", {"--bin", "1"});
+  EXPECT_EQ(without["bins_by"], "recipe");
+  const auto itself = focus_of("itself", {});
+  EXPECT_EQ(itself["bins_by"], "slices");
+  EXPECT_EQ(itself["bin_slices"], choose_bin_slices(10.0, without["curve_width_um"].get<double>()));
+  ASSERT_GT(itself["bin_slices"], 1);
+  EXPECT_EQ(read_float(scratch / "itself/height.tiff").rows, 30);
 }
 
 TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
@@ -113,7 +150,7 @@ TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
   const HeightMap expected = live.finish(PeakMethod::kLogParabola);
 
   const Outcome outcome = process({scratch / "job/slices", "--z-file", scratch / "job/slices/z.txt", "--peak",
-                                   "log_parabola", "--out", scratch / "out"});
+                                   "log_parabola", "--bin", "1", "--out", scratch / "out"});
 
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_NE(test::read_text(scratch / "out/result.json").find("\"simulated\": true"), std::string::npos)

@@ -15,6 +15,7 @@ constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
 
 TEST(JobMemory, CountsStateMapsFramesAndFiles) {
   Recipe recipe;
+  recipe.bin_slices = 1;
   recipe.camera.pool_frames = 4;
   const JobMemory plain = job_memory(recipe, kWidth, kHeight, 2);
   EXPECT_GE(plain.state_bytes, 20 * kPixels);
@@ -22,6 +23,13 @@ TEST(JobMemory, CountsStateMapsFramesAndFiles) {
   EXPECT_EQ(plain.encoding_bytes, 12 * kPixels);
   EXPECT_EQ(plain.state_bytes + plain.maps_bytes,
             StreamingFocusStack::memory_bytes(kWidth, kHeight, PixelFormat::kMono8, focus_settings(recipe), 2));
+}
+
+TEST(JobMemory, HasRoomForBinsThatAreChosenLater) {
+  Recipe recipe;
+  const JobMemory unknown = job_memory(recipe, kWidth, kHeight, 2);
+  recipe.bin_slices = 3;
+  EXPECT_EQ(unknown.state_bytes, job_memory(recipe, kWidth, kHeight, 2).state_bytes);
 }
 
 TEST(JobMemory, ASecondMethodTakesAnotherMapAndNoOtherState) {
