@@ -31,7 +31,7 @@ const std::vector<std::string>& camera_fault_names() {
   static const std::vector<std::string> kNames{
       "drop_leader",     "drop_trailer",    "drop_packet", "drop_frame", "drop_ack", "ignore_trigger", "nack_trigger",
       "duplicate_frame", "reorder_packets", "late_frame",  "wrong_size", "too_long", "early_leader",   "id_jump",
-      "ids_restart",     "stale_frame",     "mute",        "hang",       "restart"};
+      "ids_restart",     "stale_frame",     "dark_frame",  "half_frame", "mute",     "hang",           "restart"};
   return kNames;
 }
 

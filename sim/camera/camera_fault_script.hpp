@@ -38,6 +38,8 @@ enum class CameraFault {
   kIdJump,          ///< the block id grows by `value` more
   kIdsRestart,      ///< block ids start at the first again
   kStaleFrame,      ///< the pixels and the time of the frame before under a new id; the exposure is lost
+  kDarkFrame,       ///< the light was off: black pixels
+  kHalfFrame,       ///< black from the middle row downwards, delivered as complete
   kMute,            ///< the camera answers and sends nothing for `delay`
   kHang,            ///< the camera does nothing for `delay`, then continues where it was
   kRestart,         ///< as a power cycle: absent for `delay`, then without control, settings and ids

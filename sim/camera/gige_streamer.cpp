@@ -248,6 +248,10 @@ void GigeStreamer::send(const Exposure& exposure, std::stop_token stop) {
     frame->pixels = before_->pixels;
     frame->timestamp_ns = before_->timestamp_ns;
   }
+  if (is(fault, CameraFault::kDarkFrame) || is(fault, CameraFault::kHalfFrame)) {
+    const std::size_t lit = is(fault, CameraFault::kHalfFrame) ? frame->pixels.size() / 2 : 0;
+    std::fill(frame->pixels.begin() + static_cast<std::ptrdiff_t>(lit), frame->pixels.end(), std::byte{0});
+  }
   if (is(fault, CameraFault::kLateFrame) && !wait_until(HostClock::now() + fault->delay, exposure.acquisition, stop)) {
     return;
   }

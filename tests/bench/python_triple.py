@@ -22,7 +22,7 @@ def main():
     cv2.setNumThreads(1)
     step = float(sys.argv[2])
     previous = peak = left = right = index = None
-    for k, name in enumerate(sorted(pathlib.Path(sys.argv[1]).glob("*.pgm"))):
+    for k, name in enumerate(sorted(pathlib.Path(sys.argv[1]).iterdir())):
         value = sharpness(cv2.imread(str(name), cv2.IMREAD_UNCHANGED))
         if peak is None:
             peak, left, right = value.copy(), np.zeros_like(value), np.zeros_like(value)

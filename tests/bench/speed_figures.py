@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 
+import cv2
 import numpy as np
 
 WORK = pathlib.Path(sys.argv[1])
@@ -34,18 +35,23 @@ def medians():
     return median
 
 
-def write_slices(folder):
-    """Grain in focus at its own slice in every column, as PGM."""
-    folder.mkdir()
+FORMATS = {"raw": ".tif", "pgm": ".pgm", "png": ".png", "jpeg": ".jpg"}
+UNCOMPRESSED = [cv2.IMWRITE_TIFF_COMPRESSION, 1]
+
+
+def write_slices(root):
+    """Grain in focus at its own slice in every column, in every format."""
     random = np.random.default_rng(1)
     height, width = PROCESS_SIZE
     grain = random.uniform(-100, 100, PROCESS_SIZE)
     focus = np.linspace(4, PROCESS_SLICES - 5, width)
+    for name in FORMATS:
+        (root / name).mkdir()
     for k in range(PROCESS_SLICES):
         contrast = (1 + 0.1 * (k - focus) ** 2) ** -2.0
         slice_ = (126 + grain * contrast + random.integers(0, 4, PROCESS_SIZE)).astype(np.uint8)
-        with open(folder / f"slice_{k:03d}.pgm", "wb") as file:
-            file.write(f"P5\n{width} {height}\n255\n".encode() + slice_.tobytes())
+        for name, suffix in FORMATS.items():
+            cv2.imwrite(str(root / name / f"slice_{k:03d}{suffix}"), slice_, UNCOMPRESSED if name == "raw" else [])
 
 
 def timed(command):
@@ -58,41 +64,70 @@ def timed(command):
     return time.perf_counter() - start, usage.ru_maxrss / 1024
 
 
-def process_against_python():
-    slices = WORK / "slices"
-    write_slices(slices)
+def process(folder):
     out = WORK / "out"
+    shutil.rmtree(out, ignore_errors=True)
+    seconds, mib = timed([FVDCTL, "process", str(folder), "--z-step-um", "10", "--bin", "1", "--out", str(out)])
+    times = json.loads((out / "result.json").read_text())["times"]
+    return seconds, mib, seconds - times["write_ms"] / 1e3
+
+
+def cat_and_copy(folder):
+    """To read the files and to copy their pixels once."""
+    start = time.perf_counter()
+    subprocess.run(["cat", *sorted(map(str, folder.iterdir()))], stdout=subprocess.DEVNULL, check=True)
+    seconds = time.perf_counter() - start
+    pixels = [np.ones(PROCESS_SIZE, np.uint8) for _ in range(PROCESS_SLICES)]
+    copies = [np.ones(PROCESS_SIZE, np.uint8) for _ in range(PROCESS_SLICES)]
+    start = time.perf_counter()
+    for copy, slice_ in zip(copies, pixels):
+        np.copyto(copy, slice_)
+    return seconds + time.perf_counter() - start
+
+
+def process_figures():
+    """Medians of five runs that take turns."""
+    root = WORK / "slices"
+    root.mkdir()
+    write_slices(root)
     script = str(pathlib.Path(__file__).with_name("python_triple.py"))
-    ours, theirs, memory = [], [], []
-    for _ in range(5):
-        shutil.rmtree(out, ignore_errors=True)
-        seconds, mib = timed([FVDCTL, "process", str(slices), "--z-step-um", "10", "--out", str(out)])
-        ours.append(seconds)
-        seconds, python_mib = timed([sys.executable, script, str(slices), "10"])
-        theirs.append(seconds)
-        memory.append(mib / python_mib)
-    return statistics.median(theirs) / statistics.median(ours), statistics.median(memory)
+    figures = {}
+    for name in FORMATS:
+        folder = root / name
+        ours, theirs, memory, without_files, read = [], [], [], [], []
+        for _ in range(5):
+            seconds, mib, computing = process(folder)
+            ours.append(seconds)
+            without_files.append(computing)
+            seconds, python_mib = timed([sys.executable, script, str(folder), "10"])
+            theirs.append(seconds)
+            memory.append(mib / python_mib)
+            read.append(cat_and_copy(folder))
+        figures[f"process_over_python_{name}"] = statistics.median(theirs) / statistics.median(ours)
+        figures[f"process_memory_over_python_{name}"] = statistics.median(memory)
+        if name == "raw":
+            figures["process_raw_over_cat_memcpy"] = statistics.median(without_files) / statistics.median(read)
+    return figures
 
 
 def main():
     median = medians()
-    mono8 = "streaming/Mono8/bits:8/window:9/threads:{}/batch:8/bin:1"
-    mono16 = "streaming/Mono16/bits:16/window:9/threads:2/batch:8/bin:1"
+    mono8 = "streaming/Mono8/bits:8/window:9/threads:{}/batch:8/bin:1/sml:0"
+    mono16 = "streaming/Mono16/bits:16/window:9/threads:2/batch:8/bin:1/sml:0"
     rate = median(mono8.format(2), "Mpx/s")
     opencv = median("opencv_stored_stack/threads:2", "Mpx/s")
     slice_ms = 1e3 * PIXELS / (rate * 1e6)
     copy_ns_per_byte = 1e3 / median("copy/bytes:1", "MB/s")
-    ratio, memory = process_against_python()
     figures = {
-        "mono8_over_opencv": rate / opencv,
+        "default_over_opencv": rate / opencv,
+        "sml9_over_opencv": median(mono8.format(2).replace("sml:0", "sml:1"), "Mpx/s") / opencv,
         "mono16_over_opencv": median(mono16, "Mpx/s") / opencv,
         "mono8_memcpy_metric": 1e3 / rate / copy_ns_per_byte,
         "state_bytes_mono8": median(mono8.format(2).replace("bin:1", "bin:4"), "state_bytes_per_pixel"),
         "state_bytes_mono16": median(mono16.replace("bin:1", "bin:4"), "state_bytes_per_pixel"),
         "window31_over_9": rate / median(mono8.format(2).replace("window:9", "window:31"), "Mpx/s"),
         "finish_over_slice": median("finish/Mono8/method:4/threads:2", "real_time") / slice_ms,
-        "process_over_python": ratio,
-        "process_memory_over_python": memory,
+        **process_figures(),
         "threads2_over_1": rate / median(mono8.format(1), "Mpx/s"),
         "mono8_mpx_s": rate,
         "batch8_over_1": rate / median(mono8.format(2).replace("batch:8", "batch:1"), "Mpx/s"),

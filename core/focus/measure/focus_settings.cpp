@@ -100,9 +100,9 @@ double window_area_px2(const FocusSettings& settings) noexcept {
 }
 
 int choose_bin_slices(double step_um, double curve_width_um) noexcept {
-  constexpr double kSampleDistance = 0.4;
+  constexpr double kSampleDistance = 0.35;
   if (!(curve_width_um > 0.0) || !(std::abs(step_um) > 0.0)) return 1;
-  const double slices = std::floor(kSampleDistance * curve_width_um / std::abs(step_um) + 0.25);
+  const double slices = std::floor(kSampleDistance * curve_width_um / std::abs(step_um) + 0.3);
   return static_cast<int>(std::clamp(slices, 1.0, static_cast<double>(kMaxBinSlices)));
 }
 

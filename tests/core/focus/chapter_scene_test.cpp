@@ -209,7 +209,7 @@ TEST_F(TheChapterScene, IsMeasuredByAllSlicesOfAFineScanWithBins) {
   EXPECT_NEAR(width_um, 37.0, 3.0);
   constexpr double kFine_um = 2.5;
   const int bin = choose_bin_slices(kFine_um, width_um);
-  EXPECT_EQ(bin, 6);
+  EXPECT_EQ(bin, 5);
   const Figures without = compare(scan(kFine_um, 81, {})->finish(PeakMethod::kFiveSample));
   const Figures with = compare(scan(kFine_um, 81, {.bin_slices = bin})->finish(PeakMethod::kFiveSample));
   std::printf("step 2.5 um: %.3f um RMS, in bins of %d %.3f um; predicted over observed %.2f\n", without.rms_um, bin,
