@@ -1,5 +1,6 @@
 /// A PLC's trigger through JSON-RPC, Modbus and GigE Vision to the result files, against the truth.
 
+#include <algorithm>
 #include <cstring>
 #include <sstream>
 
@@ -66,6 +67,35 @@ TEST_F(AMicroscope, MeasuresAsWellWithAControllerThatSpeaksGcs) {
   const json ended = await_end(1);
   ASSERT_EQ(ended["state"], "completed") << ended.dump();
   expect_chapter_figures(figures_of(result_dir(1)));
+}
+
+TEST_F(AMicroscope, BinsTheSecondScanOfAFineStepByTheWidthThatTheFirstTold) {
+  const test::ScratchDir recipes;
+  test::write_text(recipes.path() / "fine.json", R"({"format": 2, "acquire": {"scan": {"start_um": -20, "step_um": 4,
+      "slices": 30}, "camera": {"exposure_us": 2000, "width_px": 160, "height_px": 360}}})");
+  start();
+  app_.reset();
+  config_.paths.recipe_dir = recipes.path();
+  app_ = std::make_unique<App>(config_);
+  ASSERT_TRUE(wait_until_ready());
+  const auto focus_of = [this](int seq, std::vector<std::string>& warnings) {
+    begin(seq, "fine");
+    EXPECT_EQ(await_end(seq)["state"], "completed");
+    const json record = json::parse(test::read_text(result_dir(seq) / "result.json"));
+    for (const json& warning : record["warnings"]) warnings.push_back(warning["code"]);
+    return record["focus"];
+  };
+  std::vector<std::string> first_warnings;
+  const json first = focus_of(1, first_warnings);
+  EXPECT_EQ(first["bins_by"], "unknown_width");
+  EXPECT_EQ(first["bin_slices"], 1);
+  EXPECT_EQ(std::count(first_warnings.begin(), first_warnings.end(), "bins_unknown"), 1);
+  std::vector<std::string> second_warnings;
+  const json second = focus_of(2, second_warnings);
+  EXPECT_EQ(second["bins_by"], "earlier_scans");
+  EXPECT_EQ(second["bin_slices"], choose_bin_slices(4.0, first["curve_width_um"].get<double>()));
+  EXPECT_GT(second["bin_slices"], 1);
+  EXPECT_EQ(std::count(second_warnings.begin(), second_warnings.end(), "bins_unknown"), 0);
 }
 
 TEST_F(AMicroscope, AnswersARepeatedTriggerWithTheSameJobAndNoSecondMotion) {
