@@ -1,5 +1,9 @@
 #include "tests/bench/accuracy_scans.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include <opencv2/imgcodecs.hpp>
 
 #include "drivers/replay/recorded_stack.hpp"
@@ -39,6 +43,29 @@ ErrorSum ReferenceScan::figures_of(const HeightMap& map) const {
     }
   }
   return errors;
+}
+
+std::array<ErrorSum, 4> ReferenceScan::quarters_of(const HeightMap& map) const {
+  constexpr int kReach_px = 4;  // about half a window: what lies in it makes the error of a slope
+  struct Point {
+    double slope;
+    double error;
+    double sigma;
+  };
+  std::vector<Point> points;
+  for (int y = kReach_px; y < map.mask.height() - kReach_px; ++y) {
+    for (int x = kReach_px; x < map.mask.width() - kReach_px; ++x) {
+      const double error = static_cast<double>(map.height_m.at(x, y)) * 1e6 - truth(x, y);
+      const double slope = std::hypot(truth(x + kReach_px, y) - truth(x - kReach_px, y),
+                                      truth(x, y + kReach_px) - truth(x, y - kReach_px));
+      if (std::isnan(error) || std::isnan(slope)) continue;
+      points.push_back({slope, error, static_cast<double>(map.sigma_m.at(x, y)) * 1e6});
+    }
+  }
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.slope < b.slope; });
+  std::array<ErrorSum, 4> quarters;
+  for (std::size_t i = 0; i < points.size(); ++i) quarters[4 * i / points.size()].add(points[i].error, points[i].sigma);
+  return quarters;
 }
 
 }  // namespace fvd::bench

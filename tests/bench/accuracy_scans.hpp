@@ -2,6 +2,7 @@
 
 /// Scans with known truth for bench_accuracy: of a simulated world on an ideal axis, and of the generated stacks.
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -117,6 +118,8 @@ class ReferenceScan {
 
   [[nodiscard]] HeightMap map(PeakMethod method) const { return stack_->finish(method); }
   [[nodiscard]] ErrorSum figures_of(const HeightMap& map) const;
+  /// The same for each quarter of the points, from the least to the steepest slope of the truth.
+  [[nodiscard]] std::array<ErrorSum, 4> quarters_of(const HeightMap& map) const;
   [[nodiscard]] ErrorSum figures(PeakMethod method) const { return figures_of(map(method)); }
   /// Why the stage's errors were not corrected; empty if they were.
   [[nodiscard]] std::string stage_reason() const { return stack_->finish(PeakMethod::kFiveSample).stage.reason; }

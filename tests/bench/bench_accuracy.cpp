@@ -429,7 +429,19 @@ void reference_table(const fs::path& data, WorkerPool& pool, nlohmann::ordered_j
       }
     }
     const ReferenceScan scan(folder, reference, {}, pool);
-    const ErrorSum kept = scan.figures(PeakMethod::kFiveSample);
+    const HeightMap map = scan.map(PeakMethod::kFiveSample);
+    const ErrorSum kept = scan.figures_of(map);
+    const auto note = [&json](const char* least, const char* most, double ratio) {
+      json[least] = std::min(json.value(least, 1e9), ratio);
+      json[most] = std::max(json.value(most, 0.0), ratio);
+    };
+    note("sigma_ratio_min", "sigma_ratio_max", kept.sigma_ratio());
+    std::printf("%-16s  predicted over observed by quarters of the points from level to steep:", reference.folder);
+    for (const ErrorSum& quarter : scan.quarters_of(map)) {
+      std::printf("  %.2f", quarter.sigma_ratio());
+      note("sigma_slope_quarter_min", "sigma_slope_quarter_max", quarter.sigma_ratio());
+    }
+    std::puts("");
     std::printf("%-16s  masked: %.4f, %.2f %% kept, largest error %.3f, predicted over observed %.2f; stage: %s\n",
                 reference.folder, kept.rms(), 100.0 * kept.count / scan.points(), kept.largest, kept.sigma_ratio(),
                 scan.stage_reason().c_str());

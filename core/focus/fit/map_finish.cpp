@@ -27,6 +27,10 @@ constexpr float kCentroidOffset_windows = 0.038F;
 constexpr float kDiagonalsShare = 0.9F;
 constexpr float kDoubleBoxShare = 0.76F;
 
+/// How much more a vertex moves than the cubic of the curves' misfit tells: on stacks without noise, in which misfit is
+/// all there is.
+constexpr double kVertexShare = 1.1;
+
 /// The share of the curves' misfit that moves a vertex where samples are bins, which differ in their tails alone.
 constexpr double kBinsShare = 0.5;
 
@@ -241,8 +245,8 @@ class MapFinish {
     const int reach = settings_.window_px / 2;
     const bool inside = reach > 0 && y >= reach && y < height_ - reach;
     focus_kernels().finish_sigma(map_.height_m.row(y), inside ? map_.height_m.row(y - reach) : nullptr,
-                                 inside ? map_.height_m.row(y + reach) : nullptr, reach,
-                                 centroid_offset_px(settings_), width_, map_.sigma_m.row(y));
+                                 inside ? map_.height_m.row(y + reach) : nullptr, reach, centroid_offset_px(settings_),
+                                 width_, map_.sigma_m.row(y));
   }
 
   const CurveSource& curves_;
@@ -269,7 +273,7 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
   }
   const CurveShape shape = curve_shape(tuples, corrected, pool);
   const double misfit =
-      curve_misfit(tuples, corrected, shape.exponent) * (settings.bin_slices > 1 ? kBinsShare : 1.0);
+      curve_misfit(tuples, corrected, shape.exponent) * kVertexShare * (settings.bin_slices > 1 ? kBinsShare : 1.0);
   finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias, misfit));
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;
