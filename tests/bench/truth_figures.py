@@ -82,25 +82,31 @@ class Judge:
             say(f"{scene}: {result.message}")
 
     def layered(self):
-        say("Layered: share wrong of the kept, share kept; 0 to 9 px and 9 to 60 px from the edge, both sides")
+        """A side without texture can only be wrong: there the share is of all its points, not of the kept."""
+        say("Layered, near plane and far plane: share wrong 0 to 9 px from the edge, and kept; the same 9 to 60 px")
         near_wrong, far_wrong, near_kept, far_kept = [], [], [], []
         for name in ("bright_over_dark", "dark_over_bright", "bright_over_black", "equal"):
-            scene = "layered_" + name
-            truth = self.truth(scene)
-            result = self.clean(scene)
+            truth = self.truth("layered_" + name)
+            result = self.clean("layered_" + name)
             middle = (truth.max() + truth.min()) / 2
-            sides = [cv2.distanceTransform((on).astype(np.uint8), cv2.DIST_L2, 5) for on in (truth > middle, truth < middle)]
-            distance = sides[0] + sides[1] - 0.5
-            textured = np.ones(truth.shape, bool)
-            if name == "bright_over_black":
-                textured = truth > middle
             inside = self.inside(truth.shape, 60)
-            near, far = inside & (distance < 9), inside & (distance > 9) & (distance < 60)
-            near_wrong.append(Errors(result, truth, near).wrong(STEP_UM))
-            far_wrong.append(Errors(result, truth, far).wrong(STEP_UM))
-            near_kept.append(Errors(result, truth, near & textured).kept)
-            far_kept.append(Errors(result, truth, far & textured).kept)
-            say(f"  {name:18} near {near_wrong[-1]:.3f} {near_kept[-1]:.3f}  far {far_wrong[-1]:.4f} {far_kept[-1]:.4f}")
+            strips = {9: [], 60: []}
+            for side in (truth > middle, truth < middle):
+                distance = cv2.distanceTransform(side.astype(np.uint8), cv2.DIST_L2, 5) - 0.5
+                strips[9].append(Errors(result, truth, inside & side & (distance < 9)))
+                strips[60].append(Errors(result, truth, inside & side & (distance > 9) & (distance < 60)))
+            plain = [False, name == "bright_over_black"]
+            wrong = [e.wrong(STEP_UM) * (e.kept if poor else 1) for e, poor in zip(strips[9], plain)]
+            near_wrong.append(max(wrong))
+            far_wrong.append(
+                sum(e.wrong(STEP_UM) * e.error.size for e in strips[60]) / max(1, sum(e.error.size for e in strips[60]))
+            )
+            near_kept += [e.kept for e, poor in zip(strips[9], plain) if not poor]
+            far_kept += [e.kept for e, poor in zip(strips[60], plain) if not poor]
+            say(
+                f"  {name:18} {wrong[0]:.3f} {strips[9][0].kept:.3f}  {wrong[1]:.3f} {strips[9][1].kept:.3f}"
+                + "".join(f"   {e.wrong(STEP_UM):.4f} {e.kept:.4f}" for e in strips[60])
+            )
         self.figures["layered_wrong_near"] = max(near_wrong)
         self.figures["layered_wrong_far"] = max(far_wrong)
         self.figures["layered_kept_near"] = min(near_kept)

@@ -127,12 +127,12 @@ cv::Mat vibrated(const cv::Mat& light, double amplitude_px, double angle, bool t
 }
 
 void add_glints(cv::Mat& light, const Scene& scene, double z_um, const std::vector<Glint>& glints, double sigma_px,
-                double peak) {
+                double light_sum) {
   for (const Glint& glint : glints) {
     const double defocus_px =
         scene.defocus_px_per_um * (z_um - static_cast<double>(scene.height_um.at(glint.x, glint.y)));
     const double square = sigma_px * sigma_px + defocus_px * defocus_px;
-    const double level = peak * sigma_px * sigma_px / square;
+    const double level = light_sum / (2.0 * std::numbers::pi * square);
     const int reach = static_cast<int>(std::ceil(5.0 * std::sqrt(square)));
     for (int y = std::max(glint.y - reach, 0); y <= std::min(glint.y + reach, light.rows - 1); ++y) {
       for (int x = std::max(glint.x - reach, 0); x <= std::min(glint.x + reach, light.cols - 1); ++x) {

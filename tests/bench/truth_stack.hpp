@@ -46,13 +46,14 @@ struct Camera {
 /// The slice while the part swings by +-amplitude along the angle (sine), or, with `twice`, exposed at both ends only.
 [[nodiscard]] cv::Mat vibrated(const cv::Mat& light, double amplitude_px, double angle, bool twice);
 
-/// Glints: Gaussian spots of `peak` grey levels in focus, which blur with the surface's defocus at their place.
+/// Glints: Gaussian spots of sigma_px in focus, which blur with the surface's defocus at their place. light_sum: of all
+/// their pixels, grey levels.
 struct Glint {
   int x = 0;
   int y = 0;
 };
 void add_glints(cv::Mat& light, const Scene& scene, double z_um, const std::vector<Glint>& glints, double sigma_px,
-                double peak);
+                double light_sum);
 
 /// Writes slice_000.pgm ... , z.txt and truth/truth.tiff (CV_32F, um) into a new folder. Throws std::runtime_error.
 void write_stack(const std::filesystem::path& folder, const std::vector<cv::Mat>& slices, double start_um,
