@@ -28,7 +28,9 @@ class Program:
         """A recipe under which slices may be left out."""
         file = self.work / "lost_allowed.json"
         scan = {"start_um": 0, "step_um": 10, "slices": 21, "allowed_lost_slices": 4}
-        file.write_text(json.dumps({"format": 2, "acquire": {"scan": scan}}))
+        # As without a recipe, but for that.
+        focus = {"stage_correction": False}
+        file.write_text(json.dumps({"format": 2, "acquire": {"scan": scan}, "reconstruct": {"focus": focus}}))
         return ["--recipe", str(file)]
 
     def process(self, folder, options=(), may_lose=False):
