@@ -13,6 +13,7 @@
 
 #include "core/base/error.hpp"
 #include "sim/evaluate/evaluate.hpp"
+#include "sim/evaluate/slice_files.hpp"
 #include "sim/faults/fault_config.hpp"
 #include "sim/plant/plant.hpp"
 #include "sim/world/world_config.hpp"
@@ -36,6 +37,7 @@ struct Arguments {
   std::filesystem::path ready_file;
   std::filesystem::path folder;
   bool json = false;
+  SliceFileOptions slices;
 };
 
 /// The chapter's world and plant unless files say otherwise.
@@ -71,6 +73,12 @@ std::vector<std::string> stage_names() {
   std::vector<std::string> names = drive_names();
   names.emplace_back(kGcs);
   return names;
+}
+
+void render(const Arguments& arguments) {
+  const auto z_um = write_slices(world_of(arguments), arguments.folder, arguments.slices);
+  std::cout << z_um.size() << " slices from " << z_um.front() << " to " << z_um.back() << " um, z.txt and truth in "
+            << arguments.folder.string() << '\n';
 }
 
 /// Where the stage is, in words.
@@ -140,6 +148,19 @@ int run(const Arguments& arguments) {
   return 1;
 }
 
+void add_render_options(CLI::App& command, Arguments& arguments) {
+  SliceFileOptions& slices = arguments.slices;
+  command.add_option("world", arguments.world, "world file")->required()->check(CLI::ExistingFile);
+  command.add_option("folder", arguments.folder, "new or empty folder")->required();
+  command.add_option("--start-um", slices.start_um, "z of the first slice; default: 50 um beyond the surface");
+  command.add_option("--step-um", slices.step_um, "from one slice to the next, may be negative")->capture_default_str();
+  command.add_option("--slices", slices.slices, "their number; default: until 50 um beyond the surface");
+  command.add_option("--seed", arguments.seed, "of texture and noise");
+  command.add_option("--format", slices.format, "of the files")
+      ->check(CLI::IsMember(slice_formats()))
+      ->capture_default_str();
+}
+
 int main_of(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{"fvd-sim: a simulated microscope on GigE Vision and Modbus", "fvd-sim"};
@@ -185,6 +206,8 @@ int main_of(int argc, char** argv) {
   auto* truth = app.add_subcommand("truth", "write the world's true heights");
   add_world(truth);
   truth->add_option("folder", arguments.folder, "existing folder")->required()->check(CLI::ExistingDirectory);
+  auto* rendering = app.add_subcommand("render", "write slices, their z and the truth for fvdctl process");
+  add_render_options(*rendering, arguments);
   auto* compare = app.add_subcommand("evaluate", "compare a result of fvd with the truth");
   add_world(compare);
   compare->add_option("result", arguments.folder, "result directory")->required()->check(CLI::ExistingDirectory);
@@ -195,7 +218,9 @@ int main_of(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 64;
   }
   if (*running) return run(arguments);
-  if (*truth) {
+  if (*rendering) {
+    render(arguments);
+  } else if (*truth) {
     write_truth(world_of(arguments), arguments.folder);
   } else {
     evaluate(world_of(arguments), arguments.folder, arguments.json, std::cout);

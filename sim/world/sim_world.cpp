@@ -1,18 +1,22 @@
 #include "sim/world/sim_world.hpp"
 
+#include "sim/world/defocus_renderer.hpp"
+#include "sim/world/layered_renderer.hpp"
 #include "sim/world/texture.hpp"
 
 namespace fvd::sim {
 
+std::unique_ptr<SliceRenderer> make_renderer(const WorldParameters& world, const Surface& surface) {
+  if (world.surface == SurfaceKind::kLayered) return std::make_unique<LayeredRenderer>(world);
+  const RendererOptions options{
+      .defocus_px_per_um = world.defocus_px_per_um, .readout_noise = world.readout_noise, .seed = world.seed};
+  return std::make_unique<DefocusRenderer>(
+      make_texture(world.texture, surface.poor, world.contrast, world.poor_contrast, world.seed), surface.height_um,
+      options);
+}
+
 SimWorld::SimWorld(const WorldParameters& parameters, const AxisModel& axis)
-    : axis_(axis),
-      surface_(make_surface(parameters)),
-      renderer_(make_texture(parameters.texture, surface_.poor, parameters.contrast, parameters.poor_contrast,
-                             parameters.seed),
-                surface_.height_um,
-                {.defocus_px_per_um = parameters.defocus_px_per_um,
-                 .readout_noise = parameters.readout_noise,
-                 .seed = parameters.seed}) {}
+    : axis_(axis), surface_(make_surface(parameters)), renderer_(make_renderer(parameters, surface_)) {}
 
 void SimWorld::render(const ExposureRequest& request, std::span<std::byte> out) {
   constexpr int kPositionSamples = 5;
@@ -21,7 +25,7 @@ void SimWorld::render(const ExposureRequest& request, std::span<std::byte> out) 
     z_um += axis_.true_position_um(request.start + (request.end - request.start) * i / (kPositionSamples - 1)) /
             kPositionSamples;
   }
-  renderer_.render(z_um, request, out);
+  renderer_->render(z_um, request, out);
 }
 
 }  // namespace fvd::sim

@@ -2,14 +2,21 @@
 
 /// The world that camera and drive share: a surface, optics, and the true position of the stage.
 
+#include <cstddef>
+#include <memory>
+#include <span>
+
 #include "core/image/image.hpp"
 #include "sim/axis/axis_model.hpp"
-#include "sim/world/defocus_renderer.hpp"
 #include "sim/world/frame_source.hpp"
+#include "sim/world/slice_renderer.hpp"
 #include "sim/world/surface.hpp"
 #include "sim/world/world_parameters.hpp"
 
 namespace fvd::sim {
+
+/// The renderer that the kind of surface wants. Throws what make_surface throws.
+[[nodiscard]] std::unique_ptr<SliceRenderer> make_renderer(const WorldParameters& world, const Surface& surface);
 
 /// context: as a FrameSource.
 class SimWorld final : public FrameSource {
@@ -23,12 +30,12 @@ class SimWorld final : public FrameSource {
   void render(const ExposureRequest& request, std::span<std::byte> out) override;
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
-  [[nodiscard]] std::size_t memory_bytes() const { return renderer_.memory_bytes(); }
+  [[nodiscard]] std::size_t memory_bytes() const { return renderer_->memory_bytes(); }
 
  private:
   const AxisModel& axis_;
   Surface surface_;
-  DefocusRenderer renderer_;
+  std::unique_ptr<SliceRenderer> renderer_;
 };
 
 }  // namespace fvd::sim

@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "sim/world/gsf_reader.hpp"
+#include "sim/world/layered_renderer.hpp"
 
 namespace fvd::sim {
 
@@ -110,6 +111,33 @@ Surface rough(const WorldParameters& world) {
   return surface;
 }
 
+/// The near plane where it covers whole pixels. Each side but its margin is a region; poor where it has no texture.
+Surface layered(const WorldParameters& world) {
+  Surface surface = blank(world.width_px, world.height_px);
+  const auto is_near = [&](int x, int y) { return near_coverage(world, x, y) >= 1.0; };
+  const auto inside = [&](int x, int y) {  // no edge within the margin, which is short against a radius
+    for (int v = -kRegionMargin_px; v <= kRegionMargin_px; v += kRegionMargin_px) {
+      for (int u = -kRegionMargin_px; u <= kRegionMargin_px; u += kRegionMargin_px) {
+        if (is_near(x + u, y + v) != is_near(x, y)) return false;
+      }
+    }
+    return true;
+  };
+  mark_surface(surface);
+  for (int y = 0; y < world.height_px; ++y) {
+    for (int x = 0; x < world.width_px; ++x) {
+      const bool near = is_near(x, y);
+      surface.height_um.at(x, y) = static_cast<float>(world.base_um + (near ? world.layer_gap_um : 0.0));
+      const bool poor = (near ? world.near : world.far).contrast == 0.0;
+      surface.poor.at(x, y) = poor ? 1 : 0;
+      std::uint8_t& region = surface.region.at(x, y);
+      if (region == static_cast<std::uint8_t>(Region::kNone)) continue;
+      region = static_cast<std::uint8_t>(!inside(x, y) ? Region::kNone : poor ? Region::kPoor : Region::kSurface);
+    }
+  }
+  return surface;
+}
+
 Surface from_file(const WorldParameters& world) {
   Surface surface;
   surface.height_um = read_gsf_um(world.height_map_file);
@@ -122,6 +150,7 @@ Surface from_file(const WorldParameters& world) {
 
 Surface make_surface(const WorldParameters& world) {
   if (world.surface == SurfaceKind::kChapter) return chapter(world);
+  if (world.surface == SurfaceKind::kLayered) return layered(world);
   Surface surface;
   switch (world.surface) {
     case SurfaceKind::kTilted:
@@ -137,6 +166,7 @@ Surface make_surface(const WorldParameters& world) {
       surface = from_file(world);
       break;
     case SurfaceKind::kChapter:
+    case SurfaceKind::kLayered:
       break;
   }
   mark_surface(surface);

@@ -24,7 +24,7 @@ inline constexpr int kRegionMargin_px = 12;
 
 struct Surface {
   Plane<float> height_um;      ///< [height][width]
-  Plane<std::uint8_t> poor;    ///< 1 inside the texture-poor patch
+  Plane<std::uint8_t> poor;    ///< 1 where there is hardly any texture, or none
   Plane<std::uint8_t> region;  ///< Region of each pixel
 };
 

@@ -10,7 +10,7 @@ namespace fvd::sim {
 
 namespace {
 
-const std::vector<std::string> kSurfaces{"chapter", "tilted", "sphere", "rough", "height_map"};
+const std::vector<std::string> kSurfaces{"chapter", "tilted", "sphere", "rough", "height_map", "layered"};
 const std::vector<std::string> kTextures{"granite", "fine", "white"};
 const std::vector<std::string> kFeedbacks{"motor_encoder", "linear_scale"};
 
@@ -23,13 +23,19 @@ void describe(WorldParameters& world, Fields& fields) {
   fields.integer("height_px", world.height_px, {16, 8192}, "sensor height");
   fields.number("tilt_x_um_per_px", world.tilt_x_um_per_px, {-10.0, 10.0}, "tilted: rise per pixel");
   fields.number("tilt_y_um_per_px", world.tilt_y_um_per_px, {-10.0, 10.0}, "tilted: rise per pixel");
-  fields.number("base_um", world.base_um, {-10000.0, 10000.0}, "height of the centre, the plane, or the mean");
+  fields.number("base_um", world.base_um, {-10000.0, 10000.0}, "height of the centre, the (far) plane, or the mean");
   fields.number("radius_um", world.radius_um, positive(1e6), "sphere: radius");
   fields.number("cap_height_um", world.cap_height_um, positive(1e6), "sphere: apex above the plane");
   fields.number("pixel_pitch_um", world.pixel_pitch_um, positive(1000.0), "sphere: lateral scale");
   fields.number("sq_um", world.sq_um, {0.0, 1000.0}, "rough: root mean square height");
   fields.number("correlation_px", world.correlation_px, positive(1000.0), "rough: smoothing");
   fields.text("height_map_file", file, 4096, "height_map: a GSF file");
+  fields.number("layer_gap_um", world.layer_gap_um, positive(10000.0), "layered: from the far plane to the near one");
+  fields.number("edge_radius_px", world.edge_radius_px, {0.0, 8192.0}, "layered: of the near disc; 0: the left half");
+  fields.number("near_grey", world.near.grey, {0.0, 255.0}, "layered: mean of the near plane in 8-bit grey levels");
+  fields.number("near_contrast", world.near.contrast, {0.0, 31.0}, "layered: standard deviation of its texture");
+  fields.number("far_grey", world.far.grey, {0.0, 255.0}, "layered: mean of the far plane in 8-bit grey levels");
+  fields.number("far_contrast", world.far.contrast, {0.0, 31.0}, "layered: standard deviation of its texture");
   fields.number("defocus_px_per_um", world.defocus_px_per_um, positive(10.0), "sigma of the blur per um of defocus");
   fields.number("readout_noise", world.readout_noise, {0.0, 50.0}, "standard deviation in 8-bit grey levels");
   std::string texture = kTextures[static_cast<std::size_t>(world.texture)];

@@ -52,4 +52,30 @@ done
 status=0
 "$fvd_sim" run --stage-pty "$work/line" --line-timing 5,0,0 >"$work/log" 2>&1 || status=$?
 [ "$status" -eq 78 ] || fail "status $status for a line that cannot be"
+
+# A rendered stack, and what cannot be rendered.
+worlds=$(dirname "${BASH_SOURCE[0]}")/../../sim/worlds
+"$fvd_sim" render "$worlds/layered_equal.json" "$work/stack" --start-um 300 --step-um 30 --slices 3 --seed 4 --format pgm >"$work/log"
+grep -q '3 slices from 300 to 360 um' "$work/log" || fail "it does not say what it rendered"
+[ "$(tail -n 3 "$work/stack/z.txt" | tr '\n' ' ')" = "300 330 360 " ] || fail "z.txt"
+for file in slice_0000.pgm slice_0002.pgm truth/truth.gsf truth/regions.png; do
+  [ -s "$work/stack/$file" ] || fail "no $file"
+done
+# refused STATUS WORD ARGUMENT...
+refused() {
+  local expected=$1 word=$2 status=0
+  shift 2
+  "$fvd_sim" render "$@" >"$work/log" 2>&1 || status=$?
+  [ "$status" -eq "$expected" ] || fail "status $status for render $*"
+  grep -q -- "$word" "$work/log" || fail "render $* does not say $word"
+}
+refused 65 'not empty' "$worlds/layered_equal.json" "$work/stack"
+refused 64 absent.json "$work/absent.json" "$work/new"
+refused 64 --format "$worlds/layered_equal.json" "$work/new" --format jpg
+refused 64 --slices "$worlds/layered_equal.json" "$work/new" --slices many
+refused 65 step "$worlds/layered_equal.json" "$work/new" --step-um 0
+refused 64 folder "$worlds/layered_equal.json"
+echo '{"surface": "layered", "near_gray": 3}' >"$work/world.json"
+refused 78 near_grey "$work/world.json" "$work/new"
+[ ! -e "$work/new" ] || fail "a folder is left of what was refused"
 echo passed
