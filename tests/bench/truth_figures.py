@@ -1,6 +1,7 @@
 """Judges what fvdctl makes of the scenes of bench_truth and of the stacks with truth. Called by run_truth.sh.
 
-Usage: truth_figures.py SCENES FVDCTL DATA. The last line is one JSON object; a figure that cannot be measured is null.
+Usage: truth_figures.py SCENES FVDCTL DATA [OTHERS..]. The last line is one JSON object; a figure that cannot be measured is null.
+OTHERS: files whose last line is a JSON object with figures of other benchmarks.
 """
 
 import json
@@ -17,15 +18,15 @@ STEP_UM = 10.0
 BORDER_PX = 8
 # Every test that makes holes, off; what a program does not know is left out.
 UNMASKED = {"--min-prominence": 0, "--min-significance": 0, "--broad-curve": 0, "--narrow-curve": 0, "--max-sigma": 0}
-SMOOTH = {"--window": 5, "--smooth": 4}
+SMOOTH = {"--window": 5, "--smooth": 4.5}
 # Stack, slices for a unit of its truth, truth at its first slice.
 REFERENCES = {"cou1": (1.0, 0.0), "cou6": (1.0, 0.0), "cone31": (1 / 0.002, 0.09 / 0.002)}
 SUSPECT_KINDS = ("dark", "half", "constant", "repeated", "exchanged", "vibrated")
-# Figures of other places, null here. Put each where it is measured: live scans into Judge.live(), speeds and tests into
-# Judge.elsewhere().
-LIVE = ("live_dark_step_um", "retaken")
+# Figures of the other benchmarks; the larger where both measure one.
 ELSEWHERE = (
-    "suggest_worst_over_default",
+    "live_dark_step_um",
+    "retaken",
+    "auto_bin_over_best",
     "names_right",
     "silently_dropped",
     "cases_right",
@@ -272,17 +273,37 @@ class Judge:
             (work / "z.txt").write_text("".join(f"{k}\n" for k in range(len(files))))
             self.count_false("real-usb15", self.program.process(work))
 
-    def live(self):
-        """Scans of a simulated microscope by the daemon; auto_bin_over_best becomes the larger of recorded and live."""
-        for key in LIVE:
-            self.figures.setdefault(key, None)
+    def suggested(self, name, folder, truth, where=None):
+        """RMS with the suggested settings over that with the defaults."""
+        settings = self.program.suggest(folder)
+        if settings is None:
+            return
+        options = {"--distance": settings["distance_px"], "--window": settings["window_px"]}
+        ratio = over(*(Errors(self.program.process(folder, chosen), truth, where).rms for chosen in (options, {})))
+        say(f"  {name:12} {settings}  {ratio:.3f}")
+        self.figures["suggest_worst_over_default"] = max(ratio, self.figures.get("suggest_worst_over_default", 0.0))
 
-    def elsewhere(self):
-        """What the speed benchmarks, the tests and the cases measure."""
+    def suggestions(self):
+        say("Suggested settings: RMS over that of the defaults")
+        for scene in ("chapter", "chapter_pale"):
+            regions = self.regions(scene)
+            self.suggested(scene, self.scenes / scene, self.truth(scene), (regions >= 1) & (regions <= 4))
+        with tempfile.TemporaryDirectory() as folder:
+            for name in REFERENCES:
+                if (self.data / f"generated-{name}").exists():
+                    truth, stack = self.reference(name, pathlib.Path(folder))
+                    self.suggested(name, stack, truth)
+
+    def elsewhere(self, files):
+        for file in files:
+            lines = pathlib.Path(file).read_text().strip().splitlines()
+            for key, value in json.loads(lines[-1] if lines else "{}").items():
+                known = self.figures.get(key)
+                self.figures[key] = value if known is None else max(known, value)
         for key in ELSEWHERE:
             self.figures.setdefault(key, None)
 
-    def run(self):
+    def run(self, others):
         self.references()
         self.chapters()
         self.layered()
@@ -296,15 +317,15 @@ class Judge:
         say("Predicted over observed:", ", ".join(f"{name} {ratio:.2f}" for name, ratio in self.ratios.items()))
         self.figures["sigma_ratio_min"] = min(self.ratios.values())
         self.figures["sigma_ratio_max"] = max(self.ratios.values())
-        self.live()
-        self.elsewhere()
+        self.suggestions()
+        self.elsewhere(others)
         return {key: round(value, 4) if isinstance(value, float) else value for key, value in self.figures.items()}
 
 
 def main():
     with tempfile.TemporaryDirectory() as work:
         judge = Judge(pathlib.Path(sys.argv[1]), Program(sys.argv[2], work), pathlib.Path(sys.argv[3]))
-        figures = judge.run()
+        figures = judge.run(sys.argv[4:])
     print(json.dumps(figures))
 
 

@@ -33,6 +33,12 @@ class Program:
         file.write_text(json.dumps({"format": 2, "acquire": {"scan": scan}, "reconstruct": {"focus": focus}}))
         return ["--recipe", str(file)]
 
+    def suggest(self, folder):
+        """The settings that fvdctl suggests for a folder; None if it takes no folder, or refuses this one."""
+        run = subprocess.run([self.fvdctl, "suggest", str(folder)], capture_output=True, text=True)
+        found = re.search(r'"focus": (\{.*?\})', run.stdout)
+        return json.loads(found.group(1)) if run.returncode == 0 and found else None
+
     def process(self, folder, options=(), may_lose=False):
         """options: a dictionary of option to value. may_lose: slices may be left out, if the program can do that."""
         self.runs += 1
