@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/base/units.hpp"
+#include "core/focus/fit/curve_limits.hpp"
 #include "core/focus/fit/curve_misfit.hpp"
 #include "core/focus/fit/curve_shape.hpp"
 #include "core/focus/fit/curve_tuple.hpp"
@@ -164,8 +167,12 @@ class MapFinish {
         width_(map.height_m.width()),
         height_(map.height_m.height()) {}
 
-  /// Points spread over the image, in the order of rows.
-  std::vector<CurveTuple> look_around(const RowFit& fit) {
+  /// The curves of points spread over the image, in the order of rows.
+  struct Spots {
+    std::vector<CurveTuple> tuples;
+    std::size_t looked_at = 0;  ///< points
+  };
+  Spots look_around(const RowFit& fit) {
     const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSubsetPoints)));
     const int rows = (height_ - every / 2 + every - 1) / every;
     const int bands = pool_.threads();
@@ -194,8 +201,9 @@ class MapFinish {
         }
       }
     });
-    std::vector<CurveTuple> all;
-    for (const auto& tuples : found) all.insert(all.end(), tuples.begin(), tuples.end());
+    Spots all;
+    all.looked_at = static_cast<std::size_t>(rows) * static_cast<std::size_t>(SpotRow(width_, every).width());
+    for (const auto& tuples : found) all.tuples.insert(all.tuples.end(), tuples.begin(), tuples.end());
     return all;
   }
 
@@ -228,6 +236,22 @@ class MapFinish {
     });
   }
 
+  /// Points with a larger standard error become holes; last, because the slope at a point is taken from its neighbours.
+  void drop_uncertain(double max_sigma_um) {
+    const auto most_m = static_cast<float>(max_sigma_um * kMetresPerMicrometer);
+    pool_.run(height_, [&](int y) {
+      float* const height_m = map_.height_m.row(y);
+      float* const sigma_m = map_.sigma_m.row(y);
+      MaskReasons* const mask = map_.mask.row(y);
+      for (int x = 0; x < width_; ++x) {
+        if (!(sigma_m[x] > most_m)) continue;
+        mask[x] |= mask_reason::kMaxSigma;
+        height_m[x] = std::numeric_limits<float>::quiet_NaN();
+        sigma_m[x] = std::numeric_limits<float>::quiet_NaN();
+      }
+    });
+  }
+
  private:
   [[nodiscard]] PeakTiles peak_tiles(int band) const {
     return {width_, height_, settings_.window_px + settings_.distance_px,
@@ -241,8 +265,8 @@ class MapFinish {
     const int reach = settings_.window_px / 2;
     const bool inside = reach > 0 && y >= reach && y < height_ - reach;
     focus_kernels().finish_sigma(map_.height_m.row(y), inside ? map_.height_m.row(y - reach) : nullptr,
-                                 inside ? map_.height_m.row(y + reach) : nullptr, reach,
-                                 centroid_offset_px(settings_), width_, map_.sigma_m.row(y));
+                                 inside ? map_.height_m.row(y + reach) : nullptr, reach, centroid_offset_px(settings_),
+                                 width_, map_.sigma_m.row(y));
   }
 
   const CurveSource& curves_;
@@ -259,18 +283,20 @@ class MapFinish {
 void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
                 PeakMethod method, const NoiseProbe& noise, WorkerPool& pool, HeightMap& map) {
   MapFinish finish(curves, settings, noise, pool, map);
-  const auto tuples = finish.look_around(RowFit(z_um, settings, map.texture_format, method));
+  const auto spots = finish.look_around(RowFit(z_um, settings, map.texture_format, method));
   std::vector<double> corrected = z_um;
   if (settings.stage_correction && method == PeakMethod::kFiveSample) {
-    map.stage = solve_stage_correction(tuples, z_um, pool);
+    map.stage = solve_stage_correction(spots.tuples, z_um, pool);
     for (std::size_t k = 0; k < map.stage.offsets_um.size(); ++k) corrected[k] += map.stage.offsets_um[k];
   } else {
     map.stage.reason = "not asked for";
   }
-  const CurveShape shape = curve_shape(tuples, corrected, pool);
-  const double misfit =
-      curve_misfit(tuples, corrected, shape.exponent) * (settings.bin_slices > 1 ? kBinsShare : 1.0);
-  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias, misfit));
+  const CurveShape shape = curve_shape(spots.tuples, corrected, pool);
+  ScanCurves curves_in_common{shape.bias, curve_misfit(spots.tuples, corrected, shape.exponent), {}};
+  if (settings.bin_slices > 1) curves_in_common.misfit *= kBinsShare;
+  curves_in_common.limits = curve_limits(spots.tuples, spots.looked_at, corrected, settings.tests);
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common));
+  if (settings.tests.max_sigma_um > 0.0) finish.drop_uncertain(settings.tests.max_sigma_um);
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;
 }

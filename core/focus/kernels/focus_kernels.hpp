@@ -49,7 +49,8 @@ struct alignas(32) HeightEntry {
   float u_left = 0.0F;
   float u_right = 0.0F;
   float u_right2 = 0.0F;
-  std::int32_t mask = 0;  ///< mask_reason bits that follow from the number alone
+  std::int32_t mask = 0;          ///< mask_reason bits that follow from the number alone
+  float least_neighbours = 0.0F;  ///< sum of both neighbours' shares of the peak below which a curve is too narrow
 };
 using HeightTable = std::span<const HeightEntry>;
 
@@ -68,7 +69,10 @@ struct FitParameters {
   float misfit;       ///< standard deviation of a sample beside its noise, as a share of the amplitude
   float code_unit;    ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
   bool root_code;
-  VertexBias bias;  ///< to be subtracted from the vertex
+  VertexBias bias;                  ///< to be subtracted from the vertex
+  float least_bend_per_um2 = 0.0F;  ///< curvature of G, see five_sample_fit.hpp, below which a curve is too broad
+  float least_shoulder = -1e30F;    ///< see curve_limits.hpp; below it a curve is too narrow
+  float most_neighbours = 0.0F;     ///< where both neighbours' shares add up to less than this
 };
 
 /// Output of the fits: rows of planes without padding; NaN in height and variance exactly where mask is not 0.
