@@ -16,7 +16,8 @@ inline constexpr MaskReasons kLowProminence = 1U << 0U;  ///< no texture: the fo
 inline constexpr MaskReasons kFirstSlice = 1U << 1U;     ///< sharpest at the first slice: the surface may lie beyond it
 inline constexpr MaskReasons kLastSlice = 1U << 2U;      ///< sharpest at the last slice: the surface may lie beyond it
 inline constexpr MaskReasons kNotBracketed = 1U << 3U;   ///< the peak's neighbours do not enclose a maximum
-inline constexpr MaskReasons kSaturated = 1U << 4U;      ///< a pixel at full scale inside the window at the peak
+inline constexpr MaskReasons kSaturated =
+    1U << 4U;  ///< too much of the window is at full scale, or more so beside the peak
 inline constexpr MaskReasons kInsignificant = 1U << 5U;  ///< the peak stands too little above the noise
 inline constexpr MaskReasons kEdgeBleeding = 1U << 6U;   ///< the peak is the blur of a far brighter edge, no surface
 inline constexpr MaskReasons kBroadCurve = 1U << 7U;  ///< the curve is far broader than the scan's: blur from elsewhere

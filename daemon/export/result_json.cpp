@@ -83,8 +83,10 @@ Json values(const Result& result) {
 }
 
 Json point_tests(const PointTests& tests) {
-  return {
-      {"broad_curve", tests.broad_curve}, {"narrow_curve", tests.narrow_curve}, {"max_sigma_um", tests.max_sigma_um}};
+  return {{"broad_curve", tests.broad_curve},
+          {"narrow_curve", tests.narrow_curve},
+          {"clipped_share", tests.clipped_share},
+          {"max_sigma_um", tests.max_sigma_um}};
 }
 
 Json focus(const Result::Focus& focus) {

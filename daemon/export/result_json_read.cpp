@@ -137,7 +137,7 @@ HoleCounts holes(const Node& node) {
 /// Of 0.1.0, which had none of these tests: all off.
 PointTests point_tests(const Node& node) {
   const auto limit = [&node](const char* key) { return node.has(key) ? node.at(key).number() : 0.0; };
-  return {limit("broad_curve"), limit("narrow_curve"), limit("max_sigma_um")};
+  return {limit("broad_curve"), limit("narrow_curve"), limit("clipped_share"), limit("max_sigma_um")};
 }
 
 Result::Focus focus(const Node& node) {
@@ -162,7 +162,7 @@ Result::Focus focus(const Node& node) {
   focus.settings.min_prominence = node.at("min_prominence").number();
   focus.settings.min_significance = node.at("min_significance").number();
   focus.settings.bin_slices = node.at("bin_slices").integer<int>();
-  focus.settings.tests = node.has("holes") ? point_tests(node.at("holes")) : PointTests{0.0, 0.0, 0.0};
+  focus.settings.tests = node.has("holes") ? point_tests(node.at("holes")) : PointTests{0.0, 0.0, 0.0, 0.0};
   focus.noise_grey = node.at("noise_grey").number();
   focus.curve_width_um = node.at("curve_width_um").optional_number();
   focus.peak = peak(node.at("peak"));

@@ -121,6 +121,10 @@ void describe_tests(PointTests& tests, Fields& fields) {
   fields.number(
       "narrow_curve", tests.narrow_curve, {0.0, 1.0},
       "width of a point's focus curve over the scan's median; below it the point is a hole; 0 = no such test");
+  fields.number(
+      "clipped_share", tests.clipped_share, {0.0, 1.0},
+      "share of the window's pixels at full scale at the peak; if more are, or noticeably more beside the peak "
+      "than at it, the point is a hole; 0 = no such test");
   fields.number("max_sigma_um", tests.max_sigma_um, {0.0, kMaxSigmaLimit_um},
                 "standard error of a height above which the point is a hole; 0 = no such test");
 }

@@ -121,7 +121,7 @@ class SpotRow {
  public:
   SpotRow(int row_width, int every) : every_(every), width_((row_width - every / 2 + every - 1) / every) {
     for (auto& field : fields_) field.resize(static_cast<std::size_t>(width_));
-    saturated_.resize(static_cast<std::size_t>(width_));
+    clipped_.resize(static_cast<std::size_t>(width_));
     noise_grey_.resize(static_cast<std::size_t>(width_));
   }
 
@@ -135,14 +135,14 @@ class SpotRow {
       for (std::size_t field = 0; field < from.size(); ++field) {
         fields_[field][static_cast<std::size_t>(i)] = from[field][x];
       }
-      saturated_[static_cast<std::size_t>(i)] = row.saturated[x];
+      clipped_[static_cast<std::size_t>(i)] = row.clipped[x];
       noise_grey_[static_cast<std::size_t>(i)] = noise_grey_row[x];
     }
   }
   [[nodiscard]] CurveRow curves() noexcept {
     auto& [peak, left, left2, right, right2, minimum, peak_index] = fields_;
     return {nullptr,      nullptr,       peak.data(),    left.data(),       left2.data(),
-            right.data(), right2.data(), minimum.data(), peak_index.data(), saturated_.data()};
+            right.data(), right2.data(), minimum.data(), peak_index.data(), clipped_.data()};
   }
   [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
 
@@ -150,7 +150,7 @@ class SpotRow {
   int every_;
   int width_;
   std::array<std::vector<std::uint16_t>, 7> fields_;
-  std::vector<std::uint8_t> saturated_;
+  std::vector<std::uint8_t> clipped_;
   std::vector<float> noise_grey_;
 };
 

@@ -107,7 +107,8 @@ unsigned RowFit::shape_reasons(const CurveRow& row, int x) const noexcept {
   const double bend = ((1.0 / std::sqrt(right) - 1.0) / u_right - (1.0 / std::sqrt(left) - 1.0) / u_left) /
                       (u_right - u_left);  // of G through three samples
   unsigned reasons = 0;
-  if (bend < curves_.limits.least_bend_per_um2 * scale_um * scale_um) reasons |= mask_reason::kBroadCurve;
+  const bool clipped = (row.clipped[x] & clipping::kPeakBits) != 0;  // that flattens a curve's top
+  if (!clipped && bend < curves_.limits.least_bend_per_um2 * scale_um * scale_um) reasons |= mask_reason::kBroadCurve;
   if (near < static_cast<double>(at.least_neighbours) || (near - far < curves_.limits.least_shoulder * (2.0 - near) &&
                                                           near < static_cast<double>(CurveLimits::kMostNeighbours))) {
     reasons |= mask_reason::kNarrowCurve;
@@ -128,7 +129,8 @@ void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* l
     if (peak - minimum < settings_.min_significance * static_cast<double>(noise[x]))
       mask |= mask_reason::kInsignificant;
     if (peak - minimum < static_cast<double>(least_amplitude[x])) mask |= mask_reason::kEdgeBleeding;
-    if (row.saturated[x] != 0) mask |= mask_reason::kSaturated;
+    const int clipped = row.clipped[x] & clipping::kPeakBits;
+    if (clipped == clipping::kNoPeak) mask |= mask_reason::kSaturated;
     std::optional<PeakPosition> position;
     if ((mask & (mask_reason::kFirstSlice | mask_reason::kLastSlice)) == 0) {
       position = fit_peak(method_,
@@ -142,6 +144,8 @@ void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* l
     out.height_m[x] = valid ? static_cast<float>(position->z_um * kMetresPerMicrometer) : NAN;
     const double sigma_m = valid ? position->sigma_um * kMetresPerMicrometer : std::nan("");
     out.variance_m2[x] = static_cast<float>(sigma_m * sigma_m);
+    if (clipped == clipping::kSome) out.variance_m2[x] *= clipping::kSomeVariance;
+    if (clipped == clipping::kMany) out.variance_m2[x] *= clipping::kManyVariance;
     out.prominence[x] = static_cast<float>(prominence);
     out.mask[x] = static_cast<MaskReasons>(mask);
   }

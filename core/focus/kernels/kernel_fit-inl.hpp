@@ -37,6 +37,7 @@ struct FitPixels {
   FitNeighbours u;
   FitFlags known;  // the mask before the fit
   FitFloats least_neighbours;
+  FitFlags clipped;   // what is known of the peak, see clipping
   FitFlags narrow;    // whether the neighbours are too low
   FitFloats inverse;  // of the amplitude
   FitNeighbours r;    // shares of the amplitude; after the sums to the power of 5
@@ -308,7 +309,8 @@ inline void judge(int count, const float* noise, const float* least, const FitPa
     const float scale_um = at.scale_um[x];
     const std::int32_t fitted = static_cast<std::int32_t>(known == 0) & at.peaked[x];
     const std::int32_t broad =
-        fitted & static_cast<std::int32_t>(bend < least_bend * (scale_um * scale_um) * (1.0F - 0.9F * bend));
+        fitted & static_cast<std::int32_t>(at.clipped[x] == 0) &  // clipping flattens a curve's top
+        static_cast<std::int32_t>(bend < least_bend * (scale_um * scale_um) * (1.0F - 0.9F * bend));
     at.mask[x] = known | (-flat & mask_reason::kLowProminence) | (-weak & mask_reason::kInsignificant) |
                  (-bled & mask_reason::kEdgeBleeding) | (-open & mask_reason::kNotBracketed) |
                  (-broad & mask_reason::kBroadCurve) | (-(at.narrow[x] & fitted) & mask_reason::kNarrowCurve);
@@ -349,13 +351,25 @@ inline void find_heights(int count, const float* noise, const FitParameters& par
   }
 }
 
-inline void mark_saturated(const std::uint8_t* saturated, int count, FitPixels& at) {
+/// Returns whether any window was clipped.
+inline bool mark_clipped(const std::uint8_t* state, int count, FitPixels& at) {
   std::uint8_t any = 0;
-  for (int x = 0; x < count; ++x) any = static_cast<std::uint8_t>(any | saturated[x]);
-  if (any == 0) return;  // nearly always
+  for (int x = 0; x < count; ++x) any = static_cast<std::uint8_t>(any | (state[x] & clipping::kPeakBits));
+  for (int x = 0; x < count; ++x) at.clipped[x] = 0;
+  if (any == 0) return false;  // nearly always
   for (int x = 0; x < count; ++x) {
-    const std::int32_t flag = saturated[x];
-    at.known[x] |= -flag & mask_reason::kSaturated;
+    const int peak = state[x] & clipping::kPeakBits;
+    const std::int32_t lost = peak == clipping::kNoPeak ? 1 : 0;
+    at.known[x] |= -lost & mask_reason::kSaturated;
+    at.clipped[x] = peak;
+  }
+  return true;
+}
+
+inline void widen_variance(int count, const FitPixels& at, float* variance_m2) {
+  for (int x = 0; x < count; ++x) {
+    const float many = at.clipped[x] == clipping::kMany ? clipping::kManyVariance : clipping::kSomeVariance;
+    variance_m2[x] *= at.clipped[x] == 0 ? 1.0F : many;
   }
 }
 
@@ -365,7 +379,7 @@ inline __attribute__((always_inline)) void fetch_below(const CurveRow& row, cons
        {row.peak, row.left, row.left2, row.right, row.right2, row.minimum, row.peak_index}) {
     fetch<2 * kFitPixels>(field + first, row.pitch_bytes, false);
   }
-  fetch<kFitPixels>(row.saturated + first, row.pitch_bytes, false);
+  fetch<kFitPixels>(row.clipped + first, row.pitch_bytes, false);
   for (const float* plane : {out.height_m, out.variance_m2, out.prominence}) {
     fetch<4 * kFitPixels>(plane + first, std::ptrdiff_t{4} * width, true);
   }
@@ -384,12 +398,13 @@ void fit_five(const CurveRow& row, HeightTable table, const float* noise, const 
     }
     fetch_below(row, out, width, first);
     look_up(row.peak_index + first, table, count, at);
-    mark_saturated(row.saturated + first, count, at);
+    const bool clipped = mark_clipped(row.clipped + first, count, at);
     find_shares(count, parameters, at);
     add_samples(count, at);
     solve(count, at);
     judge(count, noise + first, least_amplitude + first, parameters, at, out.prominence + first);
     find_heights(count, noise + first, parameters, at, out.height_m + first, out.variance_m2 + first);
+    if (clipped) widen_variance(count, at, out.variance_m2 + first);
     auto* const mask = out.mask + first;
     for (int x = 0; x < count; ++x) mask[x] = static_cast<MaskReasons>(at.mask[x]);
   }

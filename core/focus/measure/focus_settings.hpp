@@ -60,8 +60,10 @@ inline constexpr double kMaxSigmaLimit_um = 1e6;
 struct PointTests {
   double broad_curve = 0.2;  ///< the bend of a point's curve over the scan's median, 0..1; below it a point is a hole
   double narrow_curve =
-      0.55;                   ///< the width of a point's curve over the scan's median, 0..1; below it a point is a hole
-  double max_sigma_um = 0.0;  ///< standard error of a height above which a point is a hole, >= 0
+      0.55;  ///< the width of a point's curve over the scan's median, 0..1; below it a point is a hole
+  double clipped_share = 0.7;  ///< of the window's pixels at the peak, 0..1; if more are at full scale, or noticeably
+                               ///< more beside the peak than at it, a point is a hole
+  double max_sigma_um = 0.0;   ///< standard error of a height above which a point is a hole, >= 0
   bool operator==(const PointTests&) const = default;
 };
 
