@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <optional>
 
 #include "core/base/error.hpp"
 #include "core/focus/fit/map_finish.hpp"
@@ -27,15 +28,25 @@ Plane<std::uint16_t> widened(const ImageView& slice) {
   return pixels;
 }
 
-bool window_saturated(const Plane<std::uint16_t>& pixels, int x, int y, int radius, int level) {
-  const WindowReach columns(x, radius, pixels.width());
-  const WindowReach rows(y, radius, pixels.height());
+std::uint8_t clipped_level(const Plane<std::uint16_t>& pixels, int x, int y, const FocusSettings& settings, int full) {
+  const ClippedLevels levels(settings);
+  if (!levels.looked_for()) return 0;
+  const WindowReach columns(x, settings.window_px / 2, pixels.width());
+  const WindowReach rows(y, settings.window_px / 2, pixels.height());
+  int count = 0;
   for (int v = rows.first; v <= rows.last; ++v) {
-    for (int u = columns.first; u <= columns.last; ++u) {
-      if (pixels.at(u, v) >= level) return true;
-    }
+    for (int u = columns.first; u <= columns.last; ++u) count += pixels.at(u, v) >= full ? 1 : 0;
   }
-  return false;
+  return levels.of(count);
+}
+
+/// What the levels of the peak's sample and of those on both sides say of it; a side that is not there is nullopt.
+std::uint8_t clipped_peak(std::optional<int> before, int at, std::optional<int> after) {
+  const int left = before.value_or(at) - at;
+  const int right = after.value_or(at) - at;
+  if (at == clipping::kTooMuch || left > 1 || right > 1 || left * right < 0) return clipping::kNoPeak;
+  if (at >= clipping::kManyLevel) return clipping::kMany;
+  return at > 0 ? clipping::kSome : std::uint8_t{0};
 }
 
 /// The codes of each bin's slices, shifted to fit and summed; an incomplete last bin raised to a full one.
@@ -55,10 +66,10 @@ std::vector<std::uint16_t> binned(const std::vector<std::uint16_t>& codes, std::
 
 /// A row's curves in their condensed form.
 struct CondensedRow {
-  explicit CondensedRow(int width) : saturated(static_cast<std::size_t>(width)) {
+  explicit CondensedRow(int width) : clipped(static_cast<std::size_t>(width)) {
     for (auto& column : columns) column.resize(static_cast<std::size_t>(width));
   }
-  void set(int x, const std::vector<std::uint16_t>& samples, std::size_t peak_at, bool window_saturated) {
+  void set(int x, const std::vector<std::uint16_t>& samples, std::size_t peak_at, std::uint8_t clipped_there) {
     const auto at = [&](std::ptrdiff_t offset) -> std::uint16_t {
       const auto i = static_cast<std::ptrdiff_t>(peak_at) + offset;
       return i < 0 || i >= static_cast<std::ptrdiff_t>(samples.size()) ? std::uint16_t{0}
@@ -74,14 +85,14 @@ struct CondensedRow {
                                               *std::min_element(samples.begin(), samples.end()),
                                               static_cast<std::uint16_t>(peak_at)};
     for (std::size_t i = 0; i < values.size(); ++i) columns[i][static_cast<std::size_t>(x)] = values[i];
-    saturated[static_cast<std::size_t>(x)] = window_saturated ? 1 : 0;
+    clipped[static_cast<std::size_t>(x)] = clipped_there;
   }
   [[nodiscard]] CurveRow row() {
     return {columns[0].data(), columns[1].data(), columns[2].data(), columns[3].data(), columns[4].data(),
-            columns[5].data(), columns[6].data(), columns[7].data(), columns[8].data(), saturated.data()};
+            columns[5].data(), columns[6].data(), columns[7].data(), columns[8].data(), clipped.data()};
   }
   std::array<std::vector<std::uint16_t>, 9> columns;
-  std::vector<std::uint8_t> saturated;
+  std::vector<std::uint8_t> clipped;
 };
 
 }  // namespace
@@ -118,11 +129,15 @@ HeightMap SimpleFocusStack::finish(PeakMethod method) const {
       const auto peak = static_cast<std::size_t>(std::max_element(samples.begin(), samples.end()) - samples.begin());
       const std::size_t first = peak * bin;
       const std::size_t end = std::min(first + bin, curve.size());
-      bool saturated = false;
-      for (std::size_t k = first; k < end; ++k) {
-        saturated = saturated || window_saturated(pixels_[k], x, y, settings_.window_px / 2, max_grey_level(format_));
-      }
-      condensed.set(x, samples, peak, saturated);
+      const auto level = [&](std::size_t sample) -> std::optional<int> {  // the highest of its slices
+        if (sample >= samples.size()) return std::nullopt;
+        int highest = 0;
+        for (std::size_t k = sample * bin; k < std::min((sample + 1) * bin, curve.size()); ++k) {
+          highest = std::max<int>(highest, clipped_level(pixels_[k], x, y, settings_, max_grey_level(format_)));
+        }
+        return highest;
+      };
+      condensed.set(x, samples, peak, clipped_peak(level(peak - 1), level(peak).value(), level(peak + 1)));
       // The middle slice of the bin, or the first where the bin ends before its middle.
       const std::size_t middle = first + (bin - 1) / 2;
       if (texture != nullptr) texture[x] = pixels_[middle < end ? middle : first].at(x, y);

@@ -55,7 +55,7 @@ class TypedStack {
         for (std::size_t k = 0; k < slices.size(); ++k) {
           auto& scanner = band.scanners[k];
           scanner.next();
-          samples[k] = {scanner.codes(), scanner.saturated(), slices[k].image.as<Pixel>().row(y)};
+          samples[k] = {scanner.codes(), scanner.clipped(), slices[k].image.as<Pixel>().row(y)};
         }
         band.binner.add(row, std::span(samples).first(slices.size()), index);
         colour_.add_row(y, row.curve.peak_index, slices, index);

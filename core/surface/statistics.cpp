@@ -49,6 +49,11 @@ void count_reasons(MaskReasons reasons, std::size_t points, HoleCounts& holes) {
   if ((reasons & mask_reason::kSaturated) != 0) holes.saturated += points;
   if ((reasons & mask_reason::kInsignificant) != 0) holes.insignificant += points;
   if ((reasons & mask_reason::kEdgeBleeding) != 0) holes.edge_bleeding += points;
+  if ((reasons & mask_reason::kBroadCurve) != 0) holes.broad_curve += points;
+  if ((reasons & mask_reason::kNarrowCurve) != 0) holes.narrow_curve += points;
+  if ((reasons & mask_reason::kSecondPeak) != 0) holes.second_peak += points;
+  if ((reasons & mask_reason::kEdgeBand) != 0) holes.edge_band += points;
+  if ((reasons & mask_reason::kMaxSigma) != 0) holes.max_sigma += points;
 }
 
 }  // namespace

@@ -30,6 +30,11 @@ struct HoleCounts {
   std::size_t saturated = 0;
   std::size_t insignificant = 0;
   std::size_t edge_bleeding = 0;
+  std::size_t broad_curve = 0;
+  std::size_t narrow_curve = 0;
+  std::size_t second_peak = 0;
+  std::size_t edge_band = 0;
+  std::size_t max_sigma = 0;
   bool operator==(const HoleCounts&) const = default;
 };
 

@@ -80,6 +80,10 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   overrides.set("--distance", arguments.distance_px, recipe.focus.distance_px);
   overrides.set("--min-prominence", arguments.min_prominence, recipe.focus.min_prominence);
   overrides.set("--min-significance", arguments.min_significance, recipe.focus.min_significance);
+  overrides.set("--broad-curve", arguments.broad_curve, recipe.focus.tests.broad_curve);
+  overrides.set("--narrow-curve", arguments.narrow_curve, recipe.focus.tests.narrow_curve);
+  overrides.set("--clipped-share", arguments.clipped_share, recipe.focus.tests.clipped_share);
+  overrides.set("--max-sigma", arguments.max_sigma_um, recipe.focus.tests.max_sigma_um);
   overrides.set("--bin", arguments.bin_slices, recipe.bin_slices);
   overrides.set("--peak", named<PeakMethod>(arguments.peak, peak_method_from_name), recipe.peak);
   overrides.set("--pixel-pitch-um", arguments.pixel_pitch_um, recipe.pixel_pitch_x_um);
@@ -203,6 +207,14 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                      "points with a flatter focus curve become holes, 0..1, default 0.5");
   command.add_option("--min-significance", a.min_significance,
                      "points whose curve rises by less noise become holes, default 6");
+  command.add_option("--broad-curve", a.broad_curve,
+                     "points whose focus curve bends less than so many medians become holes, 0 = off, default 0.2");
+  command.add_option("--narrow-curve", a.narrow_curve,
+                     "points whose focus curve is less than so many medians wide become holes, 0 = off, default 0.55");
+  command.add_option("--clipped-share", a.clipped_share,
+                     "points with more of their window at full scale become holes, 0 = off, default 0.7");
+  command.add_option("--max-sigma", a.max_sigma_um,
+                     "points with a larger standard error in um become holes, 0 = off, the default");
   command.add_flag("--stage-correction", a.stage_correction,
                    "seek the stage's errors in the focus curves and correct heights by them");
   command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");

@@ -40,6 +40,10 @@ struct ProcessArguments {
   bool stage_correction = false;
   std::optional<double> min_significance;
   std::optional<double> min_prominence;
+  std::optional<double> broad_curve;
+  std::optional<double> narrow_curve;
+  std::optional<double> clipped_share;
+  std::optional<double> max_sigma_um;
   std::optional<std::string> peak;
   std::vector<std::string> extra_peaks;
   std::optional<double> pixel_pitch_um;

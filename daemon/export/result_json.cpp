@@ -67,7 +67,9 @@ Json holes(const HoleCounts& counts) {
   return {{"low_prominence", counts.low_prominence}, {"first_slice", counts.first_slice},
           {"last_slice", counts.last_slice},         {"not_bracketed", counts.not_bracketed},
           {"saturated", counts.saturated},           {"insignificant", counts.insignificant},
-          {"edge_bleeding", counts.edge_bleeding}};
+          {"edge_bleeding", counts.edge_bleeding},   {"broad_curve", counts.broad_curve},
+          {"narrow_curve", counts.narrow_curve},     {"second_peak", counts.second_peak},
+          {"edge_band", counts.edge_band},           {"max_sigma", counts.max_sigma}};
 }
 
 Json values(const Result& result) {
@@ -78,6 +80,13 @@ Json values(const Result& result) {
           {"valid_fraction", rounded(result.valid_fraction(), 6)},
           {"hole_points", holes(result.holes)},
           {"sigma_median_um", um_or_null(value_of(result, "sigma_median"))}};
+}
+
+Json point_tests(const PointTests& tests) {
+  return {{"broad_curve", tests.broad_curve},
+          {"narrow_curve", tests.narrow_curve},
+          {"clipped_share", tests.clipped_share},
+          {"max_sigma_um", tests.max_sigma_um}};
 }
 
 Json focus(const Result::Focus& focus) {
@@ -98,6 +107,7 @@ Json focus(const Result::Focus& focus) {
   json["min_significance"] = focus.settings.min_significance;
   json["bin_slices"] = focus.settings.bin_slices;
   json["bins_by"] = bin_choice_name(focus.bins_by);
+  json["holes"] = point_tests(focus.settings.tests);
   json["noise_grey"] = rounded(focus.noise_grey, 3);
   json["curve_width_um"] = um_or_null(focus.curve_width_um);
   json["peak"] = peak_method_name(focus.peak);

@@ -127,8 +127,17 @@ MeasuredValue measurement(const std::string& name, const Node& node) {
 
 HoleCounts holes(const Node& node) {
   const auto count = [&node](const char* key) { return node.at(key).integer<std::size_t>(); };
-  return {count("low_prominence"), count("first_slice"),   count("last_slice"),   count("not_bracketed"),
-          count("saturated"),      count("insignificant"), count("edge_bleeding")};
+  // Results of 0.1.0 know the first seven alone.
+  const auto later = [&node, &count](const char* key) { return node.has(key) ? count(key) : 0; };
+  return {count("low_prominence"), count("first_slice"),   count("last_slice"),    count("not_bracketed"),
+          count("saturated"),      count("insignificant"), count("edge_bleeding"), later("broad_curve"),
+          later("narrow_curve"),   later("second_peak"),   later("edge_band"),     later("max_sigma")};
+}
+
+/// Of 0.1.0, which had none of these tests: all off.
+PointTests point_tests(const Node& node) {
+  const auto limit = [&node](const char* key) { return node.has(key) ? node.at(key).number() : 0.0; };
+  return {limit("broad_curve"), limit("narrow_curve"), limit("clipped_share"), limit("max_sigma_um")};
 }
 
 Result::Focus focus(const Node& node) {
@@ -156,6 +165,7 @@ Result::Focus focus(const Node& node) {
   // Of before 0.3.0, when the recipe alone chose.
   focus.bins_by = node.has("bins_by") ? node.at("bins_by").named(bin_choice_from_name, "the name of a choice of bins")
                                       : BinChoice::kRecipe;
+  focus.settings.tests = node.has("holes") ? point_tests(node.at("holes")) : PointTests{0.0, 0.0, 0.0, 0.0};
   focus.noise_grey = node.at("noise_grey").number();
   focus.curve_width_um = node.at("curve_width_um").optional_number();
   focus.peak = peak(node.at("peak"));

@@ -115,6 +115,20 @@ void describe_focus(Recipe& recipe, Fields& fields) {
                  "seek the stage's errors in the focus curves and correct heights by them where the surface lets it");
 }
 
+void describe_tests(PointTests& tests, Fields& fields) {
+  fields.number("broad_curve", tests.broad_curve, {0.0, 1.0},
+                "bend of a point's focus curve over the scan's median; below it the point is a hole; 0 = no such test");
+  fields.number(
+      "narrow_curve", tests.narrow_curve, {0.0, 1.0},
+      "width of a point's focus curve over the scan's median; below it the point is a hole; 0 = no such test");
+  fields.number(
+      "clipped_share", tests.clipped_share, {0.0, 1.0},
+      "share of the window's pixels at full scale at the peak; if more are, or noticeably more beside the peak "
+      "than at it, the point is a hole; 0 = no such test");
+  fields.number("max_sigma_um", tests.max_sigma_um, {0.0, kMaxSigmaLimit_um},
+                "standard error of a height above which the point is a hole; 0 = no such test");
+}
+
 void describe_lateral(Recipe& recipe, Fields& fields) {
   fields.number("pixel_pitch_x_um", recipe.pixel_pitch_x_um, positive(1e5), "distance of columns on the object");
   fields.number("pixel_pitch_y_um", recipe.pixel_pitch_y_um, positive(1e5), "distance of rows on the object");
@@ -132,6 +146,7 @@ void describe_acquisition(Recipe& recipe, Fields& fields) {
 
 void describe_heights(Recipe& recipe, Fields& fields) {
   fields.group("focus", "from slices to heights", [&](Fields& in) { describe_focus(recipe, in); });
+  fields.group("holes", "which points must be holes", [&](Fields& in) { describe_tests(recipe.focus.tests, in); });
   fields.group("lateral", "scale on the object", [&](Fields& in) { describe_lateral(recipe, in); });
 }
 

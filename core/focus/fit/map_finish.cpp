@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/base/units.hpp"
+#include "core/focus/fit/curve_limits.hpp"
 #include "core/focus/fit/curve_misfit.hpp"
 #include "core/focus/fit/curve_shape.hpp"
 #include "core/focus/fit/curve_tuple.hpp"
@@ -122,7 +125,7 @@ class SpotRow {
  public:
   SpotRow(int row_width, int every) : every_(every), width_((row_width - every / 2 + every - 1) / every) {
     for (auto& field : fields_) field.resize(static_cast<std::size_t>(width_));
-    saturated_.resize(static_cast<std::size_t>(width_));
+    clipped_.resize(static_cast<std::size_t>(width_));
     noise_grey_.resize(static_cast<std::size_t>(width_));
   }
 
@@ -136,14 +139,14 @@ class SpotRow {
       for (std::size_t field = 0; field < from.size(); ++field) {
         fields_[field][static_cast<std::size_t>(i)] = from[field][x];
       }
-      saturated_[static_cast<std::size_t>(i)] = row.saturated[x];
+      clipped_[static_cast<std::size_t>(i)] = row.clipped[x];
       noise_grey_[static_cast<std::size_t>(i)] = noise_grey_row[x];
     }
   }
   [[nodiscard]] CurveRow curves() noexcept {
     auto& [peak, left, left2, right, right2, minimum, peak_index] = fields_;
     return {nullptr,      nullptr,       peak.data(),    left.data(),       left2.data(),
-            right.data(), right2.data(), minimum.data(), peak_index.data(), saturated_.data()};
+            right.data(), right2.data(), minimum.data(), peak_index.data(), clipped_.data()};
   }
   [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
 
@@ -151,7 +154,7 @@ class SpotRow {
   int every_;
   int width_;
   std::array<std::vector<std::uint16_t>, 7> fields_;
-  std::vector<std::uint8_t> saturated_;
+  std::vector<std::uint8_t> clipped_;
   std::vector<float> noise_grey_;
 };
 
@@ -168,8 +171,12 @@ class MapFinish {
         width_(map.height_m.width()),
         height_(map.height_m.height()) {}
 
-  /// Points spread over the image, in the order of rows.
-  std::vector<CurveTuple> look_around(const RowFit& fit) {
+  /// The curves of points spread over the image, in the order of rows.
+  struct Spots {
+    std::vector<CurveTuple> tuples;
+    std::size_t looked_at = 0;  ///< points
+  };
+  Spots look_around(const RowFit& fit) {
     const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(width_) * height_ / kSubsetPoints)));
     const int rows = (height_ - every / 2 + every - 1) / every;
     const int bands = pool_.threads();
@@ -198,8 +205,9 @@ class MapFinish {
         }
       }
     });
-    std::vector<CurveTuple> all;
-    for (const auto& tuples : found) all.insert(all.end(), tuples.begin(), tuples.end());
+    Spots all;
+    all.looked_at = static_cast<std::size_t>(rows) * static_cast<std::size_t>(SpotRow(width_, every).width());
+    for (const auto& tuples : found) all.tuples.insert(all.tuples.end(), tuples.begin(), tuples.end());
     return all;
   }
 
@@ -228,6 +236,22 @@ class MapFinish {
       const int end = height_ * (band + 1) / bands;
       for (int y = first; y < end; ++y) {
         if (y - reach < first || y + reach >= end) finish_sigma(y);
+      }
+    });
+  }
+
+  /// Points with a larger standard error become holes; last, because the slope at a point is taken from its neighbours.
+  void drop_uncertain(double max_sigma_um) {
+    const auto most_m = static_cast<float>(max_sigma_um * kMetresPerMicrometer);
+    pool_.run(height_, [&](int y) {
+      float* const height_m = map_.height_m.row(y);
+      float* const sigma_m = map_.sigma_m.row(y);
+      MaskReasons* const mask = map_.mask.row(y);
+      for (int x = 0; x < width_; ++x) {
+        if (!(sigma_m[x] > most_m)) continue;
+        mask[x] |= mask_reason::kMaxSigma;
+        height_m[x] = std::numeric_limits<float>::quiet_NaN();
+        sigma_m[x] = std::numeric_limits<float>::quiet_NaN();
       }
     });
   }
@@ -263,18 +287,20 @@ class MapFinish {
 void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
                 PeakMethod method, const NoiseProbe& noise, WorkerPool& pool, HeightMap& map) {
   MapFinish finish(curves, settings, noise, pool, map);
-  const auto tuples = finish.look_around(RowFit(z_um, settings, map.texture_format, method));
+  const auto spots = finish.look_around(RowFit(z_um, settings, map.texture_format, method));
   std::vector<double> corrected = z_um;
   if (settings.stage_correction && method == PeakMethod::kFiveSample) {
-    map.stage = solve_stage_correction(tuples, z_um, pool);
+    map.stage = solve_stage_correction(spots.tuples, z_um, pool);
     for (std::size_t k = 0; k < map.stage.offsets_um.size(); ++k) corrected[k] += map.stage.offsets_um[k];
   } else {
     map.stage.reason = "not asked for";
   }
-  const CurveShape shape = curve_shape(tuples, corrected, pool);
-  const double misfit =
-      curve_misfit(tuples, corrected, shape.exponent) * kVertexShare * (settings.bin_slices > 1 ? kBinsShare : 1.0);
-  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias, misfit));
+  const CurveShape shape = curve_shape(spots.tuples, corrected, pool);
+  ScanCurves curves_in_common{shape.bias, kVertexShare * curve_misfit(spots.tuples, corrected, shape.exponent), {}};
+  if (settings.bin_slices > 1) curves_in_common.misfit *= kBinsShare;
+  curves_in_common.limits = curve_limits(spots.tuples, spots.looked_at, corrected, settings.tests);
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common));
+  if (settings.tests.max_sigma_um > 0.0) finish.drop_uncertain(settings.tests.max_sigma_um);
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -38,15 +39,19 @@ double sample_noise(const FocusSettings& settings, double noise_grey, double sha
 }
 
 RowFit::RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
-               VertexBias bias, double misfit)
+               const ScanCurves& curves)
     : settings_(settings),
       code_(sharpness_code(settings, format)),
       method_(method),
-      bias_(bias),
-      misfit_(static_cast<float>(misfit)),
+      curves_(curves),
       z_um_(std::move(z_um)),
       heights_(height_table(z_um_)),
-      bin_gain_(settings.bin_slices / std::ldexp(1.0, bin_shift(settings.bin_slices))) {}
+      bin_gain_(settings.bin_slices / std::ldexp(1.0, bin_shift(settings.bin_slices))) {
+  for (HeightEntry& entry : heights_) {
+    if (entry.mask != 0) continue;
+    entry.least_neighbours = static_cast<float>(curves_.limits.neighbours(static_cast<double>(entry.scale_um)));
+  }
+}
 
 void RowFit::find_noise(const CurveRow& row, const float* noise_grey, int width, float* noise) const noexcept {
   // A bin's sample is the sum of `slices` codes: the signal grows with their number, the noise with its root.
@@ -70,14 +75,45 @@ void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amp
     const FitParameters parameters{static_cast<float>(settings_.min_prominence),
                                    static_cast<float>(settings_.min_significance),
                                    settings_.bin_slices > 1 ? kBinnedShapeError : kShapeError,
-                                   misfit_,
+                                   static_cast<float>(curves_.misfit),
                                    static_cast<float>(SharpnessCode::kUnit),
                                    code_.root,
-                                   bias_};
+                                   curves_.bias,
+                                   static_cast<float>(curves_.limits.least_bend_per_um2),
+                                   static_cast<float>(curves_.limits.least_shoulder),
+                                   CurveLimits::kMostNeighbours};
     focus_kernels().fit_five(row, heights_, noise, least_amplitude, width, parameters, out);
   } else {
     fit_triples(row, noise, least_amplitude, width, out);
   }
+}
+
+unsigned RowFit::shape_reasons(const CurveRow& row, int x) const noexcept {
+  const HeightEntry& at = heights_[row.peak_index[x]];
+  if (at.mask != 0) return 0;
+  const double floor = static_cast<double>(kFloorShare) * share(row.minimum[x]);
+  const double amplitude = std::max(share(row.peak[x]) - floor, std::numeric_limits<double>::min());
+  const auto over_floor = [&](std::uint16_t code) {
+    return std::max((share(code) - floor) / amplitude, static_cast<double>(kSmallestShare));
+  };
+  const double left = over_floor(row.left[x]);
+  const double right = over_floor(row.right[x]);
+  const double near = left + right;
+  const double far =
+      (at.u_left2 != 0.0F ? over_floor(row.left2[x]) : 0.0) + (at.u_right2 != 0.0F ? over_floor(row.right2[x]) : 0.0);
+  const auto u_left = static_cast<double>(at.u_left);
+  const auto u_right = static_cast<double>(at.u_right);
+  const auto scale_um = static_cast<double>(at.scale_um);
+  const double bend = ((1.0 / std::sqrt(right) - 1.0) / u_right - (1.0 / std::sqrt(left) - 1.0) / u_left) /
+                      (u_right - u_left);  // of G through three samples
+  unsigned reasons = 0;
+  const bool clipped = (row.clipped[x] & clipping::kPeakBits) != 0;  // that flattens a curve's top
+  if (!clipped && bend < curves_.limits.least_bend_per_um2 * scale_um * scale_um) reasons |= mask_reason::kBroadCurve;
+  if (near < static_cast<double>(at.least_neighbours) || (near - far < curves_.limits.least_shoulder * (2.0 - near) &&
+                                                          near < static_cast<double>(CurveLimits::kMostNeighbours))) {
+    reasons |= mask_reason::kNarrowCurve;
+  }
+  return reasons;
 }
 
 void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
@@ -93,7 +129,8 @@ void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* l
     if (peak - minimum < settings_.min_significance * static_cast<double>(noise[x]))
       mask |= mask_reason::kInsignificant;
     if (peak - minimum < static_cast<double>(least_amplitude[x])) mask |= mask_reason::kEdgeBleeding;
-    if (row.saturated[x] != 0) mask |= mask_reason::kSaturated;
+    const int clipped = row.clipped[x] & clipping::kPeakBits;
+    if (clipped == clipping::kNoPeak) mask |= mask_reason::kSaturated;
     std::optional<PeakPosition> position;
     if ((mask & (mask_reason::kFirstSlice | mask_reason::kLastSlice)) == 0) {
       position = fit_peak(method_,
@@ -101,11 +138,14 @@ void RowFit::fit_triples(const CurveRow& row, const float* noise, const float* l
                            share(row.right[x]), static_cast<double>(noise[x])},
                           half_a_count);
       if (!position) mask |= mask_reason::kNotBracketed;
+      mask |= shape_reasons(row, x);
     }
     const bool valid = mask == 0;
     out.height_m[x] = valid ? static_cast<float>(position->z_um * kMetresPerMicrometer) : NAN;
     const double sigma_m = valid ? position->sigma_um * kMetresPerMicrometer : std::nan("");
     out.variance_m2[x] = static_cast<float>(sigma_m * sigma_m);
+    if (clipped == clipping::kSome) out.variance_m2[x] *= clipping::kSomeVariance;
+    if (clipped == clipping::kMany) out.variance_m2[x] *= clipping::kManyVariance;
     out.prominence[x] = static_cast<float>(prominence);
     out.mask[x] = static_cast<MaskReasons>(mask);
   }

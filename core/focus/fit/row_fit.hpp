@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/focus/fit/curve_limits.hpp"
 #include "core/focus/fit/sample_heights.hpp"
 #include "core/focus/kernels/focus_kernels.hpp"
 #include "core/focus/measure/focus_settings.hpp"
@@ -19,12 +20,19 @@ namespace fvd {
 /// window * sigma.
 [[nodiscard]] double sample_noise(const FocusSettings& settings, double noise_grey, double sharpness) noexcept;
 
+/// What all curves of a scan have in common.
+struct ScanCurves {
+  VertexBias bias;      ///< subtracted from the vertices of kFiveSample
+  double misfit = 0.0;  ///< see curve_misfit.hpp
+  CurveLimits limits;
+};
+
 /// context: const members from many threads.
 class RowFit {
  public:
-  /// z_um: measured z of each sample. bias: subtracted from the vertices of kFiveSample. misfit: see curve_misfit.hpp.
+  /// z_um: measured z of each sample.
   RowFit(std::vector<double> z_um, const FocusSettings& settings, PixelFormat format, PeakMethod method,
-         VertexBias bias = {}, double misfit = 0.0);
+         const ScanCurves& curves = {});
 
   /// Writes the standard deviation of a sample at the peak, as shares of full scale. noise_grey: standard deviation of
   /// each pixel in grey levels. Shape [width] each.
@@ -48,12 +56,13 @@ class RowFit {
  private:
   void fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
                    const FitRow& out) const noexcept;
+  /// Broad or narrow, by the samples and their distances.
+  [[nodiscard]] unsigned shape_reasons(const CurveRow& row, int x) const noexcept;
 
   FocusSettings settings_;
   SharpnessCode code_;
   PeakMethod method_;
-  VertexBias bias_;
-  float misfit_;
+  ScanCurves curves_;
   std::vector<double> z_um_;
   std::vector<HeightEntry> heights_;
   double bin_gain_;  // from the mean code of a bin's slices to the bin's code

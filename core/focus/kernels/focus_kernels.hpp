@@ -17,6 +17,30 @@
 
 namespace fvd {
 
+/// How much of a window is clipped, and what that says of a peak.
+///
+/// Level of a sample: 0 nothing, 1 .. 62 that many 62nds of the window's area, rounded up, 63 more than the settings
+/// allow. In the state, the last sample's level shares a byte with what is known of the peak. A surface's clipped share
+/// is least where it is in focus, or nearly so: where it grows by more than one level beside the peak, or grows on one
+/// side and falls on the other, the peak is the rim of a blurred glint.
+namespace clipping {
+inline constexpr std::uint8_t kMostLevel = 62;
+inline constexpr std::uint8_t kTooMuch = 63;
+inline constexpr std::uint8_t kManyLevel = 22;  ///< from here on the height is less certain by a fifth
+inline constexpr std::uint8_t kLevelBits = 63;
+inline constexpr std::uint8_t kPeakBits = 0xC0;
+/// Of the peak's window. No peak: too much, or the share grows from it.
+inline constexpr std::uint8_t kSome = 0x40;
+inline constexpr std::uint8_t kMany = 0x80;
+inline constexpr std::uint8_t kNoPeak = 0xC0;
+/// While the sample after the peak is not known: whether the one before has a lower or a higher level, or it is
+/// kNoPeak.
+inline constexpr std::uint8_t kRose = 0x40;
+inline constexpr std::uint8_t kFell = 0x80;
+inline constexpr float kSomeVariance = 1.1F;  ///< what the variance is multiplied with
+inline constexpr float kManyVariance = 1.4F;
+}  // namespace clipping
+
 /// The state of one row of focus curves, one array per field, shape [width]. Sharpness is in codes, see
 /// sharpness_code.hpp.
 struct CurveRow {
@@ -29,15 +53,15 @@ struct CurveRow {
   std::uint16_t* right2;           ///< the sample after `right`
   std::uint16_t* minimum;          ///< smallest so far
   std::uint16_t* peak_index;       ///< number of the peak's sample, 0-based
-  std::uint8_t* saturated;         ///< 1 if a pixel of the window was saturated at the peak
+  std::uint8_t* clipped;           ///< see clipping
   std::ptrdiff_t pitch_bytes = 0;  ///< from each field to the same field of the next row; 0 = unknown
 };
 
-/// A row of one sample: codes, whether its window was saturated, pixels. Texture: std::uint8_t or std::uint16_t.
+/// A row of one sample. Texture: std::uint8_t or std::uint16_t.
 template <typename Texture>
 struct Sample {
   const std::uint16_t* codes;
-  const std::uint8_t* saturated;
+  const std::uint8_t* clipped;  ///< levels, see clipping; nullptr = all are 0
   const Texture* pixels;
 };
 
@@ -49,7 +73,8 @@ struct alignas(32) HeightEntry {
   float u_left = 0.0F;
   float u_right = 0.0F;
   float u_right2 = 0.0F;
-  std::int32_t mask = 0;  ///< mask_reason bits that follow from the number alone
+  std::int32_t mask = 0;          ///< mask_reason bits that follow from the number alone
+  float least_neighbours = 0.0F;  ///< sum of both neighbours' shares of the peak below which a curve is too narrow
 };
 using HeightTable = std::span<const HeightEntry>;
 
@@ -68,7 +93,10 @@ struct FitParameters {
   float misfit;       ///< standard deviation of a sample beside its noise, as a share of the amplitude
   float code_unit;    ///< a code times this is a share of full scale, or its root; see sharpness_code.hpp
   bool root_code;
-  VertexBias bias;  ///< to be subtracted from the vertex
+  VertexBias bias;                  ///< to be subtracted from the vertex
+  float least_bend_per_um2 = 0.0F;  ///< curvature of G, see five_sample_fit.hpp, below which a curve is too broad
+  float least_shoulder = -1e30F;    ///< see curve_limits.hpp; below it a curve is too narrow
+  float most_neighbours = 0.0F;     ///< where both neighbours' shares add up to less than this
 };
 
 /// Output of the fits: rows of planes without padding; NaN in height and variance exactly where mask is not 0.

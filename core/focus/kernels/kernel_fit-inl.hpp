@@ -35,7 +35,10 @@ struct FitPixels {
   FitFloats z_um;  // and what else the table says
   FitFloats scale_um;
   FitNeighbours u;
-  FitFlags known;     // the mask before the fit
+  FitFlags known;  // the mask before the fit
+  FitFloats least_neighbours;
+  FitFlags clipped;   // what is known of the peak, see clipping
+  FitFlags narrow;    // whether the neighbours are too low
   FitFloats inverse;  // of the amplitude
   FitNeighbours r;    // shares of the amplitude; after the sums to the power of 5
   FitFloats s0;       // sums over the samples of w u^n, w = r^4
@@ -101,10 +104,9 @@ inline __attribute__((always_inline)) void look_up_four(const std::uint16_t* ind
   const auto* const e1 = &table[indices[x + 1]].z_um;
   const auto* const e2 = &table[indices[x + 2]].z_um;
   const auto* const e3 = &table[indices[x + 3]].z_um;
-  float none[4];
   transpose(e0, e1, e2, e3, at.z_um + x, at.scale_um + x, at.u.left2 + x, at.u.left + x);
   transpose(e0 + 4, e1 + 4, e2 + 4, e3 + 4, at.u.right + x, at.u.right2 + x, reinterpret_cast<float*>(at.known + x),
-            none);
+            at.least_neighbours + x);
 }
 
 using Eight = float __attribute__((vector_size(32), may_alias));
@@ -120,6 +122,7 @@ inline __attribute__((always_inline)) void look_up_once(const HeightEntry& entry
   const Eight right = entry.u_right - Eight{};
   const Eight right2 = entry.u_right2 - Eight{};
   const EightFlags known = entry.mask - EightFlags{};
+  const Eight least_neighbours = entry.least_neighbours - Eight{};
   store(z_um, at.z_um + x);
   store(scale_um, at.scale_um + x);
   store(left2, at.u.left2 + x);
@@ -127,6 +130,7 @@ inline __attribute__((always_inline)) void look_up_once(const HeightEntry& entry
   store(right, at.u.right + x);
   store(right2, at.u.right2 + x);
   store(known, at.known + x);
+  store(least_neighbours, at.least_neighbours + x);
 }
 
 /// On most surfaces neighbours peak in the same slice; one entry is then loaded for all of them.
@@ -152,10 +156,13 @@ inline void look_up(const std::uint16_t* indices, HeightTable table, int count, 
     at.u.right[x] = entry.u_right;
     at.u.right2[x] = entry.u_right2;
     at.known[x] = entry.mask;
+    at.least_neighbours[x] = entry.least_neighbours;
   }
 }
 
-inline void find_shares(int count, FitPixels& at) {
+inline void find_shares(int count, const FitParameters& parameters, FitPixels& at) {
+  const float least_shoulder = parameters.least_shoulder;
+  const float most_neighbours = parameters.most_neighbours;
   FVD_NO_ALIASING
   for (int x = 0; x < count; ++x) {
     const float floor = kFloorShare * at.minimum[x];
@@ -166,11 +173,19 @@ inline void find_shares(int count, FitPixels& at) {
       const float r = (value - floor) * inverse;
       return r > kSmallestShare ? r : kSmallestShare;
     };
-    at.r.left[x] = share(at.codes.left[x]);
-    at.r.right[x] = share(at.codes.right[x]);
+    const float left = share(at.codes.left[x]);
+    const float right = share(at.codes.right[x]);
     // A sample that is not there has no weight.
-    at.r.left2[x] = at.u.left2[x] != 0.0F ? share(at.codes.left2[x]) : 0.0F;
-    at.r.right2[x] = at.u.right2[x] != 0.0F ? share(at.codes.right2[x]) : 0.0F;
+    const float left2 = at.u.left2[x] != 0.0F ? share(at.codes.left2[x]) : 0.0F;
+    const float right2 = at.u.right2[x] != 0.0F ? share(at.codes.right2[x]) : 0.0F;
+    at.r.left[x] = left;
+    at.r.right[x] = right;
+    at.r.left2[x] = left2;
+    at.r.right2[x] = right2;
+    const float near = left + right;
+    at.narrow[x] = static_cast<std::int32_t>(near < at.least_neighbours[x]) |
+                   (static_cast<std::int32_t>(near - (left2 + right2) < least_shoulder * (2.0F - near)) &
+                    static_cast<std::int32_t>(near < most_neighbours));
   }
 }
 
@@ -276,6 +291,7 @@ inline void judge(int count, const float* noise, const float* least, const FitPa
   const float min_prominence = parameters.min_prominence;
   const float min_significance = parameters.min_significance;
   const float unit = share_unit(parameters);
+  const float least_bend = parameters.least_bend_per_um2;
   FVD_NO_ALIASING
   for (int x = 0; x < count; ++x) {
     const float top = at.peak[x];
@@ -289,8 +305,15 @@ inline void judge(int count, const float* noise, const float* least, const FitPa
     const auto weak = static_cast<std::int32_t>(share < min_significance * noise[x]);
     const auto bled = static_cast<std::int32_t>(share < least[x]);
     const std::int32_t open = static_cast<std::int32_t>((known & kEnds) == 0) & (at.peaked[x] ^ 1);
+    const float bend = at.bend[x];
+    const float scale_um = at.scale_um[x];
+    const std::int32_t fitted = static_cast<std::int32_t>(known == 0) & at.peaked[x];
+    const std::int32_t broad =
+        fitted & static_cast<std::int32_t>(at.clipped[x] == 0) &  // clipping flattens a curve's top
+        static_cast<std::int32_t>(bend < least_bend * (scale_um * scale_um) * (1.0F - 0.9F * bend));
     at.mask[x] = known | (-flat & mask_reason::kLowProminence) | (-weak & mask_reason::kInsignificant) |
-                 (-bled & mask_reason::kEdgeBleeding) | (-open & mask_reason::kNotBracketed);
+                 (-bled & mask_reason::kEdgeBleeding) | (-open & mask_reason::kNotBracketed) |
+                 (-broad & mask_reason::kBroadCurve) | (-(at.narrow[x] & fitted) & mask_reason::kNarrowCurve);
     prominences[x] = prominence;
   }
 }
@@ -328,13 +351,25 @@ inline void find_heights(int count, const float* noise, const FitParameters& par
   }
 }
 
-inline void mark_saturated(const std::uint8_t* saturated, int count, FitPixels& at) {
+/// Returns whether any window was clipped.
+inline bool mark_clipped(const std::uint8_t* state, int count, FitPixels& at) {
   std::uint8_t any = 0;
-  for (int x = 0; x < count; ++x) any = static_cast<std::uint8_t>(any | saturated[x]);
-  if (any == 0) return;  // nearly always
+  for (int x = 0; x < count; ++x) any = static_cast<std::uint8_t>(any | (state[x] & clipping::kPeakBits));
+  for (int x = 0; x < count; ++x) at.clipped[x] = 0;
+  if (any == 0) return false;  // nearly always
   for (int x = 0; x < count; ++x) {
-    const std::int32_t flag = saturated[x];
-    at.known[x] |= -flag & mask_reason::kSaturated;
+    const int peak = state[x] & clipping::kPeakBits;
+    const std::int32_t lost = peak == clipping::kNoPeak ? 1 : 0;
+    at.known[x] |= -lost & mask_reason::kSaturated;
+    at.clipped[x] = peak;
+  }
+  return true;
+}
+
+inline void widen_variance(int count, const FitPixels& at, float* variance_m2) {
+  for (int x = 0; x < count; ++x) {
+    const float many = at.clipped[x] == clipping::kMany ? clipping::kManyVariance : clipping::kSomeVariance;
+    variance_m2[x] *= at.clipped[x] == 0 ? 1.0F : many;
   }
 }
 
@@ -344,7 +379,7 @@ inline __attribute__((always_inline)) void fetch_below(const CurveRow& row, cons
        {row.peak, row.left, row.left2, row.right, row.right2, row.minimum, row.peak_index}) {
     fetch<2 * kFitPixels>(field + first, row.pitch_bytes, false);
   }
-  fetch<kFitPixels>(row.saturated + first, row.pitch_bytes, false);
+  fetch<kFitPixels>(row.clipped + first, row.pitch_bytes, false);
   for (const float* plane : {out.height_m, out.variance_m2, out.prominence}) {
     fetch<4 * kFitPixels>(plane + first, std::ptrdiff_t{4} * width, true);
   }
@@ -363,12 +398,13 @@ void fit_five(const CurveRow& row, HeightTable table, const float* noise, const 
     }
     fetch_below(row, out, width, first);
     look_up(row.peak_index + first, table, count, at);
-    mark_saturated(row.saturated + first, count, at);
-    find_shares(count, at);
+    const bool clipped = mark_clipped(row.clipped + first, count, at);
+    find_shares(count, parameters, at);
     add_samples(count, at);
     solve(count, at);
     judge(count, noise + first, least_amplitude + first, parameters, at, out.prominence + first);
     find_heights(count, noise + first, parameters, at, out.height_m + first, out.variance_m2 + first);
+    if (clipped) widen_variance(count, at, out.variance_m2 + first);
     auto* const mask = out.mask + first;
     for (int x = 0; x < count; ++x) mask[x] = static_cast<MaskReasons>(at.mask[x]);
   }

@@ -60,9 +60,50 @@ inline __attribute__((always_inline)) void narrow_mask(const CodeMask& wide, Fla
 #endif
 }
 
+/// A sample's levels are taken in: where the peak stays, and where it has only just been; elsewhere the peak is this
+/// sample. Masks in lanes of 0 or -1.
+inline __attribute__((always_inline)) void take_levels(const Flags& levels, const FlagMask& stays,
+                                                       const FlagMask& follows, Flags& clipped) {
+  const Flags before = clipped & clipping::kLevelBits;
+  const Flags known = clipped & clipping::kPeakBits;
+  const Flags none{};
+  const Flags lost = none + clipping::kNoPeak;
+  // This sample is the peak.
+  Flags fresh = before < levels ? none + clipping::kRose : none;
+  fresh = before > levels ? none + clipping::kFell : fresh;
+  fresh = before > levels + 1 ? lost : fresh;
+  fresh = levels == none + clipping::kTooMuch ? lost : fresh;
+  // The sample before is.
+  Flags settled = before > none ? none + clipping::kSome : none;
+  settled = before >= none + clipping::kManyLevel ? none + clipping::kMany : settled;
+  const FlagMask grows = (levels > before + 1) | (known == lost) |
+                         ((levels > before) & (known == none + clipping::kRose)) |
+                         ((levels < before) & (known == none + clipping::kFell));
+  settled = grows ? lost : settled;
+  const Flags kept = follows ? settled : known;
+  clipped = (stays ? kept : fresh) | levels;
+}
+
+/// Whether any of 16 columns at x has a clipped pixel in its window, or had one before.
+template <typename Texture>
+inline __attribute__((always_inline)) bool any_clipped(const CurveRow& row, const Sample<Texture>* samples, int count,
+                                                       int x, int there) {
+  Flags any;
+  load(row.clipped + x, any);
+  for (int k = 0; k < count; ++k) {
+    if (samples[k].clipped == nullptr) continue;
+    Flags levels;
+    load_pixels(samples[k].clipped + x, there, levels);
+    any |= levels;
+  }
+  std::uint64_t words[2];
+  __builtin_memcpy(words, &any, sizeof words);
+  return (words[0] | words[1]) != 0;
+}
+
 /// 16 columns at x. The state stays in registers while several samples are taken in. there: columns from x on that the
 /// image has, 16 if more.
-template <typename Texture, typename TextureVector>
+template <typename Texture, typename TextureVector, bool kClipped>
 inline __attribute__((always_inline)) void update_at(const CurveRow& row, const Sample<Texture>* samples, int count,
                                                      Texture* texture_row, int x, int there, int first_index) {
   Codes previous;
@@ -86,8 +127,8 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
   age = static_cast<std::uint16_t>(first_index) - age;
   TextureVector texture;
   load(texture_row + x, texture);
-  Flags saturated;
-  load(row.saturated + x, saturated);
+  Flags clipped{};
+  if constexpr (kClipped) load(row.clipped + x, clipped);
   for (int k = 0; k < count; ++k) {
     const Sample<Texture>& sample = samples[k];
     Codes value;
@@ -99,12 +140,19 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
     minimum = value < minimum ? value : minimum;
     right = follows ? value : right;
     right2 = follows2 ? value : right2;
+    if constexpr (kClipped) {
+      Flags levels{};
+      if (sample.clipped != nullptr) load_pixels(sample.clipped + x, there, levels);
+      FlagMask narrow_stays;
+      narrow_mask(stays, narrow_stays);
+      FlagMask narrow_follows;
+      narrow_mask(follows, narrow_follows);
+      take_levels(levels, narrow_stays, narrow_follows, clipped);
+    }
     // In most slices of a scan 16 neighbours are all past their peak, or before it in the noise.
     if (!all(stays)) {
       TextureVector pixels;
       load_pixels(sample.pixels + x, there, pixels);
-      Flags flags;
-      load_pixels(sample.saturated + x, there, flags);
       const auto keep = reinterpret_cast<const Codes&>(stays);
       left = stays ? left : previous;
       left2 = stays ? left2 : previous2;
@@ -112,10 +160,9 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
       right2 &= keep;
       peak = higher;
       age &= keep;
-      FlagMask narrow;
-      narrow_mask(stays, narrow);
-      saturated = narrow ? saturated : flags;
       if constexpr (sizeof(Texture) == 1) {
+        FlagMask narrow;
+        narrow_mask(stays, narrow);
         texture = narrow ? texture : pixels;
       } else {
         texture = stays ? texture : pixels;
@@ -136,7 +183,18 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
   store(minimum, row.minimum + x);
   store(peak_index, row.peak_index + x);
   store(texture, texture_row + x);
-  store(saturated, row.saturated + x);
+  if constexpr (kClipped) store(clipped, row.clipped + x);
+}
+
+template <typename Texture, typename TextureVector>
+inline __attribute__((always_inline)) void update_columns(const CurveRow& row, const Sample<Texture>* samples,
+                                                          int count, Texture* texture, int x, int there,
+                                                          int first_index) {
+  if (any_clipped(row, samples, count, x, there)) {
+    update_at<Texture, TextureVector, true>(row, samples, count, texture, x, there, first_index);
+  } else {
+    update_at<Texture, TextureVector, false>(row, samples, count, texture, x, there, first_index);
+  }
 }
 
 /// The next row's state below the 32 pixels from x on, which is written as well as read.
@@ -147,7 +205,7 @@ inline __attribute__((always_inline)) void fetch_below(const CurveRow& row, cons
     fetch<64>(field + x, row.pitch_bytes, true);
   }
   fetch<32 * sizeof(Texture)>(texture + x, row.pitch_bytes, true);
-  fetch<32>(row.saturated + x, row.pitch_bytes, true);
+  fetch<32>(row.clipped + x, row.pitch_bytes, true);
 }
 
 template <typename Texture, typename TextureVector>
@@ -156,9 +214,9 @@ inline __attribute__((always_inline)) void update(const CurveRow& row, const Sam
   int x = 0;
   for (; x + 16 <= width; x += 16) {
     if (x % 32 == 0) fetch_below(row, texture, x);
-    update_at<Texture, TextureVector>(row, samples, count, texture, x, 16, first_index);
+    update_columns<Texture, TextureVector>(row, samples, count, texture, x, 16, first_index);
   }
-  if (x < width) update_at<Texture, TextureVector>(row, samples, count, texture, x, width - x, first_index);
+  if (x < width) update_columns<Texture, TextureVector>(row, samples, count, texture, x, width - x, first_index);
 }
 void update_u8(const CurveRow& row, const Sample<std::uint8_t>* samples, int count, std::uint8_t* texture, int width,
                int first_index) noexcept {

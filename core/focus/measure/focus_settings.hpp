@@ -53,6 +53,19 @@ inline constexpr int kMaxWindowPx = 63;
 inline constexpr int kMaxDistancePx = 7;
 
 inline constexpr int kMaxBinSlices = 64;
+inline constexpr double kMaxSigmaLimit_um = 1e6;
+
+/// What makes a hole of a point beside prominence and significance; README.md of core/focus/fit says where the limits
+/// come from. 0 turns a test off.
+struct PointTests {
+  double broad_curve = 0.2;  ///< the bend of a point's curve over the scan's median, 0..1; below it a point is a hole
+  double narrow_curve =
+      0.55;  ///< the width of a point's curve over the scan's median, 0..1; below it a point is a hole
+  double clipped_share = 0.7;  ///< of the window's pixels at the peak, 0..1; if more are at full scale, or noticeably
+                               ///< more beside the peak than at it, a point is a hole
+  double max_sigma_um = 0.0;   ///< standard error of a height above which a point is a hole, >= 0
+  bool operator==(const PointTests&) const = default;
+};
 
 struct FocusSettings {
   FocusOperator focus_operator = FocusOperator::kDiagonalLaplacian;
@@ -63,6 +76,7 @@ struct FocusSettings {
   double min_significance = 6.0;  ///< (peak - minimum) / noise of a sample, >= 0; below it a point is a hole
   int bin_slices = 1;             ///< successive slices whose sharpness is summed to one sample of the curve, 1..64
   bool stage_correction = true;   ///< see stage_correction.hpp; with the five-sample peak only
+  PointTests tests = {};
 };
 
 /// The sides of the boxes that are laid over each other.

@@ -61,8 +61,8 @@ StateRow<Texture> PeakAccumulator<Texture>::row(int y) noexcept {
   if (binned_) take(row.bin.sums);
   take(row.texture);
   if (binned_) take(row.bin.texture);
-  take(row.curve.saturated);
-  if (binned_) take(row.bin.saturated);
+  take(row.curve.clipped);
+  if (binned_) take(row.bin.clipped);
   if (storage_.size() > blocks_per_row_) {
     row.curve.pitch_bytes = static_cast<std::ptrdiff_t>(blocks_per_row_ * sizeof(Block));
   }
@@ -85,7 +85,10 @@ void start_peaks(const StateRow<Texture>& row, const Sample<Texture>& sample, in
     std::fill_n(field, width, std::uint16_t{0});
   }
   std::copy_n(sample.pixels, width, row.texture);
-  std::copy_n(sample.saturated, width, curve.saturated);
+  for (int x = 0; x < width; ++x) {
+    const std::uint8_t level = sample.clipped == nullptr ? std::uint8_t{0} : sample.clipped[x];
+    curve.clipped[x] = static_cast<std::uint8_t>((level == clipping::kTooMuch ? clipping::kNoPeak : 0) | level);
+  }
 }
 
 template <typename Texture>

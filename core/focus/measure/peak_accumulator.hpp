@@ -16,8 +16,8 @@ namespace fvd {
 template <typename Texture>
 struct BinRow {
   std::uint16_t* sums = nullptr;
-  Texture* texture = nullptr;         ///< of the slice in the middle of the bin
-  std::uint8_t* saturated = nullptr;  ///< 1 if a window of the bin was saturated
+  Texture* texture = nullptr;       ///< of the slice in the middle of the bin
+  std::uint8_t* clipped = nullptr;  ///< the highest level of the bin, see clipping
 };
 
 template <typename Texture>

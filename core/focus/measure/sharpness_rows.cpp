@@ -46,11 +46,12 @@ SharpnessRows<Pixel>::SharpnessRows(int width, const FocusSettings& settings, Pi
       operator_(settings.focus_operator),
       code_(sharpness_code(settings, format)),
       saturation_(max_grey_level(format)),
+      levels_(settings),
       narrow_(!code_.root),
       codes_(static_cast<std::size_t>(width)),
       saturated_columns_(static_cast<std::size_t>(width)),
       saturated_counts_(static_cast<std::size_t>(width)),
-      saturated_(static_cast<std::size_t>(width)) {
+      clipped_(static_cast<std::size_t>(width)) {
   if (narrow_) {
     resize(narrow_columns_);
   } else {
@@ -166,8 +167,8 @@ void SharpnessRows<Pixel>::enter(Narrow& columns, int y) noexcept {
     if (operator_ == FocusOperator::kDiagonalLaplacian) {
       kernels_.enter_diagonal_u8(rows, width_, code_.shift, columns.sums.data(), slot, columns.scaled.data());
     } else {
-      kernels_.enter_laplacian_u8(rows.above, rows.row, rows.below, width_, distance_, code_.shift,
-                                  columns.sums.data(), slot, columns.scaled.data());
+      kernels_.enter_laplacian_u8(rows.above, rows.row, rows.below, width_, distance_, code_.shift, columns.sums.data(),
+                                  slot, columns.scaled.data());
     }
     for_ends([&](int x) {
       const auto column = static_cast<std::size_t>(x);
@@ -227,7 +228,7 @@ void SharpnessRows<Pixel>::leave_second(Wide& columns, int y) noexcept {
 template <typename Pixel>
 void SharpnessRows<Pixel>::count_saturated(int y, int change) noexcept {
   if (change < 0 && saturated_rows_ == 0) return;
-  if (!row_saturated(y)) return;
+  if (!levels_.looked_for() || !row_saturated(y)) return;
   saturated_rows_ += change;
   const Pixel* pixels = image_.row(y);
   for (int x = 0; x < width_; ++x) {
@@ -240,8 +241,8 @@ template <typename Pixel>
 template <typename Sum>
 void SharpnessRows<Pixel>::move_to(Columns<Sum>& columns) noexcept {
   const auto to_row = [&](int y) {
-    first_.move_to(y, sides_.first, image_.height, [&](int row) { enter(columns, row); },
-                   [&](int row) { leave(columns, row); });
+    first_.move_to(
+        y, sides_.first, image_.height, [&](int row) { enter(columns, row); }, [&](int row) { leave(columns, row); });
   };
   if (sides_.second == 1) {
     to_row(y_);
@@ -268,7 +269,7 @@ void SharpnessRows<Pixel>::next() noexcept {
   const WindowReach reach(y_, window_ / 2, image_.height);
   while (counted_.high <= reach.last) count_saturated(counted_.high++, 1);
   while (counted_.low < reach.first) count_saturated(counted_.low++, -1);
-  find_saturated();
+  find_clipped();
   ++y_;
 }
 
@@ -311,16 +312,13 @@ void SharpnessRows<Pixel>::sum_windows(const std::uint32_t* values, int window, 
 }
 
 template <typename Pixel>
-void SharpnessRows<Pixel>::find_saturated() noexcept {
-  if (saturated_rows_ == 0) {
-    if (!saturated_clear_) std::fill(saturated_.begin(), saturated_.end(), std::uint8_t{0});
-    saturated_clear_ = true;
-    return;
-  }
-  saturated_clear_ = false;
+void SharpnessRows<Pixel>::find_clipped() noexcept {
+  if (saturated_rows_ == 0) return;
   const std::uint16_t* counts = saturated_counts_.data();
   sum_windows(saturated_columns_.data(), window_, saturated_counts_.data());
-  for (int x = 0; x < width_; ++x) saturated_[static_cast<std::size_t>(x)] = counts[x] > 0 ? 1 : 0;
+  for (int x = 0; x < width_; ++x) {
+    clipped_[static_cast<std::size_t>(x)] = counts[x] == 0 ? std::uint8_t{0} : levels_.of(counts[x]);
+  }
 }
 
 template class SharpnessRows<std::uint8_t>;

@@ -14,9 +14,10 @@
 /// Operators, with neighbours at distance d:
 ///   modified Laplacian (Nayar and Nakagawa, IEEE PAMI 16(8), 1994): |2 I - I(x-d) - I(x+d)| + |2 I - I(y-d) - I(y+d)|;
 ///     the absolute values are summed so that curvatures of opposite sign do not cancel
-///   diagonal Laplacian: twice the modified Laplacian, and the absolute second differences along both diagonals at d and
-///     at half of d, at least 1 (the extension to the diagonals: Thelen, Frey, Hirsch, Hering, IEEE T-IP 18(1), 2009; the
-///     weights: core/focus/README.md). All in one integer; only its size against others of the same operator counts
+///   diagonal Laplacian: twice the modified Laplacian, and the absolute second differences along both diagonals at d
+///   and
+///     at half of d, at least 1 (the extension to the diagonals: Thelen, Frey, Hirsch, Hering, IEEE T-IP 18(1), 2009;
+///     the weights: core/focus/README.md). All in one integer; only its size against others of the same operator counts
 ///   Tenengrad (Tenenbaum, Stanford, 1970): gx^2 + gy^2 of the 3 x 3 Sobel operator, its rows and columns d apart
 ///   intensity: I
 ///
@@ -43,6 +44,26 @@ struct WindowReach {
   int last;
 };
 
+/// From the number of clipped pixels in a window to its level, see clipping.
+class ClippedLevels {
+ public:
+  explicit ClippedLevels(const FocusSettings& settings) noexcept
+      : area_(settings.window_px * settings.window_px),
+        most_(static_cast<int>(settings.tests.clipped_share * area_)),
+        looked_for_(settings.tests.clipped_share > 0.0) {}
+  /// Whether anybody asks.
+  [[nodiscard]] bool looked_for() const noexcept { return looked_for_; }
+  [[nodiscard]] std::uint8_t of(int pixels) const noexcept {
+    if (pixels > most_) return clipping::kTooMuch;
+    return static_cast<std::uint8_t>((pixels * clipping::kMostLevel + area_ - 1) / area_);
+  }
+
+ private:
+  int area_;
+  int most_;
+  bool looked_for_;
+};
+
 /// Pixel: std::uint8_t or std::uint16_t. The constructor allocates all memory.
 /// Not thread-safe; one instance per thread and slice.
 template <typename Pixel>
@@ -54,13 +75,15 @@ class SharpnessRows {
   /// Starts at row `first` of an image of the constructor's width and format.
   void begin(PlaneView<const Pixel> image, int first) noexcept;
 
-  /// Computes the next row: codes() and saturated() then hold it. Not called past the last row.
+  /// Computes the next row: codes() and clipped() then hold it. Not called past the last row.
   void next() noexcept;
 
   /// Shape [width]; see sharpness_code.hpp.
   [[nodiscard]] const std::uint16_t* codes() const noexcept { return codes_.data(); }
-  /// Shape [width], 1 where a pixel inside the window is saturated, else 0.
-  [[nodiscard]] const std::uint8_t* saturated() const noexcept { return saturated_.data(); }
+  /// Shape [width], how much of the window is at full scale, see clipping; nullptr where none of the row's windows is.
+  [[nodiscard]] const std::uint8_t* clipped() const noexcept {
+    return saturated_rows_ == 0 ? nullptr : clipped_.data();
+  }
 
   [[nodiscard]] static std::size_t memory_bytes(int width, const FocusSettings& settings);
 
@@ -131,7 +154,7 @@ class SharpnessRows {
   void emit_wide() noexcept;
   [[nodiscard]] bool row_saturated(int y) const noexcept;
   void count_saturated(int y, int change) noexcept;
-  void find_saturated() noexcept;
+  void find_clipped() noexcept;
 
   const FocusKernels& kernels_;
   int width_;
@@ -141,6 +164,7 @@ class SharpnessRows {
   FocusOperator operator_;
   SharpnessCode code_;
   int saturation_;
+  ClippedLevels levels_;
   bool narrow_;
   PlaneView<const Pixel> image_;
   int y_ = 0;  // next row to emit
@@ -153,8 +177,7 @@ class SharpnessRows {
   std::vector<std::uint16_t> codes_;
   std::vector<std::uint16_t> saturated_columns_;  // [width], saturated pixels in the window's rows, <= 63
   std::vector<std::uint16_t> saturated_counts_;   // [width], over the window
-  std::vector<std::uint8_t> saturated_;
-  bool saturated_clear_ = true;
+  std::vector<std::uint8_t> clipped_;
 };
 
 /// The same codes for a whole image, obviously correct: every window is summed anew. Shape of the image. For tests.

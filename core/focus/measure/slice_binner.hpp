@@ -13,7 +13,7 @@ namespace fvd {
 
 /// Summing successive sharpness rows uses every slice of a finely stepped scan without keeping any: the noise of a
 /// sample falls with the root of the bin, and the samples get the distance at which a peak is located best.
-/// Texture: the pixel of the bin's middle slice. Saturation: set if any slice of the bin has a saturated window.
+/// Texture: the pixel of the bin's middle slice. Clipping: the highest level of the bin's slices.
 /// Not thread-safe; one instance per thread.
 template <typename Texture>
 class SliceBinner {
@@ -40,7 +40,7 @@ class SliceBinner {
       const unsigned full = row.bin.sums[x] * static_cast<unsigned>(bin_) / static_cast<unsigned>(pending);
       scaled_[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(std::min(full, 65535U));
     }
-    const Sample<Texture> sample{scaled_.data(), row.bin.saturated, row.bin.texture};
+    const Sample<Texture> sample{scaled_.data(), row.bin.clipped, row.bin.texture};
     take(row, std::span(&sample, 1), samples - 1);
   }
 
@@ -50,13 +50,14 @@ class SliceBinner {
     const int place = number % bin_;
     if (place == 0) {
       std::fill_n(bin.sums, width_, std::uint16_t{0});
-      std::fill_n(bin.saturated, width_, std::uint8_t{0});
+      std::fill_n(bin.clipped, width_, std::uint8_t{0});
     }
     kernels_.add_to_bin(bin.sums, slice.codes, shift_, width_);
-    for (int x = 0; x < width_; ++x)
-      bin.saturated[x] = static_cast<std::uint8_t>(bin.saturated[x] | slice.saturated[x]);
+    if (slice.clipped != nullptr) {
+      for (int x = 0; x < width_; ++x) bin.clipped[x] = std::max(bin.clipped[x], slice.clipped[x]);
+    }
     if (place == (bin_ - 1) / 2 || place == 0) std::copy_n(slice.pixels, width_, bin.texture);
-    const Sample<Texture> sample{bin.sums, bin.saturated, bin.texture};
+    const Sample<Texture> sample{bin.sums, bin.clipped, bin.texture};
     if (place == bin_ - 1) take(row, std::span(&sample, 1), number / bin_);
   }
 

@@ -65,23 +65,25 @@ TEST_P(AStreamingStack, EqualsTheOneThatKeepsEverything) {
 
 INSTANTIATE_TEST_SUITE_P(
     OnEverySurface, AStreamingStack,
-    testing::Values(Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 15, 9},
-                    Case{PixelFormat::kMono8, Surface::kStepped, 64, 17, 12, 5, 3},
-                    Case{PixelFormat::kMono8, Surface::kRandom, 40, 23, 9, 3},
-                    Case{PixelFormat::kMono16, Surface::kTilted, 37, 29, 15, 7, 2},
-                    Case{PixelFormat::kMono16, Surface::kRandom, 33, 11, 21, 31},
-                    Case{PixelFormat::kMono12, Surface::kStepped, 20, 20, 8, 9},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 1, 1, 5, 9},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 3, 2, 5, 63, 7},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 40, 30, 31, 9, 2, FocusOperator::kTenengrad},
-                    Case{PixelFormat::kMono12, Surface::kStepped, 30, 30, 15, 7, 1, FocusOperator::kTenengrad, 2},
-                    Case{PixelFormat::kMono16, Surface::kTilted, 30, 20, 15, 1, 1, FocusOperator::kIntensity},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 30, 9, 2, FocusOperator::kModifiedLaplacian, 3},
-                    Case{PixelFormat::kMono16, Surface::kTilted, 33, 21, 29, 5, 1, FocusOperator::kModifiedLaplacian,
-                         4},
-                    Case{PixelFormat::kMono8, Surface::kRandom, 33, 21, 3, 5, 1, FocusOperator::kModifiedLaplacian, 4},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 1, 3},
-                    Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 2, 3}));
+    testing::Values(
+        Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 15, 9},
+        Case{PixelFormat::kMono8, Surface::kStepped, 64, 17, 12, 5, 3},
+        Case{PixelFormat::kMono8, Surface::kRandom, 40, 23, 9, 3},
+        Case{PixelFormat::kMono16, Surface::kTilted, 37, 29, 15, 7, 2},
+        Case{PixelFormat::kMono16, Surface::kRandom, 33, 11, 21, 31},
+        Case{PixelFormat::kMono12, Surface::kStepped, 20, 20, 8, 9},
+        Case{PixelFormat::kMono8, Surface::kTilted, 1, 1, 5, 9},
+        Case{PixelFormat::kMono8, Surface::kTilted, 3, 2, 5, 63, 7},
+        Case{PixelFormat::kMono8, Surface::kTilted, 40, 30, 31, 9, 2, FocusOperator::kTenengrad},
+        Case{PixelFormat::kMono12, Surface::kStepped, 30, 30, 15, 7, 1, FocusOperator::kTenengrad, 2},
+        Case{PixelFormat::kMono16, Surface::kTilted, 30, 20, 15, 1, 1, FocusOperator::kIntensity},
+        Case{PixelFormat::kMono8, Surface::kTilted, 53, 31, 30, 9, 2, FocusOperator::kModifiedLaplacian, 3},
+        Case{PixelFormat::kMono16, Surface::kTilted, 33, 21, 29, 5, 1, FocusOperator::kModifiedLaplacian, 4},
+        Case{PixelFormat::kMono8, Surface::kRandom, 33, 21, 3, 5, 1, FocusOperator::kModifiedLaplacian, 4},
+        Case{PixelFormat::kMono8, Surface::kBright, 45, 33, 15, 9, 2},
+        Case{PixelFormat::kMono12, Surface::kBright, 45, 21, 29, 5, 1, FocusOperator::kDiagonalLaplacian, 3},
+        Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 1, 3},
+        Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 2, 3}));
 
 }  // namespace
 }  // namespace fvd

@@ -111,8 +111,9 @@ TEST(StreamingFocusStack, TakesNoMoreThanItsIndexCanCount) {
 /// A stack of 3 x 3 slices of uniform contrast per slice.
 HeightMap of_contrasts(const std::vector<int>& contrasts, int base = 100) {
   WorkerPool pool(1);
-  StreamingFocusStack stack(3, 3, PixelFormat::kMono8,
-                            {.window_px = 3, .distance_px = 1, .min_prominence = 0.5, .min_significance = 0.0}, pool);
+  FocusSettings settings{.window_px = 3, .distance_px = 1, .min_prominence = 0.5, .min_significance = 0.0};
+  settings.tests.clipped_share = 0.1;  // less than a pixel of nine
+  StreamingFocusStack stack(3, 3, PixelFormat::kMono8, settings, pool);
   double z_um = 0.0;
   for (const int contrast : contrasts) {
     Plane<std::uint8_t> slice(3, 3, static_cast<std::uint8_t>(base));

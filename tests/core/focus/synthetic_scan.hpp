@@ -28,7 +28,7 @@ struct Scan {
   }
 };
 
-enum class Surface { kTilted, kStepped, kRandom };
+enum class Surface { kTilted, kStepped, kRandom, kBright };
 
 inline double surface_um(Surface surface, int x, int y) {
   switch (surface) {
@@ -37,6 +37,7 @@ inline double surface_um(Surface surface, int x, int y) {
     case Surface::kStepped:
       return x % 20 < 10 ? 20.0 : 45.0;
     case Surface::kRandom:
+    case Surface::kBright:  // a good part of its pixels is clipped
       return 30.0;
   }
   return 0.0;
@@ -49,6 +50,7 @@ inline Scan make_scan(PixelFormat format, Surface surface, int width, int height
   std::uniform_real_distribution<double> jitter(-1.5, 1.5);
   std::vector<double> texture(static_cast<std::size_t>(width * height));
   for (auto& value : texture) value = normal(random);
+  const double grey = surface == Surface::kBright ? 225.0 : 128.0;
   const double unit = format == PixelFormat::kMono8 ? 1.0 : 256.0;
   for (int k = 0; k < count; ++k) {
     scan.z_um.push_back(5.0 * k + jitter(random));
@@ -59,7 +61,7 @@ inline Scan make_scan(PixelFormat format, Surface surface, int width, int height
         const double defocus = (scan.z_um.back() - surface_um(surface, x, y)) / 12.0;
         const double contrast = surface == Surface::kRandom ? 30.0 : 30.0 * std::exp(-defocus * defocus);
         const double noise = surface == Surface::kRandom ? 30.0 * normal(random) : normal(random);
-        const double level = std::clamp((128.0 + contrast * texture[i] + noise) * unit, 0.0, 256.0 * unit - 1.0);
+        const double level = std::clamp((grey + contrast * texture[i] + noise) * unit, 0.0, 256.0 * unit - 1.0);
         if (format == PixelFormat::kMono8) {
           bytes[i] = static_cast<std::byte>(static_cast<std::uint8_t>(level));
         } else {

@@ -61,6 +61,9 @@ TEST(HeightSummary, CountsAPointWithTwoReasonsTwice) {
   surface.make_hole(2, 0, mask_reason::kNotBracketed);
   surface.make_hole(3, 0, mask_reason::kLowProminence);
   surface.make_hole(4, 0, mask_reason::kInsignificant | mask_reason::kEdgeBleeding);
+  surface.make_hole(5, 0, mask_reason::kBroadCurve | mask_reason::kNarrowCurve);
+  surface.make_hole(0, 1, mask_reason::kSecondPeak | mask_reason::kEdgeBand);
+  surface.make_hole(1, 1, mask_reason::kMaxSigma);
   const HeightSummary summary = surface.summary();
   EXPECT_EQ(summary.holes.first_slice, 1U);
   EXPECT_EQ(summary.holes.saturated, 1U);
@@ -69,7 +72,12 @@ TEST(HeightSummary, CountsAPointWithTwoReasonsTwice) {
   EXPECT_EQ(summary.holes.low_prominence, 1U);
   EXPECT_EQ(summary.holes.insignificant, 1U);
   EXPECT_EQ(summary.holes.edge_bleeding, 1U);
-  EXPECT_EQ(summary.valid, 13U);
+  EXPECT_EQ(summary.holes.broad_curve, 1U);
+  EXPECT_EQ(summary.holes.narrow_curve, 1U);
+  EXPECT_EQ(summary.holes.second_peak, 1U);
+  EXPECT_EQ(summary.holes.edge_band, 1U);
+  EXPECT_EQ(summary.holes.max_sigma, 1U);
+  EXPECT_EQ(summary.valid, 10U);
 }
 
 TEST(HeightSummary, HasNoHeightsWhereAllPointsAreHoles) {

@@ -35,7 +35,7 @@ Result full_result() {
   result.warnings = {{"slices_missing", "1 of 3"}, {"range_last", "20 %"}};
   result.points = 18;
   result.valid_points = 16;
-  result.holes = {1, 2, 3, 4, 5, 6, 7};
+  result.holes = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   result.focus.width_px = 6;
   result.focus.height_px = 3;
   result.focus.pixel_pitch_x_um = 2.0;
@@ -45,6 +45,7 @@ Result full_result() {
   result.focus.settings.distance_px = 3;
   result.focus.settings.min_prominence = 0.25;
   result.focus.settings.min_significance = 5.5;
+  result.focus.settings.tests = {0.25, 0.4, 0.6, 1.5};
   result.focus.settings.bin_slices = 4;
   result.focus.noise_grey = 1.5;
   result.focus.curve_width_um = 30.25;
@@ -83,6 +84,7 @@ TEST(ResultJson, IsReadBackWithEveryField) {
   EXPECT_EQ(read.focus.settings.distance_px, written.focus.settings.distance_px);
   EXPECT_EQ(read.focus.settings.min_prominence, written.focus.settings.min_prominence);
   EXPECT_EQ(read.focus.settings.min_significance, written.focus.settings.min_significance);
+  EXPECT_EQ(read.focus.settings.tests, written.focus.settings.tests);
   EXPECT_EQ(read.focus.settings.bin_slices, written.focus.settings.bin_slices);
   EXPECT_EQ(read.focus.noise_grey, written.focus.noise_grey);
   EXPECT_EQ(read.focus.curve_width_um, written.focus.curve_width_um);

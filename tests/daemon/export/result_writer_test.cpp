@@ -78,7 +78,12 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
                                                    {"not_bracketed", 0},
                                                    {"saturated", 1},
                                                    {"insignificant", 0},
-                                                   {"edge_bleeding", 0}}));
+                                                   {"edge_bleeding", 0},
+                                                   {"broad_curve", 0},
+                                                   {"narrow_curve", 0},
+                                                   {"second_peak", 0},
+                                                   {"edge_band", 0},
+                                                   {"max_sigma", 0}}));
   EXPECT_EQ(result["values"]["sigma_median_um"], 0.2);
   EXPECT_EQ(result["stage_in_curves"]["corrected"], false);
   EXPECT_EQ(result["stage_in_curves"]["offsets_rms_um"], 0.0);

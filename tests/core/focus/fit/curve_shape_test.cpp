@@ -74,7 +74,7 @@ struct Curves {
     const auto count = truth_um.size();
     FocusSettings settings;
     settings.min_significance = 0.0;
-    const RowFit fit(z_um, settings, PixelFormat::kMono8, PeakMethod::kFiveSample, bias);
+    const RowFit fit(z_um, settings, PixelFormat::kMono8, PeakMethod::kFiveSample, {bias, 0.0, {}});
     std::vector<float> height_m(count);
     std::vector<float> variance_m2(count);
     std::vector<float> prominence(count);
@@ -131,7 +131,7 @@ TEST(CurveShape, TakesNoVertexToOrBeyondTheNeighbours) {
   FocusSettings settings;
   settings.min_significance = 0.0;
   settings.min_prominence = 0.0;
-  const RowFit fit(z_um, settings, PixelFormat::kMono8, PeakMethod::kFiveSample, {-0.3F, 1.2F});
+  const RowFit fit(z_um, settings, PixelFormat::kMono8, PeakMethod::kFiveSample, {{-0.3F, 1.2F}, 0.0, {}});
   const auto count = curves.truth_um.size();
   std::vector<float> height_m(count);
   std::vector<float> variance_m2(count);

@@ -123,11 +123,10 @@ struct Curves {
   std::vector<float> least;
 };
 
-void expect_as_the_reference(PixelFormat format, int bin_slices, VertexBias bias, unsigned seed,
-                             double misfit = 0.0) {
+void expect_as_the_reference(PixelFormat format, int bin_slices, VertexBias bias, unsigned seed, double misfit = 0.0) {
   const FocusSettings settings{.min_prominence = 0.0, .min_significance = 0.0, .bin_slices = bin_slices};
   Curves curves(sharpness_code(settings, format).root, seed);
-  const RowFit fit(curves.z_um, settings, format, PeakMethod::kFiveSample, bias, misfit);
+  const RowFit fit(curves.z_um, settings, format, PeakMethod::kFiveSample, {bias, misfit, {}});
   std::vector<float> height_m(Curves::kWidth);
   std::vector<float> variance_m2(Curves::kWidth);
   std::vector<float> prominence(Curves::kWidth);

@@ -186,16 +186,16 @@ TEST(FocusKernels, GiveTheSameNoise) {
 
 /// The columns of a row's state in one store.
 struct Curves {
-  Curves(int width, std::mt19937& random) : saturated(static_cast<std::size_t>(width + kGuard)) {
+  Curves(int width, std::mt19937& random) : clipped(static_cast<std::size_t>(width + kGuard)) {
     for (auto& column : columns) column = random_row<std::uint16_t>(width, random);
-    for (auto& flag : saturated) flag = random() % 16 == 0 ? 1 : 0;
+    for (auto& state : clipped) state = random() % 16 == 0 ? static_cast<std::uint8_t>(random()) : std::uint8_t{0};
   }
   [[nodiscard]] CurveRow row() {
     return {columns[0].data(), columns[1].data(), columns[2].data(), columns[3].data(), columns[4].data(),
-            columns[5].data(), columns[6].data(), columns[7].data(), columns[8].data(), saturated.data()};
+            columns[5].data(), columns[6].data(), columns[7].data(), columns[8].data(), clipped.data()};
   }
   std::array<std::vector<std::uint16_t>, 9> columns;
-  std::vector<std::uint8_t> saturated;
+  std::vector<std::uint8_t> clipped;
 };
 
 TEST(FocusKernels, TakeASampleInAlike) {
@@ -206,23 +206,24 @@ TEST(FocusKernels, TakeASampleInAlike) {
       for (auto& index : curves.columns[8]) index = static_cast<std::uint16_t>(random() % 4);
       auto texture = random_row<Texture>(width, random);
       std::vector<std::vector<Texture>> pixels;
-      std::vector<std::vector<std::uint8_t>> saturated;
+      std::vector<std::vector<std::uint8_t>> clipped;
       std::vector<std::vector<std::uint16_t>> codes;
       std::vector<Sample<Texture>> samples;
       for (int k = 0; k < 5; ++k) {
         pixels.push_back(random_row<Texture>(width, random));
-        saturated.push_back(random_row<std::uint8_t>(width, random));
+        clipped.push_back(random_row<std::uint8_t>(width, random));
+        for (auto& level : clipped.back()) level &= clipping::kLevelBits;
         codes.push_back(random_row<std::uint16_t>(width, random));
         for (std::size_t x = 0; x < codes[0].size(); x += 3) codes.back()[x] = curves.columns[2][x];  // ties
       }
       for (std::size_t k = 0; k < codes.size(); ++k) {
-        samples.push_back({codes[k].data(), saturated[k].data(), pixels[k].data()});
+        samples.push_back({codes[k].data(), k == 2 ? nullptr : clipped[k].data(), pixels[k].data()});
       }
       update(kernels, curves.row(), samples.data(), 1, texture.data(), width, 1);
       update(kernels, curves.row(), samples.data() + 1, 4, texture.data(), width, 2);
       std::vector<unsigned> all(texture.begin(), texture.end());
       for (const auto& column : curves.columns) all.insert(all.end(), column.begin(), column.end());
-      all.insert(all.end(), curves.saturated.begin(), curves.saturated.end());
+      all.insert(all.end(), curves.clipped.begin(), curves.clipped.end());
       return all;
     };
   };
@@ -239,7 +240,7 @@ TEST(FocusKernels, FitAlike) {
       for (int i = 0; i < 12; ++i) z_um.push_back(i * 10.0 + static_cast<double>(random() % 7));
       const auto table = height_table(z_um);
       Curves curves(width, random);
-      for (std::size_t x = 0; x < curves.saturated.size(); ++x) {
+      for (std::size_t x = 0; x < curves.clipped.size(); ++x) {
         auto& columns = curves.columns;
         for (const std::size_t field : {3U, 4U, 5U, 6U}) columns[field][x] = std::min(columns[field][x], columns[2][x]);
         columns[7][x] = static_cast<std::uint16_t>(columns[7][x] % (columns[2][x] / 2 + 1));

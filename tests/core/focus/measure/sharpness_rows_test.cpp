@@ -61,8 +61,8 @@ TYPED_TEST(SharpnessRowsOf, EqualTheReferenceForEverySizeWindowOperatorAndStart)
             for (int y = first; y < height; ++y) {
               rows.next();
               ASSERT_TRUE(std::equal(rows.codes(), rows.codes() + width, expected.row(y)))
-                  << focus_operator_name(op) << ' ' << focus_window_name(shape) << ' ' << width << " x " << height << " window " << window << " from row "
-                  << first << " at row " << y;
+                  << focus_operator_name(op) << ' ' << focus_window_name(shape) << ' ' << width << " x " << height
+                  << " window " << window << " from row " << first << " at row " << y;
             }
           }
         }
@@ -71,7 +71,7 @@ TYPED_TEST(SharpnessRowsOf, EqualTheReferenceForEverySizeWindowOperatorAndStart)
   }
 }
 
-TYPED_TEST(SharpnessRowsOf, MarkEveryWindowThatHoldsASaturatedPixel) {
+TYPED_TEST(SharpnessRowsOf, TellWhatShareOfEveryWindowIsAtFullScale) {
   constexpr int kWidth = 40;
   constexpr int kHeight = 30;
   const int full = sizeof(TypeParam) == 1 ? 255 : 65535;
@@ -80,19 +80,26 @@ TYPED_TEST(SharpnessRowsOf, MarkEveryWindowThatHoldsASaturatedPixel) {
   image.view.at(8, 8) = static_cast<TypeParam>(full);
   image.view.at(20, 15) = static_cast<TypeParam>(full);
   image.view.at(1, 28) = static_cast<TypeParam>(full);
+  for (int y = 14; y < 24; ++y) {
+    for (int x = 26; x < 36; ++x) image.view.at(x, y) = static_cast<TypeParam>(full);
+  }
   SharpnessRows<TypeParam> rows(kWidth, {}, format_of(TypeParam{}));
   for (const int first : {0, 14, 17}) {
     rows.begin(image.view, first);
     for (int y = first; y < kHeight; ++y) {
       rows.next();
+      bool any = false;
       for (int x = 0; x < kWidth; ++x) {
         const WindowReach columns(x, 4, kWidth);
         const WindowReach lines(y, 4, kHeight);
-        bool expected = false;
-        for (const auto& [u, v] : {std::pair{8, 8}, {20, 15}, {1, 28}}) {
-          expected = expected || (columns.first <= u && u <= columns.last && lines.first <= v && v <= lines.last);
+        int inside = 0;
+        for (int v = lines.first; v <= lines.last; ++v) {
+          for (int u = columns.first; u <= columns.last; ++u) inside += image.view.at(u, v) == full ? 1 : 0;
         }
-        ASSERT_EQ(rows.saturated()[x] != 0, expected) << x << ", " << y << " from row " << first;
+        const int expected = inside > 56 ? 63 : static_cast<int>(std::ceil(62.0 * inside / 81.0));
+        any = any || inside > 0;
+        ASSERT_EQ(rows.clipped() == nullptr ? 0 : int{rows.clipped()[x]}, expected)
+            << x << ", " << y << " from row " << first;
       }
     }
   }
@@ -123,8 +130,7 @@ TEST(SharpnessReference, IsTheModifiedLaplacianOnAKnownImage) {
 TEST(SharpnessReference, SeesADiagonalLineThatTheModifiedLaplacianSeesLess) {
   Plane<std::uint8_t> image(15, 15, 10);
   image.at(7, 7) = 20;
-  const FocusSettings settings{
-      .focus_operator = FocusOperator::kDiagonalLaplacian, .window_px = 3, .distance_px = 2};
+  const FocusSettings settings{.focus_operator = FocusOperator::kDiagonalLaplacian, .window_px = 3, .distance_px = 2};
   const ImageView view = image_view(image.view(), PixelFormat::kMono8);
   // At the pixel itself twice two and four differences of 20; none of its eight neighbours sees it but the four
   // diagonal ones, by one difference of 10 each.
@@ -149,9 +155,7 @@ TEST(SharpnessReference, WeightsADoubleBoxTowardsItsMiddle) {
 }
 
 TEST(WindowSides, SpreadAsFarAsOneBox) {
-  const auto sides = [](int window) {
-    return window_sides({.window = FocusWindow::kDoubleBox, .window_px = window});
-  };
+  const auto sides = [](int window) { return window_sides({.window = FocusWindow::kDoubleBox, .window_px = window}); };
   EXPECT_EQ(sides(9).first, 7);
   EXPECT_EQ(sides(9).second, 5);
   EXPECT_EQ(sides(5).first, 3);

@@ -1,0 +1,98 @@
+#include "core/focus/fit/curve_limits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "core/focus/fit/sample_heights.hpp"
+#include "core/focus/kernels/five_sample_fit.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr std::size_t kLeastLookedAt = 500;
+constexpr std::size_t kLeastCurves = 20;
+/// Of the scan's median shoulder; spikes have less, curves of the recorded stacks and of steps up to a width have more.
+constexpr double kShoulderShare = 0.2;
+/// A median below this is one of spikes: theirs is 0.02, that of curves 0.9 widths from sample to sample 0.095.
+constexpr double kLeastMedianShoulder = 0.06;
+constexpr double kShoulderWithoutMedian = 0.1;
+constexpr double kNeighboursWithoutMedian = 1.0;  // three samples above half
+
+/// Curvature of G per sample distance squared, as fit_five finds it.
+std::optional<double> bend(const CurveTuple& tuple, const HeightEntry& at) {
+  const std::array u{at.u_left2, at.u_left, 0.0F, at.u_right, at.u_right2};
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d sums = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    if (i != 2 && u[i] == 0.0F) continue;
+    const auto place = static_cast<double>(u[i]);
+    const double r = std::max(static_cast<double>(tuple.share[i]), static_cast<double>(kSmallestShare));
+    const Eigen::Vector3d terms(1.0, place, place * place);
+    normal += std::pow(r, 4) * terms * terms.transpose();
+    sums += std::pow(r, 3.5) * terms;
+  }
+  const Eigen::LLT<Eigen::Matrix3d> factor(normal);
+  const double found = factor.solve(sums)(2);
+  return factor.info() == Eigen::Success && found > 0.0 ? std::optional(found) : std::nullopt;
+}
+
+std::optional<double> shoulder(const CurveTuple& tuple, const HeightEntry& at) {
+  if (at.u_left2 == 0.0F || at.u_right2 == 0.0F) return std::nullopt;
+  const double near = static_cast<double>(tuple.share[1]) + static_cast<double>(tuple.share[3]);
+  const double far = static_cast<double>(tuple.share[0]) + static_cast<double>(tuple.share[4]);
+  return near < 2.0 ? std::optional((near - far) / (2.0 - near)) : std::nullopt;
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+double CurveLimits::neighbours(double scale_um) const noexcept {
+  const double root = 1.0 + most_bend_per_um2 * scale_um * scale_um;  // of 1 / F at the neighbours
+  return std::max(least_neighbours, 2.0 / (root * root));
+}
+
+CurveLimits curve_limits(std::span<const CurveTuple> tuples, std::size_t looked_at, const std::vector<double>& z_um,
+                         const PointTests& tests) {
+  CurveLimits limits;
+  if (looked_at < kLeastLookedAt) return limits;
+  const std::vector<HeightEntry> heights = height_table(z_um);
+  std::vector<double> bends_per_um2;
+  std::vector<double> shoulders;
+  for (const CurveTuple& tuple : tuples) {
+    const HeightEntry& at = heights[static_cast<std::size_t>(tuple.index)];
+    if (at.mask != 0) continue;
+    const auto scale_um = static_cast<double>(at.scale_um);
+    if (const auto found = bend(tuple, at)) bends_per_um2.push_back(*found / (scale_um * scale_um));
+    if (const auto found = shoulder(tuple, at)) shoulders.push_back(*found);
+  }
+  const bool known = std::min(bends_per_um2.size(), shoulders.size()) >= kLeastCurves;
+  const double usual_shoulder = known ? median(shoulders) : 0.0;
+  if (usual_shoulder < kLeastMedianShoulder) {
+    if (tests.narrow_curve > 0.0 && z_um.size() >= 5) {
+      limits.least_neighbours = kNeighboursWithoutMedian;
+      limits.least_shoulder = kShoulderWithoutMedian;
+    }
+    return limits;
+  }
+  const double usual_bend_per_um2 = median(bends_per_um2);
+  limits.least_bend_per_um2 = tests.broad_curve * usual_bend_per_um2;
+  if (tests.narrow_curve > 0.0) {
+    limits.most_bend_per_um2 = usual_bend_per_um2 / (tests.narrow_curve * tests.narrow_curve);
+    limits.least_shoulder = kShoulderShare * usual_shoulder;
+  }
+  return limits;
+}
+
+}  // namespace fvd

@@ -1,0 +1,215 @@
+/// Points with a peak that is no surface: their curves are broader or narrower than the scan's, or they are too
+/// uncertain.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "core/focus/streaming_focus_stack.hpp"
+#include "core/runtime/worker_pool.hpp"
+#include "gtest/gtest.h"
+
+namespace fvd {
+namespace {
+
+constexpr int kSide = 160;
+constexpr int kSlices = 21;
+constexpr double kStep_um = 10.0;
+
+/// Grey level of a pixel in slice k, without noise. grain: of the texture at that pixel, standard deviation 1.
+using Level = std::function<double(int x, int y, int k, double grain)>;
+
+HeightMap map_of(const Level& level, const FocusSettings& settings = {}, PeakMethod method = PeakMethod::kFiveSample) {
+  std::mt19937 random(21);
+  std::normal_distribution<double> normal;
+  std::vector<double> grain(static_cast<std::size_t>(kSide) * kSide);
+  for (double& value : grain) value = normal(random);
+  WorkerPool pool(1);
+  StreamingFocusStack stack(kSide, kSide, PixelFormat::kMono8, settings, pool);
+  for (int k = 0; k < kSlices; ++k) {
+    Plane<std::uint8_t> slice(kSide, kSide);
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        const double grey = level(x, y, k, grain[static_cast<std::size_t>(y * kSide + x)]) + 1.5 * normal(random);
+        slice.at(x, y) = static_cast<std::uint8_t>(std::lround(std::clamp(grey, 0.0, 255.0)));
+      }
+    }
+    stack.push(image_view(slice.view(), PixelFormat::kMono8), kStep_um * k);
+  }
+  return stack.finish(method);
+}
+
+/// Contrast of texture k slices' distance from the surface, its curve `width` samples wide at half height.
+double contrast(double slices, double width) {
+  const double root = 1.0 + 4.0 * (std::sqrt(2.0) - 1.0) * slices * slices / (width * width);
+  return 1.0 / (root * root);
+}
+
+double share_kept(const HeightMap& map, int first_column, int end_column, MaskReasons besides = 0) {
+  int kept = 0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = first_column; x < end_column; ++x) kept += (map.mask.at(x, y) & ~besides) == 0 ? 1 : 0;
+  }
+  return static_cast<double>(kept) / (kSide * (end_column - first_column));
+}
+
+/// 60 pixels that each light up in one slice.
+class Blinking {
+ public:
+  Blinking() : slice_(static_cast<std::size_t>(kSide) * kSide, -1) {
+    std::mt19937 random(9);
+    for (int i = 0; i < 60; ++i) slice_[random() % slice_.size()] = static_cast<int>(random() % kSlices);
+  }
+  [[nodiscard]] double at(int x, int y, int k) const {
+    return slice_[static_cast<std::size_t>(y * kSide + x)] == k ? 60.0 : 0.0;
+  }
+
+ private:
+  std::vector<int> slice_;
+};
+
+double tilted_slices(int x, double k) { return k - 6.0 - 8.0 * x / kSide; }
+
+/// Of the kept points of a tilted surface, those off by more than a slice.
+double share_wrong(const HeightMap& map) {
+  int kept = 0;
+  int wrong = 0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      if (map.mask.at(x, y) != 0) continue;
+      ++kept;
+      wrong +=
+          std::abs(static_cast<double>(map.height_m.at(x, y)) * 1e6 / kStep_um + tilted_slices(x, 0.0)) > 1.0 ? 1 : 0;
+    }
+  }
+  return static_cast<double>(wrong) / kept;
+}
+
+TEST(PointTests, ABlinkingPixelIsNoSurfaceBesideTexture) {
+  const Blinking blinking;
+  const Level level = [&](int x, int y, int k, double grain) {
+    const double texture = x < kSide / 2 ? 25.0 * grain * contrast(tilted_slices(x, k), 3.0) : 0.0;
+    return 100.0 + texture + blinking.at(x, y, k);
+  };
+  for (const PeakMethod method : {PeakMethod::kFiveSample, PeakMethod::kParabola}) {
+    FocusSettings settings;
+    const HeightMap map = map_of(level, settings, method);
+    EXPECT_LE(share_kept(map, kSide / 2 + 12, kSide), 0.001);
+    EXPECT_GE(share_kept(map, 0, kSide / 2 - 12), 0.98) << "the texture, in which pixels blink as well";
+    settings.tests.narrow_curve = 0.0;
+    EXPECT_GE(share_kept(map_of(level, settings, method), kSide / 2 + 12, kSide), 0.03) << "the test turned off";
+  }
+}
+
+TEST(PointTests, BlinkingPixelsAreNoSurfaceWhereNothingElseHasAPeak) {
+  const Blinking blinking;
+  const Level level = [&](int x, int y, int k, double) { return 100.0 + blinking.at(x, y, k); };
+  EXPECT_LE(share_kept(map_of(level), 0, kSide), 0.001);
+  FocusSettings off;
+  off.tests.narrow_curve = 0.0;
+  EXPECT_GE(share_kept(map_of(level, off), 0, kSide), 0.03);
+}
+
+TEST(PointTests, AScanInStepsOfAWholeWidthKeepsItsPoints) {
+  const HeightMap map =
+      map_of([](int x, int, int k, double grain) { return 100.0 + 25.0 * grain * contrast(tilted_slices(x, k), 1.0); });
+  EXPECT_GE(share_kept(map, 0, kSide), 0.995);
+}
+
+TEST(PointTests, ACurveFarBroaderThanTheScansIsABlurFromElsewhere) {
+  const Level level = [](int x, int, int k, double grain) {
+    const double width = x < kSide / 2 ? 3.0 : 9.0;
+    return 100.0 + 25.0 * grain * contrast(k - 10.3, width);
+  };
+  // The narrow curves are the median only if there are more of them.
+  const Level mostly_narrow = [&](int x, int y, int k, double grain) { return level(x < 100 ? 0 : x, y, k, grain); };
+  for (const PeakMethod method : {PeakMethod::kFiveSample, PeakMethod::kInverseRoot}) {
+    FocusSettings settings;
+    const HeightMap map = map_of(mostly_narrow, settings, method);
+    EXPECT_GE(share_kept(map, 0, 90), 0.995);
+    EXPECT_LE(share_kept(map, 110, kSide), 0.02);
+    EXPECT_GE(share_kept(map, 110, kSide, mask_reason::kBroadCurve), 0.98) << "no other reason";
+    settings.tests.broad_curve = 0.0;
+    EXPECT_GE(share_kept(map_of(mostly_narrow, settings, method), 110, kSide), 0.98) << "the test turned off";
+  }
+}
+
+/// Glints of 0.5 px^2 and `level` times full scale on a tilted plane, blurred with 0.04 px per um, 8 um from slice to
+/// slice.
+class Glints {
+ public:
+  explicit Glints(double level) : energy_(0.5 * 255.0 * level) {
+    std::mt19937 random(5);
+    for (int i = 0; i < 64; ++i) {  // 1500 on 0.6 Mpx
+      places_.emplace_back(static_cast<int>(random() % kSide), static_cast<int>(random() % kSide));
+    }
+  }
+  [[nodiscard]] double at(int x, int y, double slices) const {
+    const double variance = 0.6 + 0.0016 * 64.0 * slices * slices;
+    double sum = 0.0;
+    for (const auto& [u, v] : places_) {
+      const double square = (x - u) * (x - u) + (y - v) * (y - v);
+      if (square < 40.0 * variance) sum += std::exp(-square / (2.0 * variance));
+    }
+    return energy_ * sum / (2.0 * 3.14159265358979 * variance);
+  }
+
+ private:
+  double energy_;
+  std::vector<std::pair<int, int>> places_;
+};
+
+TEST(PointTests, AGlintCostsOnlyWhatItSpoils) {
+  struct Bounds {
+    double level;
+    double kept;
+    double wrong;
+  };
+  for (const Bounds& bounds : {Bounds{10.0, 0.95, 0.0}, Bounds{40.0, 0.90, 0.002}, Bounds{200.0, 0.60, 0.003}}) {
+    const Glints glints(bounds.level);
+    const Level level = [&](int x, int y, int k, double grain) {
+      const double slices = tilted_slices(x, k);
+      return std::min(100.0 + 18.0 * grain * contrast(slices, 5.0) + glints.at(x, y, slices), 255.0);
+    };
+    FocusSettings settings;
+    const HeightMap map = map_of(level, settings);
+    settings.tests.clipped_share = 0.01;  // no pixel
+    const HeightMap none = map_of(level, settings);
+    EXPECT_GE(share_kept(map, 0, kSide), bounds.kept) << bounds.level;
+    EXPECT_LE(share_kept(none, 0, kSide), 0.85) << bounds.level;
+    EXPECT_LE(share_wrong(map), bounds.wrong) << bounds.level << " kept " << share_kept(map, 0, kSide);
+    settings.tests.clipped_share = 0.0;  // the test turned off
+    if (bounds.level == 200.0) {
+      EXPECT_GE(share_wrong(map_of(level, settings)), 0.004);
+    }
+  }
+}
+
+TEST(PointTests, APointLessCertainThanAskedForIsAHole) {
+  const Level level = [](int x, int, int k, double grain) {
+    return 100.0 + (x < kSide / 2 ? 30.0 : 6.0) * grain * contrast(tilted_slices(x, k), 3.0);
+  };
+  FocusSettings settings;
+  const HeightMap all = map_of(level, settings);
+  settings.tests.max_sigma_um = 0.4;
+  const HeightMap some = map_of(level, settings);
+  int dropped = 0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const bool uncertain = all.sigma_m.at(x, y) > 0.4e-6F;
+      ASSERT_EQ(some.mask.at(x, y), all.mask.at(x, y) | (uncertain ? mask_reason::kMaxSigma : 0)) << x << ", " << y;
+      ASSERT_EQ(std::isnan(some.height_m.at(x, y)), some.mask.at(x, y) != 0);
+      ASSERT_EQ(std::isnan(some.sigma_m.at(x, y)), some.mask.at(x, y) != 0);
+      dropped += uncertain ? 1 : 0;
+    }
+  }
+  EXPECT_GT(dropped, kSide * kSide / 4);
+  EXPECT_LT(dropped, kSide * kSide * 3 / 4);
+}
+
+}  // namespace
+}  // namespace fvd
