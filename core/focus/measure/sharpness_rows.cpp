@@ -92,8 +92,9 @@ void SharpnessRows<Pixel>::clear(Columns<Sum>& columns) noexcept {
 }
 
 template <typename Pixel>
-void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first) noexcept {
+void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first, double gain) noexcept {
   image_ = image;
+  scale_ = CodeScale(gain, operator_, code_.root);
   y_ = first;
   saturated_rows_ = 0;
   if (narrow_) {
@@ -166,8 +167,8 @@ void SharpnessRows<Pixel>::enter(Narrow& columns, int y) noexcept {
     if (operator_ == FocusOperator::kDiagonalLaplacian) {
       kernels_.enter_diagonal_u8(rows, width_, code_.shift, columns.sums.data(), slot, columns.scaled.data());
     } else {
-      kernels_.enter_laplacian_u8(rows.above, rows.row, rows.below, width_, distance_, code_.shift,
-                                  columns.sums.data(), slot, columns.scaled.data());
+      kernels_.enter_laplacian_u8(rows.above, rows.row, rows.below, width_, distance_, code_.shift, columns.sums.data(),
+                                  slot, columns.scaled.data());
     }
     for_ends([&](int x) {
       const auto column = static_cast<std::size_t>(x);
@@ -240,8 +241,8 @@ template <typename Pixel>
 template <typename Sum>
 void SharpnessRows<Pixel>::move_to(Columns<Sum>& columns) noexcept {
   const auto to_row = [&](int y) {
-    first_.move_to(y, sides_.first, image_.height, [&](int row) { enter(columns, row); },
-                   [&](int row) { leave(columns, row); });
+    first_.move_to(
+        y, sides_.first, image_.height, [&](int row) { enter(columns, row); }, [&](int row) { leave(columns, row); });
   };
   if (sides_.second == 1) {
     to_row(y_);
@@ -269,7 +270,21 @@ void SharpnessRows<Pixel>::next() noexcept {
   while (counted_.high <= reach.last) count_saturated(counted_.high++, 1);
   while (counted_.low < reach.first) count_saturated(counted_.low++, -1);
   find_saturated();
+  if (!scale_.none()) scale_codes();
   ++y_;
+}
+
+template <typename Pixel>
+void SharpnessRows<Pixel>::scale_codes() noexcept {
+  // Blocks of a fixed size: g++ 12 makes vector code of them at -O2 too.
+  constexpr int kBlock = 16;
+  const CodeScale scale = scale_;
+  std::uint16_t* code = codes_.data();
+  int left = width_;
+  for (; left >= kBlock; left -= kBlock, code += kBlock) {
+    for (int i = 0; i < kBlock; ++i) code[i] = scale.apply(code[i]);
+  }
+  for (int i = 0; i < left; ++i) code[i] = scale.apply(code[i]);
 }
 
 template <typename Pixel>

@@ -14,9 +14,10 @@
 /// Operators, with neighbours at distance d:
 ///   modified Laplacian (Nayar and Nakagawa, IEEE PAMI 16(8), 1994): |2 I - I(x-d) - I(x+d)| + |2 I - I(y-d) - I(y+d)|;
 ///     the absolute values are summed so that curvatures of opposite sign do not cancel
-///   diagonal Laplacian: twice the modified Laplacian, and the absolute second differences along both diagonals at d and
-///     at half of d, at least 1 (the extension to the diagonals: Thelen, Frey, Hirsch, Hering, IEEE T-IP 18(1), 2009; the
-///     weights: core/focus/README.md). All in one integer; only its size against others of the same operator counts
+///   diagonal Laplacian: twice the modified Laplacian, and the absolute second differences along both diagonals at d
+///   and
+///     at half of d, at least 1 (the extension to the diagonals: Thelen, Frey, Hirsch, Hering, IEEE T-IP 18(1), 2009;
+///     the weights: core/focus/README.md). All in one integer; only its size against others of the same operator counts
 ///   Tenengrad (Tenenbaum, Stanford, 1970): gx^2 + gy^2 of the 3 x 3 Sobel operator, its rows and columns d apart
 ///   intensity: I
 ///
@@ -51,8 +52,8 @@ class SharpnessRows {
   /// width >= 1; settings checked; format of the Pixel's size.
   SharpnessRows(int width, const FocusSettings& settings, PixelFormat format);
 
-  /// Starts at row `first` of an image of the constructor's width and format.
-  void begin(PlaneView<const Pixel> image, int first) noexcept;
+  /// Starts at row `first` of an image of the constructor's width and format. gain: of its light, see CodeScale.
+  void begin(PlaneView<const Pixel> image, int first, double gain = 1.0) noexcept;
 
   /// Computes the next row: codes() and saturated() then hold it. Not called past the last row.
   void next() noexcept;
@@ -132,6 +133,7 @@ class SharpnessRows {
   [[nodiscard]] bool row_saturated(int y) const noexcept;
   void count_saturated(int y, int change) noexcept;
   void find_saturated() noexcept;
+  void scale_codes() noexcept;
 
   const FocusKernels& kernels_;
   int width_;
@@ -140,6 +142,7 @@ class SharpnessRows {
   int distance_;
   FocusOperator operator_;
   SharpnessCode code_;
+  CodeScale scale_;  // of the present image
   int saturation_;
   bool narrow_;
   PlaneView<const Pixel> image_;
@@ -158,7 +161,8 @@ class SharpnessRows {
 };
 
 /// The same codes for a whole image, obviously correct: every window is summed anew. Shape of the image. For tests.
-[[nodiscard]] Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings);
+[[nodiscard]] Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings,
+                                                       double gain = 1.0);
 
 extern template class SharpnessRows<std::uint8_t>;
 extern template class SharpnessRows<std::uint16_t>;
