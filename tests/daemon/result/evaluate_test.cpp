@@ -43,7 +43,8 @@ TEST(Evaluate, WarnsOfSlicesThatMustNotBeBelievedAndOfFlicker) {
   EXPECT_EQ(result.slices.retaken, 1);
   EXPECT_THAT(codes(result), testing::IsSupersetOf({"slices_left_out", "slices_retaken", "light_flicker"}));
   for (const Warning& warning : result.warnings) {
-    if (warning.code == "slices_left_out") EXPECT_THAT(warning.text, HasSubstr("slice 2 at 20 um"));
+    if (warning.code != "slices_left_out") continue;
+    EXPECT_THAT(warning.text, HasSubstr("slice 2 at 20 um"));
   }
 }
 
