@@ -101,10 +101,10 @@ SimpleFocusStack::SimpleFocusStack(const FocusSettings& settings) : settings_(se
   check_focus_settings(settings);
 }
 
-void SimpleFocusStack::push(const ImageView& slice, double z_um) {
+void SimpleFocusStack::push(const ImageView& slice, double z_um, double gain) {
   assert(pixels_.empty() || (pixels_[0].width() == slice.width && pixels_[0].height() == slice.height));
   format_ = slice.format;
-  sharpness_.push_back(sharpness_reference(slice, settings_));
+  sharpness_.push_back(sharpness_reference(slice, settings_, gain));
   pixels_.push_back(widened(slice));
   z_um_.push_back(z_um);
 }

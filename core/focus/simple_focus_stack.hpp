@@ -17,8 +17,8 @@ class SimpleFocusStack {
   /// Throws Error kBadInput for settings out of range.
   explicit SimpleFocusStack(const FocusSettings& settings);
 
-  /// All slices of the first one's size and format.
-  void push(const ImageView& slice, double z_um);
+  /// All slices of the first one's size and format. gain: see ZSlice.
+  void push(const ImageView& slice, double z_um, double gain = 1.0);
 
   /// Throws Error kBadSlice without slices.
   [[nodiscard]] HeightMap finish(PeakMethod method) const;

@@ -48,7 +48,9 @@ class TypedStack {
       const int end = height_ * (number + 1) / bands;
       if (first == end) return;
       Band& band = bands_[static_cast<std::size_t>(number)];
-      for (std::size_t k = 0; k < slices.size(); ++k) band.scanners[k].begin(slices[k].image.as<Pixel>(), first);
+      for (std::size_t k = 0; k < slices.size(); ++k) {
+        band.scanners[k].begin(slices[k].image.as<Pixel>(), first, slices[k].gain);
+      }
       for (int y = first; y < end; ++y) {
         const auto row = peaks_.row(y);
         std::array<Sample<Pixel>, StreamingFocusStack::kMaxBatch> samples;

@@ -19,6 +19,7 @@ struct ZSlice {
   ImageView image;
   double z_um = 0.0;
   const std::uint8_t* colour = nullptr;  ///< shape [height][width][3] contiguous; read by stacks with colour only
+  double gain = 1.0;  ///< its light times this is that of the other slices: its sharpness is multiplied, see CodeScale
 };
 
 /// Keeps per pixel the peak of the focus curve with two neighbours on either side, the peak's number, and the curve's

@@ -34,7 +34,7 @@ struct CameraSettings {
   TriggerMode trigger = TriggerMode::kSoftware;
   std::string trigger_line = "Line0";  ///< kLine: TriggerSource
   double frame_rate_hz = 0.0;          ///< kFreeRun: AcquisitionFrameRate, 0 = as fast as the camera can
-  int pool_frames = 8;                 ///< slots of the frame pool, >= 3
+  int pool_frames = 11;                ///< slots of the frame pool, >= 3; a scan holds three frames back to judge them
 
   /// Pixel format of the slices that these settings give.
   [[nodiscard]] PixelFormat slice_format() const { return fvd::slice_format(pixel_format, significant_bits); }

@@ -279,8 +279,8 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
         require_frames_as_planned(sorter, plan, report.frames);
         if (place == SliceSorter::Place::kSlice) {
           report.steps.push_back(record(sorter.taken() + sorter.lost() - 1, oldest.frame, position));
-          if (!deps_.sink.push({std::move(oldest.frame), position.mean.value}, deps_.clock.now() + kQueueTimeout,
-                               stop)) {
+          if (!deps_.sink.push({std::move(oldest.frame), position.mean.value, report.steps.back().index},
+                               deps_.clock.now() + kQueueTimeout, stop)) {
             if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
             throw Error(ErrorCode::kSliceLost,
                         "a slice found no room in the slice queue: the computation hangs or is far too slow; use more "

@@ -1,6 +1,5 @@
 #include "core/scan/focus_worker.hpp"
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -16,10 +15,11 @@ constexpr std::chrono::seconds kLongestBatch{60};
 
 }  // namespace
 
-FocusWorker::FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, Tap tap)
+FocusWorker::FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, int allowed_lost_slices, Tap tap)
     : stack_(stack),
       queue_(queue_slices),
       tap_(std::move(tap)),
+      gate_(allowed_lost_slices),
       thread_(start_thread(
           "fvd-focus", [this](std::stop_token stop) { run(stop); },
           [this](std::string_view /*name*/, const std::exception_ptr& failure) {
@@ -42,6 +42,7 @@ void FocusWorker::run(std::stop_token stop) {
   // What has come meanwhile is computed together: the further the computation is behind, the faster it gets.
   std::vector<Slice> batch;
   batch.reserve(StreamingFocusStack::kMaxBatch);
+  believed_.reserve(StreamingFocusStack::kMaxBatch);
   while (auto slice = queue_.pop(stop)) {
     ticks.tick(HostClock::now());
     batch.clear();
@@ -51,18 +52,37 @@ void FocusWorker::run(std::stop_token stop) {
       if (!next) break;
       batch.push_back(std::move(*next));
     }
-    consume(batch);
+    judge(batch);
+    consume();
     ticks.rest();
+  }
+  if (stop.stop_requested()) return;
+  ticks.tick(HostClock::now());
+  gate_.finish([this](Slice&& slice, double /*z_um*/, double gain) { believed_.push_back({std::move(slice), gain}); });
+  consume();
+}
+
+void FocusWorker::judge(std::vector<Slice>& batch) {
+  const auto pass = [this](Slice&& slice, double /*z_um*/, double gain) {
+    believed_.push_back({std::move(slice), gain});
+  };
+  for (Slice& slice : batch) {
+    const ImageView pixels = slice.frame.image;
+    const int index = slice.index;
+    const double z_um = slice.z_um;
+    if (tap_) tap_(pixels, z_um);
+    gate_.push(std::move(slice), pixels, slice_figures(pixels), index, z_um, pass);
   }
 }
 
-void FocusWorker::consume(std::span<const Slice> batch) {
-  std::array<ZSlice, StreamingFocusStack::kMaxBatch> slices;
-  for (std::size_t k = 0; k < batch.size(); ++k) {
-    if (tap_) tap_(batch[k].frame.image, batch[k].z_um);
-    slices[k] = {batch[k].frame.image, batch[k].z_um};
+void FocusWorker::consume() {
+  std::vector<ZSlice> slices;
+  slices.reserve(believed_.size());
+  for (const Believed& believed : believed_) {
+    slices.push_back({believed.slice.frame.image, believed.slice.z_um, nullptr, believed.gain});
   }
-  stack_.push(std::span(slices).first(batch.size()));
+  stack_.push(slices);
+  believed_.clear();
 }
 
 }  // namespace fvd

@@ -39,8 +39,16 @@ void record_exposure(StepRecord& step, const CapturedFrame& captured, const Posi
   step.exposure_start = captured.frame.exposure_start;
 }
 
-Error too_many_lost(int index, Micrometers target, int lost, const ScanPlan& plan) {
+Error too_many_lost(int index, Micrometers target, const ScanPlan& plan, const ScanReport& report) {
   std::ostringstream message;
+  const int lost = report.lost_slices;
+  if (!report.suspects.empty() && report.suspects.back().index == index &&
+      report.suspects.back().done == SuspectDone::kLeftOut) {
+    message << suspect_text(report.suspects.back()) << ", in " << 1 + plan.frame_retries << " frames; " << lost
+            << " slice(s) lost, the recipe allows " << plan.allowed_lost_slices
+            << ": check light, exposure and the camera's link";
+    return {ErrorCode::kBadSlice, message.str()};
+  }
   message << "no good frame of slice " << index << " at " << target.value << " um within " << 1 + plan.frame_retries
           << " triggers; " << lost << " slice(s) lost, the recipe allows " << plan.allowed_lost_slices
           << ": check the camera's link and its packet counters";
@@ -90,6 +98,26 @@ std::optional<CapturedFrame> ScanRunner::capture_by_line(const ScanPlan& plan, M
   }
 }
 
+/// A frame that is dark, constant, delivered in part or a repetition is taken again: the stage still stands there.
+std::optional<CapturedFrame> ScanRunner::capture_believed(const ScanPlan& plan, int index, HostTime settled,
+                                                          SliceCapture& capture, ScanReport& report,
+                                                          std::stop_token stop) {
+  int triggers = 0;
+  for (int attempt = 0;; ++attempt) {
+    auto captured = capture.capture(settled, plan.frame_retries, stop);
+    if (!captured) return captured;
+    triggers = captured->triggers += triggers;
+    auto suspect = look_.doubt(captured->frame.image, index, plan.target(index).value);
+    if (!suspect) {
+      if (look_.withdrew()) report.suspects.pop_back();
+      return captured;
+    }
+    suspect->done = attempt < plan.frame_retries ? SuspectDone::kTakenAgain : SuspectDone::kLeftOut;
+    report.suspects.push_back(*suspect);
+    if (attempt == plan.frame_retries) return std::nullopt;
+  }
+}
+
 void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
                      std::stop_token stop) {
   check_plan(plan, deps_.stage.info());
@@ -102,18 +130,18 @@ void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::functi
   SliceCapture capture(deps_.camera, deps_.clock, ledger);
   const std::stop_callback wake(stop, [this] { deps_.camera.interrupt(); });
   report.steps.reserve(static_cast<std::size_t>(plan.slices));
-  int lost = 0;
+  look_ = {};
   try {
     take_up(plan, stop);
     for (int index = 0; index < plan.slices; ++index) {
       const Micrometers target = plan.target(index);
       MoveRecord move = deps_.stage.move_to(target, plan.settle, stop);
       auto captured = plan.line_trigger ? capture_by_line(plan, target, move, capture, stop)
-                                        : capture.capture(move.settled, plan.frame_retries, stop);
+                                        : capture_believed(plan, index, move.settled, capture, report, stop);
       StepRecord step = record_move(index, target, move);
       report.frames = ledger.counts();
       if (!captured) {
-        if (++lost > plan.allowed_lost_slices) throw too_many_lost(index, target, lost, plan);
+        if (++report.lost_slices > plan.allowed_lost_slices) throw too_many_lost(index, target, plan, report);
         step.measured = false;
         step.triggers = 1 + plan.frame_retries;
       } else {
@@ -123,7 +151,7 @@ void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::functi
         const HostTime from = plan.line_trigger ? frame.exposure_start : std::max(frame.exposure_start, move.settled);
         record_exposure(step, *captured, deps_.stage.mean_position(from, std::max(from, frame.exposure_end)));
         const double z_um = measured_z ? step.measured_um : step.quantised_um;
-        hand_over({std::move(captured->frame), z_um}, index, stop);
+        hand_over({std::move(captured->frame), z_um, index}, index, stop);
       }
       report.steps.push_back(step);
       if (on_slice) on_slice(report);

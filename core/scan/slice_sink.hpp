@@ -12,6 +12,7 @@ namespace fvd {
 struct Slice {
   Frame frame;
   double z_um = 0.0;  ///< stage position measured over the exposure, um
+  int index = 0;      ///< of the plan, 0-based
 };
 
 class SliceSink {

@@ -204,7 +204,10 @@ ordered_json full_result_json(const JobStatus& job, const std::string& result_te
   }
   // Per estimator figures and the list of files stand in the directory's result.json.
   json["focus"].erase("extra_peaks");
-  json["slices"].erase("suspect");
+  // A flag instead of the list: how many frames must not be believed; warnings say which.
+  auto& slices = json["slices"];
+  if (slices.contains("suspect")) slices["suspect_count"] = slices["suspect"].size();
+  slices.erase("suspect");
   json["simulated"] = result.at("provenance").at("simulated");
   return json;
 }

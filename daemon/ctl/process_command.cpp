@@ -120,6 +120,8 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
     options.recipe.sha256.clear();  // of what the file says
     options.warnings.push_back({"recipe_overridden", "the recipe was changed by " + overrides.options()});
   }
+  if (options.recipe_plans_scan) options.allowed_lost_slices = options.recipe.allowed_lost_slices;
+  if (arguments.allowed_lost_slices) options.allowed_lost_slices = *arguments.allowed_lost_slices;
   options.knows_pixel_pitch = arguments.pixel_pitch_um || !arguments.recipe.empty();
   options.threads = arguments.threads;
   return options;
@@ -217,6 +219,11 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                      "points with a larger standard error in um become holes, 0 = off, the default");
   command.add_flag("--stage-correction", a.stage_correction,
                    "seek the stage's errors in the focus curves and correct heights by them");
+  command
+      .add_option("--allowed-lost-slices", a.allowed_lost_slices,
+                  "so many slices that must not be believed are left out, one more is an error; default: the recipe's, "
+                  "else 2")
+      ->check(CLI::Range(0, 65532));
   command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");
   command.add_option("--part", a.part_id, "part id to write into the result; default: the name of the source");
   command.add_option("--threads", a.threads, "threads that compute, 0 = one per core")

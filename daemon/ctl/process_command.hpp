@@ -47,6 +47,7 @@ struct ProcessArguments {
   std::optional<std::string> peak;
   std::vector<std::string> extra_peaks;
   std::optional<double> pixel_pitch_um;
+  std::optional<int> allowed_lost_slices;
   int threads = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/focus/judge/slice_gate.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/base/version.hpp"
@@ -67,41 +68,95 @@ void describe(ResultData& data, const ProcessOptions& options, const RecordedSta
   data.simulated = options.simulated;
 }
 
-void push_slices(StreamingFocusStack& focus, WorkerPool& pool, const RecordedStack& stack,
-                 const std::vector<double>& z_um, ResultData& data, const std::function<void(int, int)>& on_slice) {
-  std::vector<SliceImage> images;
-  std::vector<ZSlice> batch;
-  for (int first = 0; first < stack.slices(); first += StreamingFocusStack::kMaxBatch) {
-    const int end = std::min(first + StreamingFocusStack::kMaxBatch, stack.slices());
-    batch.clear();
-    images.resize(static_cast<std::size_t>(end - first));
-    const auto read = [&](int i) { stack.read(first + i, images[static_cast<std::size_t>(i)]); };
-    pool.run(end - first, std::ref(read));  // decoding takes as long as computing
-    for (int index = first; index < end; ++index) {
-      const double z = z_um[static_cast<std::size_t>(index)];
-      const SliceImage& image = images[static_cast<std::size_t>(index - first)];
-      batch.push_back({image.view(), z, image.colour.empty() ? nullptr : image.colour.data()});
-      data.steps.push_back(step_record(index, z));
-      ++data.frames.expected;
-      ++data.frames.ok;
+/// Reads a batch of slices at a time and hands on those that are believed.
+class SliceFeed {
+ public:
+  SliceFeed(StreamingFocusStack& focus, WorkerPool& pool, const RecordedStack& stack, int allowed_lost_slices)
+      : focus_(focus), pool_(pool), stack_(stack), gate_(allowed_lost_slices) {}
+
+  void run(const std::vector<double>& z_um, ResultData& data, const std::function<void(int, int)>& on_slice) {
+    for (int first = 0; first < stack_.slices(); first += StreamingFocusStack::kMaxBatch) {
+      const int end = std::min(first + StreamingFocusStack::kMaxBatch, stack_.slices());
+      read(first, end);
+      for (int index = first; index < end; ++index) {
+        const double z = z_um[static_cast<std::size_t>(index)];
+        data.steps.push_back(step_record(index, z));
+        ++data.frames.expected;
+        ++data.frames.ok;
+        const auto place = static_cast<std::size_t>(index - first);
+        const ImageView view = images_[place].view();
+        gate_.push(std::move(images_[place]), view, std::move(figures_[place]), index, z, pass_);
+      }
+      compute();
+      if (on_slice) on_slice(end, stack_.slices());
     }
-    focus.push(batch);
-    if (on_slice) on_slice(end, stack.slices());
+    gate_.finish(pass_);
+    compute();
+    note_light(gate_.suspects(), gate_.flicker_percent(), data);
   }
-}
+
+ private:
+  struct Believed {
+    SliceImage image;
+    double z_um;
+    double gain;
+  };
+
+  /// Into images_ and figures_; decoding takes as long as computing.
+  void read(int first, int end) {
+    images_.resize(static_cast<std::size_t>(end - first));
+    figures_.resize(images_.size());
+    for (SliceImage& image : images_) {
+      if (spare_.empty()) break;
+      image = std::move(spare_.back());
+      spare_.pop_back();
+    }
+    const auto body = [&](int i) {
+      const auto place = static_cast<std::size_t>(i);
+      stack_.read(first + i, images_[place]);
+      figures_[place] = slice_figures(images_[place].view());
+    };
+    pool_.run(end - first, std::ref(body));
+  }
+
+  void compute() {
+    batch_.clear();
+    for (const Believed& slice : believed_) {
+      const SliceImage& image = slice.image;
+      batch_.push_back({image.view(), slice.z_um, image.colour.empty() ? nullptr : image.colour.data(), slice.gain});
+    }
+    focus_.push(batch_);
+    for (Believed& slice : believed_) spare_.push_back(std::move(slice.image));
+    believed_.clear();
+  }
+
+  StreamingFocusStack& focus_;
+  WorkerPool& pool_;
+  const RecordedStack& stack_;
+  SliceGate<SliceImage> gate_;
+  SliceGate<SliceImage>::Pass pass_ = [this](SliceImage&& image, double z_um, double gain) {
+    believed_.push_back({std::move(image), z_um, gain});
+  };
+  std::vector<SliceImage> images_;
+  std::vector<SliceFigures> figures_;
+  std::vector<Believed> believed_;
+  std::vector<SliceImage> spare_;  // whose memory is used again
+  std::vector<ZSlice> batch_;
+};
 
 /// One pass over the slices, to their map.
 class Pass {
  public:
-  Pass(const Recipe& recipe, const RecordedStack& stack, WorkerPool& pool)
+  Pass(const Recipe& recipe, const RecordedStack& stack, int allowed_lost_slices, WorkerPool& pool)
       : recipe_(recipe),
+        allowed_lost_slices_(allowed_lost_slices),
         pool_(pool),
         focus_(stack.width(), stack.height(), stack.format(), focus_settings(recipe), pool, stack.colour()) {}
 
   void run(const RecordedStack& stack, const std::vector<double>& z_um, ResultData& data,
            const std::function<void(int, int)>& on_slice) {
     const auto scan_start = SteadyClock::now();
-    push_slices(focus_, pool_, stack, z_um, data, on_slice);
+    SliceFeed(focus_, pool_, stack, allowed_lost_slices_).run(z_um, data, on_slice);
     data.times.scan_ms += milliseconds_since(scan_start);
     const auto finish_start = SteadyClock::now();
     reconstruct(focus_, recipe_, data);
@@ -111,6 +166,7 @@ class Pass {
 
  private:
   const Recipe& recipe_;
+  int allowed_lost_slices_;
   WorkerPool& pool_;
   StreamingFocusStack focus_;
 };
@@ -131,7 +187,7 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
   Recipe recipe = options.recipe;
   if (!options.recipe_plans_scan) recipe.step_um = median_step_um(z_um);
   const std::vector<Warning> warnings = data.warnings;
-  auto pass = std::make_unique<Pass>(recipe, stack, pool);
+  auto pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, pool);
   data.times.prepare_ms = milliseconds_since(start);
   pass->run(stack, z_um, data, on_slice);
   if (wants_bins(recipe, data.map)) {
@@ -139,11 +195,12 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
     data.warnings = warnings;
     data.frames = {};
     data.steps.clear();
+    data.suspects.clear();
     data.map = {};
     data.focus = focus_settings(recipe);
     data.bins_by = bin_choice(recipe);
     pass.reset();  // its memory first
-    pass = std::make_unique<Pass>(recipe, stack, pool);
+    pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, pool);
     pass->run(stack, z_um, data, on_slice);
   }
   pass->further(data);

@@ -24,6 +24,7 @@ struct ProcessOptions {
   bool recipe_plans_scan = false;  ///< the slices should be as many, and as far apart, as the recipe says
   bool knows_pixel_pitch = false;  ///< false: the recipe's is a default, and the files carry pixels
   int threads = 0;                 ///< 0 = one per core
+  int allowed_lost_slices = 2;     ///< so many slices that must not be believed are left out
   std::string part_id;             ///< empty = the name of the source
   std::vector<Warning> warnings;   ///< go into the result
 };
@@ -34,7 +35,8 @@ struct ProcessReport {
 };
 
 /// Reads a few slices at a time; writes only after the last one was good. on_slice(done, total) follows each slice.
-/// Throws Error kBadInput naming the file, or as check_stack(); kStorageWrite, kStorageFull; nothing is left in `out`
+/// Throws Error kBadInput naming the file, or as check_stack(); kBadSlice naming the slice
+/// where too many must not be believed; kStorageWrite, kStorageFull; nothing is left in `out`
 /// then.
 ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice);
 

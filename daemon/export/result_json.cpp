@@ -126,6 +126,20 @@ Json frames(const FrameCounts& counts) {
           {"missing", counts.missing},   {"stale", counts.stale}, {"underrun", counts.underrun}};
 }
 
+Json suspects(const std::vector<SuspectSlice>& slices) {
+  Json list = Json::array();
+  for (const SuspectSlice& slice : slices) {
+    list.push_back({{"index", slice.index},
+                    {"z_um", um(slice.z_um)},
+                    {"reason", suspect_reason_name(slice.reason)},
+                    {"figure", rounded(slice.figure, 4)},
+                    {"figure_is", suspect_figure_text(slice.reason)},
+                    {"unit", "1"},
+                    {"done", suspect_done_name(slice.done)}});
+  }
+  return list;
+}
+
 Json slices(const Result::Slices& slices) {
   Json json{{"planned", slices.planned},
             {"measured", slices.measured},
@@ -136,7 +150,9 @@ Json slices(const Result::Slices& slices) {
     json["speed_um_per_s"] = um(slices.speed_um_per_s);
     json["ramp_frames"] = slices.ramp_frames;
   }
-  json["suspect"] = slices.suspect;
+  json["suspect"] = suspects(slices.suspect);
+  json["retaken"] = slices.retaken;
+  json["flicker_percent"] = slices.flicker_percent ? rounded(*slices.flicker_percent, 3) : Json(nullptr);
   return json;
 }
 

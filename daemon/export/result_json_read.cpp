@@ -188,6 +188,16 @@ std::optional<ScanMode> scan_mode_from_name(std::string_view name) {
   return name == "continuous" ? std::optional(ScanMode::kContinuous) : std::nullopt;
 }
 
+SuspectSlice suspect_slice(const Node& node) {
+  SuspectSlice slice;
+  slice.index = node.at("index").integer<int>();
+  slice.z_um = node.at("z_um").number();
+  slice.reason = node.at("reason").named(suspect_reason_from_name, "a reason to suspect a slice");
+  slice.figure = node.at("figure").number();
+  slice.done = node.at("done").named(suspect_done_from_name, "left_out or taken_again");
+  return slice;
+}
+
 Result::Slices slices(const Node& node) {
   Result::Slices slices;
   slices.planned = node.at("planned").integer<int>();
@@ -199,7 +209,10 @@ Result::Slices slices(const Node& node) {
     slices.speed_um_per_s = node.at("speed_um_per_s").number();
     slices.ramp_frames = node.at("ramp_frames").integer<int>();
   }
-  node.at("suspect").elements([&slices](const Node& index) { slices.suspect.push_back(index.integer<int>()); });
+  node.at("suspect").elements([&slices](const Node& suspect) { slices.suspect.push_back(suspect_slice(suspect)); });
+  // Results of 0.1.0 had neither.
+  if (node.has("retaken")) slices.retaken = node.at("retaken").integer<int>();
+  if (node.has("flicker_percent")) slices.flicker_percent = node.at("flicker_percent").optional_number();
   return slices;
 }
 

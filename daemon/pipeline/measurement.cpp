@@ -25,6 +25,7 @@ void copy_books(const ScanReport& report, ResultData& result) {
   result.frames = report.frames;
   result.ramp_frames = report.ramp_frames;
   result.step_summary = summarize_steps(report.steps);
+  result.suspects = report.suspects;
 }
 
 /// Runs the scan into the stack. What broke the focus thread is the reason to report, not the push it then refused.
@@ -32,7 +33,7 @@ void acquire(const ScanPlan& plan, const CameraSettings& settings, const Measure
              const MeasurementObserver& observer, StreamingFocusStack& stack, ResultData& result,
              std::stop_token stop) {
   FreeRun free_run(deps.camera, settings);  // ends after the worker, which holds frames
-  FocusWorker worker(stack, deps.queue_slices, observer.tap);
+  FocusWorker worker(stack, deps.queue_slices, plan.allowed_lost_slices, observer.tap);
   const ScanDependencies scan{deps.camera, deps.stage, deps.clock, worker};
   ScanReport report;
   try {
@@ -43,14 +44,19 @@ void acquire(const ScanPlan& plan, const CameraSettings& settings, const Measure
     }
   } catch (const Error& error) {
     copy_books(report, result);
-    observer.on_slice(report);  // the books as they ended
-    if (error.code() == ErrorCode::kSliceLost) worker.finish();
+    observer.on_slice(report);                                   // the books as they ended
+    if (error.code() == ErrorCode::kSliceLost) worker.finish();  // which says why
     throw;
   }
   copy_books(report, result);
   observer.on_acquired();
   observer.on_phase("computing");
   worker.finish();
+  note_light(worker.suspects(), worker.flicker_percent(), result);
+  if (report.lost_slices + static_cast<int>(worker.suspects().size()) > plan.allowed_lost_slices &&
+      !worker.suspects().empty()) {
+    throw_suspects(result.suspects, plan.allowed_lost_slices);
+  }
 }
 
 }  // namespace

@@ -25,6 +25,13 @@ void note_recipe(const Recipe& recipe, ResultData& data) {
   data.exports = recipe.exports;
 }
 
+void note_light(const std::vector<SuspectSlice>& left_out, double flicker_percent, ResultData& data) {
+  data.suspects.insert(data.suspects.end(), left_out.begin(), left_out.end());
+  std::stable_sort(data.suspects.begin(), data.suspects.end(),
+                   [](const SuspectSlice& a, const SuspectSlice& b) { return a.index < b.index; });
+  data.flicker_percent = flicker_percent;
+}
+
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
   data.state_bytes_per_pixel = stack.state_bytes_per_pixel();
   data.map = stack.finish(recipe.peak);

@@ -2,6 +2,9 @@
 
 /// From the slices that a stack has seen to the surfaces of a recipe: the same for a live scan and for recorded slices.
 
+#include <vector>
+
+#include "core/focus/judge/suspect_slice.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/recipes/recipe.hpp"
@@ -11,6 +14,9 @@ namespace fvd {
 
 /// Notes of the recipe what its result tells: id, digest, settings, scale, what it asks for.
 void note_recipe(const Recipe& recipe, ResultData& data);
+
+/// Notes what the judging of the slices found, in the order of the scan. left_out: added to those of data.
+void note_light(const std::vector<SuspectSlice>& left_out, double flicker_percent, ResultData& data);
 
 /// What the bins follow from. context: pure.
 [[nodiscard]] BinChoice bin_choice(const Recipe& recipe);

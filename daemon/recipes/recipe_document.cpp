@@ -18,7 +18,7 @@ namespace fvd {
 namespace {
 
 constexpr std::size_t kMaxIdLength = 32;
-constexpr int kContinuousPoolFrames = 24;
+constexpr int kContinuousPoolFrames = 27;
 
 /// A document without "format" that has a key which only format 1 has at its top.
 bool is_format_1(const nlohmann::json& document) {

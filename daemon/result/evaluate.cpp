@@ -1,5 +1,6 @@
 #include "daemon/result/evaluate.hpp"
 
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
@@ -13,6 +14,9 @@ constexpr const char* kValidFraction = "valid_fraction";
 /// Share of the points that are sharpest at one end of the scan, above which the result warns: the surface may reach
 /// beyond that end.
 constexpr double kMaxFractionAtEnd = 0.05;
+/// Flicker of the light above which the result warns.
+constexpr double kMaxFlicker_percent = 2.0;
+constexpr int kListedSuspects = 4;
 
 FurtherHeights further_heights(PeakMethod peak, const HeightMap& map) {
   const auto height = summarize_heights(map.height_m, map.sigma_m, map.mask).height;
@@ -39,6 +43,8 @@ Result::Focus focus_of(const ResultData& data) {
   return focus;
 }
 
+bool was_taken_again(const SuspectSlice& slice) { return slice.done == SuspectDone::kTakenAgain; }
+
 Result::Slices slices_of(const ResultData& data) {
   Result::Slices slices;
   slices.planned = data.slices_planned;
@@ -50,6 +56,9 @@ Result::Slices slices_of(const ResultData& data) {
   slices.mode = data.scan_mode;
   slices.speed_um_per_s = data.speed_um_per_s;
   slices.ramp_frames = data.ramp_frames;
+  slices.suspect = data.suspects;
+  slices.retaken = static_cast<int>(std::count_if(data.suspects.begin(), data.suspects.end(), was_taken_again));
+  slices.flicker_percent = data.flicker_percent;
   return slices;
 }
 
@@ -84,6 +93,28 @@ std::vector<MeasuredValue> measurements_of(const ResultData& data, const HeightS
   return all;
 }
 
+void warn_of_suspects(const Result::Slices& slices, std::vector<Warning>& warnings) {
+  const auto list = [&](bool again, const char* code, const char* what) {
+    std::ostringstream text;
+    int count = 0;
+    for (const SuspectSlice& slice : slices.suspect) {
+      if (was_taken_again(slice) != again) continue;
+      if (++count <= kListedSuspects) text << (count > 1 ? "; " : "") << suspect_text(slice);
+    }
+    if (count == 0) return;
+    if (count > kListedSuspects) text << "; and " << count - kListedSuspects << " more, see slices.suspect";
+    warnings.push_back({code, std::to_string(count) + " slice(s) " + what + ": " + text.str()});
+  };
+  list(false, "slices_left_out", "left out");
+  list(true, "slices_retaken", "taken again");
+  if (slices.flicker_percent.value_or(0.0) <= kMaxFlicker_percent) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "the light varies by " << *slices.flicker_percent
+       << " % from slice to slice; sharpness was corrected for it: check lamp, flash and exposure";
+  warnings.push_back({"light_flicker", text.str()});
+}
+
 std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warnings) {
   const int missing = result.slices.planned - result.slices.measured;
   if (missing > 0) {
@@ -94,6 +125,7 @@ std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warn
                                             std::to_string(result.slices.planned) +
                                             " that were planned cover the range: the camera is faster than asked"});
   }
+  warn_of_suspects(result.slices, warnings);
   if (result.valid_points == 0) {
     warnings.push_back(
         {"no_valid_point", "not one point is valid: is the light on, and the surface within the range?"});

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/focus/judge/suspect_slice.hpp"
 #include "core/focus/measure/focus_settings.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_plan.hpp"
@@ -120,9 +121,11 @@ struct Result {
     std::optional<double> first_um;  ///< commanded z of the first and the last slice that was taken
     std::optional<double> last_um;
     ScanMode mode = ScanMode::kStep;
-    double speed_um_per_s = 0.0;  ///< continuous
-    int ramp_frames = 0;          ///< continuous
-    std::vector<int> suspect;     ///< indices of slices that were used though something speaks against them
+    double speed_um_per_s = 0.0;            ///< continuous
+    int ramp_frames = 0;                    ///< continuous
+    std::vector<SuspectSlice> suspect;      ///< frames that must not be believed, and what was done about them
+    int retaken = 0;                        ///< of those: another frame of the same height took their place
+    std::optional<double> flicker_percent;  ///< of the light from slice to slice, corrected; absent in older results
     bool operator==(const Slices&) const = default;
   };
   /// What the focus curves say of the stage.

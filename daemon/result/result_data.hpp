@@ -11,6 +11,7 @@
 
 #include "core/focus/fit/height_map.hpp"
 #include "core/focus/fit/smooth_heights.hpp"
+#include "core/focus/judge/suspect_slice.hpp"
 #include "core/focus/measure/focus_settings.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_plan.hpp"
@@ -53,6 +54,8 @@ struct ResultData {
   FrameCounts frames;
   StepLog steps;
   StepSummary step_summary;
+  std::vector<SuspectSlice> suspects;  ///< in the order of the scan
+  double flicker_percent = 0.0;        ///< see SliceJudge
   PhaseTimes times;
   std::vector<Warning> warnings;  ///< noted on the way; evaluation adds its own
 };

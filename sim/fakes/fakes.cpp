@@ -95,6 +95,7 @@ Frame FakeCamera::lend(const Pending& pending) {
   const auto bytes = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   auto pixels = std::make_unique<std::byte[]>(bytes);
   std::memset(pixels.get(), pending.content, bytes);
+  if (paint) paint(pending.content, {pixels.get(), bytes});
   Frame frame;
   frame.status = pending.status;
   frame.image = {PixelFormat::kMono8, width_, height_, width_, pixels.get()};

@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/clock.hpp"
@@ -59,6 +60,8 @@ class FakeCamera : public Camera, private FrameRecycler {
 
   [[nodiscard]] int triggers() const { return triggers_; }
 
+  /// Draws the frame of a trigger, 1-based modulo 256, if set; pixels: [height][width].
+  std::function<void(int trigger, std::span<std::byte> pixels)> paint;
   std::chrono::microseconds clock_error{0};  ///< added to the exposure times of frames
   [[nodiscard]] int frames_lent() const { return lent_; }
 

@@ -124,7 +124,7 @@ double step_scan_s(bool computing) {
   WorkerPool pool(1);
   StreamingFocusStack stack(1024, 1024, PixelFormat::kMono8, FocusSettings{}, pool);
   NoSink none;
-  FocusWorker worker(stack, 8);
+  FocusWorker worker(stack, 8, 0);
   SliceSink& sink = computing ? static_cast<SliceSink&>(worker) : none;
   ScanReport report;
   const HostTime begin = HostClock::now();

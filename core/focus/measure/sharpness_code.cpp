@@ -1,5 +1,6 @@
 #include "core/focus/measure/sharpness_code.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fvd {
@@ -36,6 +37,12 @@ int least_shift(double sum, int count, double top) {
 }
 
 }  // namespace
+
+CodeScale::CodeScale(double gain, FocusOperator focus_operator, bool root) noexcept {
+  if (std::abs(gain - 1.0) < 0.0005 || focus_operator == FocusOperator::kIntensity) return;
+  if (root && focus_operator != FocusOperator::kTenengrad) gain = std::sqrt(gain);
+  factor_ = static_cast<std::uint32_t>(std::clamp(std::round(gain * kOne), 0.0, 65535.0));
+}
 
 float root_gain(const SharpnessCode& code, int gradient_shift) noexcept {
   return static_cast<float>(code.gain * std::sqrt(std::ldexp(1.0, code.operator_shift + 2 * gradient_shift)));

@@ -50,7 +50,8 @@ Sums over_rows(const Sums& values, int side, int shift) {
 }
 
 template <typename Pixel>
-Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings& settings, const SharpnessCode& code) {
+Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings& settings, const SharpnessCode& code,
+                               const CodeScale& scale) {
   Sums sums(image.width, image.height);
   for (int y = 0; y < image.height; ++y) {
     const auto rows = rows_about(image, y, settings.distance_px);
@@ -68,7 +69,7 @@ Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const std::uint64_t sum = sums.at(x, y);
-      codes.at(x, y) = code.root ? root_code(sum, gain) : static_cast<std::uint16_t>(sum);
+      codes.at(x, y) = scale.apply(code.root ? root_code(sum, gain) : static_cast<std::uint16_t>(sum));
     }
   }
   return codes;
@@ -76,10 +77,11 @@ Plane<std::uint16_t> reference(PlaneView<const Pixel> image, const FocusSettings
 
 }  // namespace
 
-Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings) {
+Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings, double gain) {
   const SharpnessCode code = sharpness_code(settings, image.format);
-  return image.format == PixelFormat::kMono8 ? reference(image.as<std::uint8_t>(), settings, code)
-                                             : reference(image.as<std::uint16_t>(), settings, code);
+  const CodeScale scale(gain, settings.focus_operator, code.root);
+  return image.format == PixelFormat::kMono8 ? reference(image.as<std::uint8_t>(), settings, code, scale)
+                                             : reference(image.as<std::uint16_t>(), settings, code, scale);
 }
 
 }  // namespace fvd

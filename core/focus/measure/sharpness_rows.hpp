@@ -72,8 +72,8 @@ class SharpnessRows {
   /// width >= 1; settings checked; format of the Pixel's size.
   SharpnessRows(int width, const FocusSettings& settings, PixelFormat format);
 
-  /// Starts at row `first` of an image of the constructor's width and format.
-  void begin(PlaneView<const Pixel> image, int first) noexcept;
+  /// Starts at row `first` of an image of the constructor's width and format. gain: of its light, see CodeScale.
+  void begin(PlaneView<const Pixel> image, int first, double gain = 1.0) noexcept;
 
   /// Computes the next row: codes() and clipped() then hold it. Not called past the last row.
   void next() noexcept;
@@ -155,6 +155,7 @@ class SharpnessRows {
   [[nodiscard]] bool row_saturated(int y) const noexcept;
   void count_saturated(int y, int change) noexcept;
   void find_clipped() noexcept;
+  void scale_codes() noexcept;
 
   const FocusKernels& kernels_;
   int width_;
@@ -163,6 +164,7 @@ class SharpnessRows {
   int distance_;
   FocusOperator operator_;
   SharpnessCode code_;
+  CodeScale scale_;  // of the present image
   int saturation_;
   ClippedLevels levels_;
   bool narrow_;
@@ -181,7 +183,8 @@ class SharpnessRows {
 };
 
 /// The same codes for a whole image, obviously correct: every window is summed anew. Shape of the image. For tests.
-[[nodiscard]] Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings);
+[[nodiscard]] Plane<std::uint16_t> sharpness_reference(const ImageView& image, const FocusSettings& settings,
+                                                       double gain = 1.0);
 
 extern template class SharpnessRows<std::uint8_t>;
 extern template class SharpnessRows<std::uint16_t>;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/focus/simple_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "gtest/gtest.h"
 #include "tests/core/focus/synthetic_scan.hpp"
@@ -237,6 +238,35 @@ TEST(StreamingFocusStack, KeepsTheColoursOfThePeak) {
               scan.slices[static_cast<std::size_t>(slice)][static_cast<std::size_t>(30 * y + x)]);
           ASSERT_EQ(map.texture.at(x, y), expected)
               << "grey and colour are of one slice; bin " << bin << ", batch " << batch << ", at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST(StreamingFocusStack, ScalesSharpnessByTheGainAsItsTwinDoes) {
+  for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono16}) {
+    for (const FocusOperator op : kAllFocusOperators) {
+      const Scan scan = make_scan(format, Surface::kTilted, 61, 40, 15, 3);
+      FocusSettings settings;
+      settings.focus_operator = op;
+      WorkerPool pool(2);
+      StreamingFocusStack stack(61, 40, format, settings, pool);
+      SimpleFocusStack twin(settings);
+      std::vector<ZSlice> slices;
+      for (std::size_t k = 0; k < scan.slices.size(); ++k) {
+        const double gain = 1.0 + 0.1 * std::sin(static_cast<double>(3 * k));
+        slices.push_back({scan.slice(k), scan.z_um[k], nullptr, gain});
+        twin.push(scan.slice(k), scan.z_um[k], gain);
+      }
+      stack.push(slices);
+      const HeightMap map = stack.finish(PeakMethod::kFiveSample);
+      const HeightMap other = twin.finish(PeakMethod::kFiveSample);
+      for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < 61; ++x) {
+          ASSERT_EQ(map.mask.at(x, y), other.mask.at(x, y));
+          if (map.mask.at(x, y) != 0) continue;
+          ASSERT_EQ(map.height_m.at(x, y), other.height_m.at(x, y));
         }
       }
     }

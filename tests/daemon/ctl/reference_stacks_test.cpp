@@ -25,6 +25,9 @@ void process(const fs::path& stack, const fs::path& out, std::vector<std::string
   std::ostringstream output;
   std::ostringstream errors;
   ASSERT_EQ(run_fvdctl(options, {output, errors, false, false}), kExitOk) << errors.str();
+  const auto result = nlohmann::json::parse(test::read_text(out / "result.json"));
+  EXPECT_EQ(result["slices"]["suspect"], nlohmann::json::array()) << "a clean stack";
+  EXPECT_LT(result["slices"]["flicker_percent"].get<double>(), 2.0);
 }
 
 struct Agreement {

@@ -53,7 +53,9 @@ Result full_result() {
   result.focus.extra_peaks = {{PeakMethod::kNearest, 1.0, 2.0, 1.5, 1.25}, {PeakMethod::kParabola, {}, {}, {}, {}}};
   result.focus.state_bytes_per_pixel = 20.5;
   result.frames = {15, 1, 2, 3, 4, 5};
-  result.slices = {21, 20, -7.0, 193.0, ScanMode::kContinuous, 120.5, 8, {3, 17}};
+  result.slices = {21, 20, -7.0, 193.0, ScanMode::kContinuous, 120.5, 8, {}, 1, 2.125};
+  result.slices.suspect = {{3, 30.25, SuspectReason::kDark, 0.125, SuspectDone::kTakenAgain},
+                           {17, 170.0, SuspectReason::kVibration, -0.75, SuspectDone::kLeftOut}};
   result.steps = {20, 0.25, 0.5, 0.75, 0.125, 0.375, 12.5, 13.5};
   result.stage = {true, "none", 0.25, 0.125};
   result.times = {1.5, 2.5, 3.5, 4.5};
@@ -178,6 +180,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadDocument{"WidthBeyondInt", [](json& d) { d["focus"]["width_px"] = 3'000'000'000; }, "/focus/width_px"},
         BadDocument{"UnknownScanMode", [](json& d) { d["slices"]["scan_mode"] = "fast"; }, "/slices/scan_mode"},
         BadDocument{"SuspectThatIsText", [](json& d) { d["slices"]["suspect"][1] = "3"; }, "/slices/suspect/1"},
+        BadDocument{"UnknownReason", [](json& d) { d["slices"]["suspect"][0]["reason"] = "odd"; },
+                    "/slices/suspect/0/reason"},
         BadDocument{"NoWarningCode", [](json& d) { d["warnings"][0].erase("code"); }, "/warnings/0"},
         BadDocument{"SimulatedAsNumber", [](json& d) { d["provenance"]["simulated"] = 1; }, "/provenance/simulated"},
         BadDocument{"NoTime", [](json& d) { d["provenance"]["created"] = "yesterday"; }, "/provenance/created"},

@@ -99,7 +99,9 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
                                     {"first_um", 0.0},
                                     {"last_um", 20.0},
                                     {"scan_mode", "step"},
-                                    {"suspect", json::array()}}));
+                                    {"suspect", json::array()},
+                                    {"retaken", 0},
+                                    {"flicker_percent", 0.0}}));
   EXPECT_EQ(result["steps"]["error_max_um"], 0.0625);
   EXPECT_EQ(result["times"], json({{"prepare_ms", 100.0}, {"scan_ms", 2000.0}, {"finish_ms", 5.0}, {"write_ms", 0.0}}));
   EXPECT_EQ(result["provenance"], json({{"recipe", "chapter"},

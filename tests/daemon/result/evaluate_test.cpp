@@ -32,6 +32,22 @@ TEST(Evaluate, MeasuresHeightsWithWhatTheyRestOn) {
   EXPECT_EQ(result.find("no_such_value"), nullptr);
 }
 
+TEST(Evaluate, WarnsOfSlicesThatMustNotBeBelievedAndOfFlicker) {
+  ResultData data = test::sample_result();
+  EXPECT_THAT(codes(evaluated(data)), testing::Not(testing::Contains("slices_left_out")));
+  data.suspects = {{0, 0.0, SuspectReason::kDark, 0.1, SuspectDone::kTakenAgain},
+                   {2, 20.0, SuspectReason::kVibration, 0.6, SuspectDone::kLeftOut}};
+  data.flicker_percent = 5.0;
+  const Result result = evaluated(data);
+  EXPECT_EQ(result.slices.suspect, data.suspects);
+  EXPECT_EQ(result.slices.retaken, 1);
+  EXPECT_THAT(codes(result), testing::IsSupersetOf({"slices_left_out", "slices_retaken", "light_flicker"}));
+  for (const Warning& warning : result.warnings) {
+    if (warning.code != "slices_left_out") continue;
+    EXPECT_THAT(warning.text, HasSubstr("slice 2 at 20 um"));
+  }
+}
+
 TEST(Evaluate, DoesNotJudgeWhereTheRecipeDoesNot) {
   ResultData data = test::sample_result();
   data.min_valid_fraction = 0.0;
