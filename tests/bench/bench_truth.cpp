@@ -238,7 +238,7 @@ int main(int argc, char** argv) try {
   bench::suspects(out);
   fvd::WorkerPool pool(2);
   nlohmann::ordered_json figures;
-  figures["smooth_period_px"] = bench::measured_lateral_period_px({.window_px = 5}, 4.5, pool);
+  figures["smooth_period_px"] = bench::measured_lateral_period_px({.window_px = 5}, 4.4, pool);
   std::ofstream file(out / "figures.json");
   file << figures.dump() << '\n';
   return file ? 0 : 1;

@@ -18,7 +18,7 @@ STEP_UM = 10.0
 BORDER_PX = 8
 # Every test that makes holes, off; what a program does not know is left out.
 UNMASKED = {"--min-prominence": 0, "--min-significance": 0, "--broad-curve": 0, "--narrow-curve": 0, "--max-sigma": 0}
-SMOOTH = {"--window": 5, "--smooth": 4.5}
+SMOOTH = {"--window": 5, "--smooth": 4.4}
 # Stack, slices for a unit of its truth, truth at its first slice.
 REFERENCES = {"cou1": (1.0, 0.0), "cou6": (1.0, 0.0), "cone31": (1 / 0.002, 0.09 / 0.002)}
 SUSPECT_KINDS = ("dark", "half", "constant", "repeated", "exchanged", "vibrated")
