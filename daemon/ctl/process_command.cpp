@@ -83,6 +83,7 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   overrides.set("--broad-curve", arguments.broad_curve, recipe.focus.tests.broad_curve);
   overrides.set("--narrow-curve", arguments.narrow_curve, recipe.focus.tests.narrow_curve);
   overrides.set("--clipped-share", arguments.clipped_share, recipe.focus.tests.clipped_share);
+  overrides.set("--edge-band", arguments.edge_band_slices, recipe.focus.tests.edge_band_slices);
   overrides.set("--max-sigma", arguments.max_sigma_um, recipe.focus.tests.max_sigma_um);
   overrides.set("--bin", arguments.bin_slices, recipe.bin_slices);
   overrides.set("--peak", named<PeakMethod>(arguments.peak, peak_method_from_name), recipe.peak);
@@ -215,6 +216,8 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                      "points whose focus curve is less than so many medians wide become holes, 0 = off, default 0.55");
   command.add_option("--clipped-share", a.clipped_share,
                      "points with more of their window at full scale become holes, 0 = off, default 0.7");
+  command.add_option("--edge-band", a.edge_band_slices,
+                     "a strip beside heights that jump by more slices becomes holes, 0 = off, default 3");
   command.add_option("--max-sigma", a.max_sigma_um,
                      "points with a larger standard error in um become holes, 0 = off, the default");
   command.add_flag("--stage-correction", a.stage_correction,

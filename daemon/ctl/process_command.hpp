@@ -43,6 +43,7 @@ struct ProcessArguments {
   std::optional<double> broad_curve;
   std::optional<double> narrow_curve;
   std::optional<double> clipped_share;
+  std::optional<int> edge_band_slices;
   std::optional<double> max_sigma_um;
   std::optional<std::string> peak;
   std::vector<std::string> extra_peaks;

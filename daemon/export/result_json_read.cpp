@@ -134,10 +134,16 @@ HoleCounts holes(const Node& node) {
           later("narrow_curve"),   later("second_peak"),   later("edge_band"),     later("max_sigma")};
 }
 
-/// Of 0.1.0, which had none of these tests: all off.
+/// What a result does not tell was not looked for.
 PointTests point_tests(const Node& node) {
   const auto limit = [&node](const char* key) { return node.has(key) ? node.at(key).number() : 0.0; };
-  return {limit("broad_curve"), limit("narrow_curve"), limit("clipped_share"), limit("max_sigma_um")};
+  PointTests tests;
+  tests.broad_curve = limit("broad_curve");
+  tests.narrow_curve = limit("narrow_curve");
+  tests.clipped_share = limit("clipped_share");
+  tests.edge_band_slices = node.has("edge_band_slices") ? node.at("edge_band_slices").integer<int>() : 0;
+  tests.max_sigma_um = limit("max_sigma_um");
+  return tests;
 }
 
 Result::Focus focus(const Node& node) {
@@ -165,7 +171,11 @@ Result::Focus focus(const Node& node) {
   // Of before 0.3.0, when the recipe alone chose.
   focus.bins_by = node.has("bins_by") ? node.at("bins_by").named(bin_choice_from_name, "the name of a choice of bins")
                                       : BinChoice::kRecipe;
-  focus.settings.tests = node.has("holes") ? point_tests(node.at("holes")) : PointTests{0.0, 0.0, 0.0, 0.0};
+  if (node.has("holes")) {
+    focus.settings.tests = point_tests(node.at("holes"));
+  } else {  // a result of 0.1.0
+    focus.settings.tests = {.broad_curve = 0.0, .narrow_curve = 0.0, .clipped_share = 0.0, .edge_band_slices = 0};
+  }
   focus.noise_grey = node.at("noise_grey").number();
   focus.curve_width_um = node.at("curve_width_um").optional_number();
   focus.peak = peak(node.at("peak"));

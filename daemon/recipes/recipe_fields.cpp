@@ -125,6 +125,10 @@ void describe_tests(PointTests& tests, Fields& fields) {
       "clipped_share", tests.clipped_share, {0.0, 1.0},
       "share of the window's pixels at full scale at the peak; if more are, or noticeably more beside the peak "
       "than at it, the point is a hole; 0 = no such test");
+  fields.integer(
+      "edge_band_slices", tests.edge_band_slices, {0, kMaxEdgeBandSlices},
+      "where heights two pixels apart differ by more, and by more than a focus curve's width, the points on the "
+      "sharper side to which its window reaches across are holes; 0 = no such test");
   fields.number("max_sigma_um", tests.max_sigma_um, {0.0, kMaxSigmaLimit_um},
                 "standard error of a height above which the point is a hole; 0 = no such test");
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "core/focus/fit/curve_misfit.hpp"
 #include "core/focus/fit/curve_shape.hpp"
 #include "core/focus/fit/curve_tuple.hpp"
+#include "core/focus/fit/edge_band.hpp"
 #include "core/focus/kernels/five_sample_fit.hpp"
 #include "core/focus/measure/peak_tiles.hpp"
 #include "core/focus/measure/sharpness_rows.hpp"
@@ -211,9 +213,14 @@ class MapFinish {
     return all;
   }
 
-  /// All planes.
-  void fit(const RowFit& fit) {
+  /// All planes. most_samples: see edge_band.hpp, 0 for no such test.
+  void fit(const RowFit& fit, int most_samples) {
     const int bands = pool_.threads();
+    const bool jumps_matter = most_samples > 0;
+    const EdgeBandLimits strips{window_reach_px(settings_), most_samples,
+                                sharpness_code(settings_, map_.texture_format).root};
+    std::vector<JumpTiles> jumps(jumps_matter ? static_cast<std::size_t>(bands) : 0,
+                                 JumpTiles(width_, height_, strips));
     const int reach = settings_.window_px / 2;
     pool_.run(bands, [&](int band) {
       const int first = height_ * band / bands;
@@ -228,6 +235,7 @@ class MapFinish {
         }
         fit.fit(row, noise_row.data(), limits.least(), width_,
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
+        if (jumps_matter) jumps[static_cast<std::size_t>(band)].look_at(y, row.peak_index, map_.mask.row(y));
         if (y - 2 * reach >= first) finish_sigma(y - reach);  // while the rows are in the cache
       }
     });
@@ -237,7 +245,18 @@ class MapFinish {
       for (int y = first; y < end; ++y) {
         if (y - reach < first || y + reach >= end) finish_sigma(y);
       }
+      if (!jumps_matter || first < 2) return;
+      for (int y = first; y < std::min(first + 2, end); ++y) {  // what the bands did not compare
+        const CurveRow row = curves_(band, y - 2, nullptr);
+        const std::vector<std::uint16_t> upper(row.peak_index, row.peak_index + width_);
+        jumps[static_cast<std::size_t>(band)].compare(y, upper.data(), curves_(band, y, nullptr).peak_index,
+                                                      map_.mask.row(y - 2), map_.mask.row(y));
+      }
     });
+    if (!jumps_matter) return;
+    for (const JumpTiles& others : std::span(jumps).subspan(1)) jumps.front().join(others);
+    const auto curves = [this](int thread, int y) { return curves_(thread, y, nullptr); };
+    EdgeBands(jumps.front(), strips, map_.mask, curves, pool_).apply(map_.height_m, map_.sigma_m, map_.mask, pool_);
   }
 
   /// Points with a larger standard error become holes; last, because the slope at a point is taken from its neighbours.
@@ -282,6 +301,16 @@ class MapFinish {
   int height_;
 };
 
+/// Neighbours whose peaks are so many samples apart are two surfaces; 0 for no such test. Within a curve's width noise
+/// alone may part them.
+int jump_samples(const FocusSettings& settings, const std::vector<double>& z_um, double curve_width_um) {
+  if (settings.tests.edge_band_slices == 0) return 0;
+  if (z_um.size() < 2) return settings.tests.edge_band_slices;
+  const double step_um = std::abs(z_um.back() - z_um.front()) / static_cast<double>(z_um.size() - 1);
+  const double width = step_um > 0.0 ? std::min(std::ceil(curve_width_um / step_um), 65535.0) : 0.0;
+  return std::max(settings.tests.edge_band_slices, static_cast<int>(width));
+}
+
 }  // namespace
 
 void finish_map(const CurveSource& curves, const std::vector<double>& z_um, const FocusSettings& settings,
@@ -299,7 +328,8 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
   ScanCurves curves_in_common{shape.bias, kVertexShare * curve_misfit(spots.tuples, corrected, shape.exponent), {}};
   if (settings.bin_slices > 1) curves_in_common.misfit *= kBinsShare;
   curves_in_common.limits = curve_limits(spots.tuples, spots.looked_at, corrected, settings.tests);
-  finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common));
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common),
+             jump_samples(settings, corrected, shape.width_um));
   if (settings.tests.max_sigma_um > 0.0) finish.drop_uncertain(settings.tests.max_sigma_um);
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;

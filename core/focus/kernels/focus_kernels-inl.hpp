@@ -56,6 +56,7 @@ constexpr FocusKernels kKernels{
     .noise_u16 = noise_u16,
     .fit_five = fit_five,
     .raise_amplitudes = raise_amplitudes,
+    .any_apart = any_apart,
     .finish_sigma = finish_sigma,
 };
 

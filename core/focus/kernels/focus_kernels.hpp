@@ -183,6 +183,9 @@ struct FocusKernels {
   /// highest = max(highest, peak less minimum), both codes squared first where they are roots. 0 <= minimum <= peak.
   void (*raise_amplitudes)(const std::uint16_t* peak, const std::uint16_t* minimum, bool root_code, int width,
                            std::uint32_t* highest) noexcept;
+  /// Whether any two of a and b differ by more than `most` and neither is insignificant.
+  bool (*any_apart)(const std::uint16_t* a, const std::uint16_t* b, const MaskReasons* mask_a,
+                    const MaskReasons* mask_b, int width, std::uint16_t most) noexcept;
   /// In place, sigma = sqrt(variance + (factor * gradient)^2). The gradient comes from the heights `reach` to either
   /// side; a component with a missing height is 0. upper, lower: rows of heights `reach` above and below. sigma =
   /// sqrt(variance) if they are nullptr, and for columns within `reach` of an end.

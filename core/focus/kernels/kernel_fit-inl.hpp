@@ -76,27 +76,6 @@ inline void decode(const CurveRow& row, int first, int count, FitPixels& at) {
   decode<kRoot>(row.right2 + first, count, at.codes.right2);
 }
 
-using Four = float __attribute__((vector_size(16), may_alias));
-
-/// Number n of each of four rows goes to columns[n].
-inline __attribute__((always_inline)) void transpose(const float* row0, const float* row1, const float* row2,
-                                                     const float* row3, float* column0, float* column1, float* column2,
-                                                     float* column3) {
-  Four rows[4];
-  load(row0, rows[0]);
-  load(row1, rows[1]);
-  load(row2, rows[2]);
-  load(row3, rows[3]);
-  const Four low01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-  const Four high01 = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-  const Four low23 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-  const Four high23 = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-  store(__builtin_shufflevector(low01, low23, 0, 1, 4, 5), column0);
-  store(__builtin_shufflevector(low01, low23, 2, 3, 6, 7), column1);
-  store(__builtin_shufflevector(high01, high23, 0, 1, 4, 5), column2);
-  store(__builtin_shufflevector(high01, high23, 2, 3, 6, 7), column3);
-}
-
 /// Loads the entries of 4 pixels, x to x + 3.
 inline __attribute__((always_inline)) void look_up_four(const std::uint16_t* indices, HeightTable table, int x,
                                                         FitPixels& at) {

@@ -21,6 +21,20 @@ void raise_amplitudes(const std::uint16_t* peak, const std::uint16_t* minimum, b
   }
 }
 
+bool any_apart(const std::uint16_t* a, const std::uint16_t* b, const MaskReasons* mask_a, const MaskReasons* mask_b,
+               int width, std::uint16_t most) noexcept {
+  std::uint16_t any = 0;
+  for (int x = 0; x < width; ++x) {
+    const std::uint16_t high = a[x] > b[x] ? a[x] : b[x];
+    const std::uint16_t low = a[x] > b[x] ? b[x] : a[x];
+    const auto apart = static_cast<std::uint16_t>(high - low);
+    const auto weak = static_cast<std::uint16_t>((mask_a[x] | mask_b[x]) & mask_reason::kInsignificant);
+    const std::uint16_t more = apart > most ? 1 : 0;
+    any = static_cast<std::uint16_t>(any | (weak == 0 ? more : std::uint16_t{0}));
+  }
+  return any != 0;
+}
+
 void finish_sigma(const float* height, const float* upper, const float* lower, int reach, float factor, int width,
                   float* sigma) noexcept {
   const int first = upper != nullptr && 2 * reach < width ? reach : width;

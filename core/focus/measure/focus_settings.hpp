@@ -53,6 +53,7 @@ inline constexpr int kMaxWindowPx = 63;
 inline constexpr int kMaxDistancePx = 7;
 
 inline constexpr int kMaxBinSlices = 64;
+inline constexpr int kMaxEdgeBandSlices = 65535;
 inline constexpr double kMaxSigmaLimit_um = 1e6;
 
 /// What makes a hole of a point beside prominence and significance; README.md of core/focus/fit says where the limits
@@ -63,6 +64,8 @@ struct PointTests {
       0.55;  ///< the width of a point's curve over the scan's median, 0..1; below it a point is a hole
   double clipped_share = 0.7;  ///< of the window's pixels at the peak, 0..1; if more are at full scale, or noticeably
                                ///< more beside the peak than at it, a point is a hole
+  int edge_band_slices = 3;    ///< neighbours' heights that are further apart, and further than a curve is wide, make
+                               ///< holes of the strip beside them, see edge_band.hpp; >= 0
   double max_sigma_um = 0.0;   ///< standard error of a height above which a point is a hole, >= 0
   bool operator==(const PointTests&) const = default;
 };

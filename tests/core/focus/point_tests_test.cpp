@@ -23,12 +23,13 @@ constexpr double kStep_um = 10.0;
 /// Grey level of a pixel in slice k, without noise. grain: of the texture at that pixel, standard deviation 1.
 using Level = std::function<double(int x, int y, int k, double grain)>;
 
-HeightMap map_of(const Level& level, const FocusSettings& settings = {}, PeakMethod method = PeakMethod::kFiveSample) {
+HeightMap map_of(const Level& level, const FocusSettings& settings = {}, PeakMethod method = PeakMethod::kFiveSample,
+                 int threads = 1) {
   std::mt19937 random(21);
   std::normal_distribution<double> normal;
   std::vector<double> grain(static_cast<std::size_t>(kSide) * kSide);
   for (double& value : grain) value = normal(random);
-  WorkerPool pool(1);
+  WorkerPool pool(threads);
   StreamingFocusStack stack(kSide, kSide, PixelFormat::kMono8, settings, pool);
   for (int k = 0; k < kSlices; ++k) {
     Plane<std::uint8_t> slice(kSide, kSide);
@@ -184,9 +185,88 @@ TEST(PointTests, AGlintCostsOnlyWhatItSpoils) {
     EXPECT_LE(share_wrong(map), bounds.wrong) << bounds.level << " kept " << share_kept(map, 0, kSide);
     settings.tests.clipped_share = 0.0;  // the test turned off
     if (bounds.level == 200.0) {
+      settings.tests.edge_band_slices = 0;
       EXPECT_GE(share_wrong(map_of(level, settings)), 0.004);
     }
   }
+}
+
+/// Two planes 14 slices apart, the nearer left of an edge in the middle and blurred over the farther with its coverage.
+struct Planes {
+  double near_grey;
+  double near_contrast;
+  double far_grey;
+  double far_contrast;
+
+  [[nodiscard]] double level(int x, int k, double grain) const {
+    const double near_slices = k - 17.0;
+    const double blur = std::hypot(0.5, 0.4 * near_slices);
+    const double cover = 0.5 * (1.0 + std::erf((kSide / 2 - 0.5 - x) / (blur * std::sqrt(2.0))));
+    return cover * (near_grey + near_contrast * grain * contrast(near_slices, 3.0)) +
+           (1.0 - cover) * (far_grey + far_contrast * grain * contrast(k - 3.0, 3.0));
+  }
+  /// Of the kept points `first` to `end` - 1 px from the edge, on both sides.
+  struct Found {
+    double kept = 0.0;
+    double wrong = 0.0;
+  };
+  [[nodiscard]] static Found judge(const HeightMap& map, int first, int end) {
+    int points = 0;
+    int kept = 0;
+    int wrong = 0;
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        const bool near = x < kSide / 2;
+        const int away = near ? kSide / 2 - 1 - x : x - kSide / 2;
+        if (away < first || away >= end) continue;
+        ++points;
+        if (map.mask.at(x, y) != 0) continue;
+        ++kept;
+        const double truth_um = kStep_um * (near ? 17.0 : 3.0);
+        wrong += std::abs(static_cast<double>(map.height_m.at(x, y)) * 1e6 - truth_um) > kStep_um ? 1 : 0;
+      }
+    }
+    return {static_cast<double>(kept) / points, static_cast<double>(wrong) / std::max(kept, 1)};
+  }
+};
+
+TEST(PointTests, TheStripBesideAWallIsNoSurface) {
+  for (const Planes& planes : {Planes{180.0, 25.0, 40.0, 8.0}, Planes{40.0, 8.0, 180.0, 25.0},
+                               Planes{180.0, 25.0, 5.0, 0.5}, Planes{110.0, 20.0, 110.0, 20.0}}) {
+    const Level level = [&](int x, int, int k, double grain) { return planes.level(x, k, grain); };
+    const auto scene = testing::Message() << planes.near_grey << " over " << planes.far_grey;
+    const HeightMap map = map_of(level);
+    const bool textured = planes.far_contrast > 1.0;
+    EXPECT_LE(Planes::judge(map, 0, 9).wrong, 0.1) << scene;
+    EXPECT_GE(Planes::judge(map, 0, 9).kept, 0.4) << scene;
+    EXPECT_LE(Planes::judge(map, 9, 60).wrong, 0.002) << scene;
+    EXPECT_GE(Planes::judge(map, 9, 60).kept, textured ? 0.95 : 0.45) << scene;
+    if (planes.near_grey == planes.far_grey) continue;
+    FocusSettings off;
+    off.tests.edge_band_slices = 0;
+    EXPECT_GE(Planes::judge(map_of(level, off), 0, 9).wrong, 0.12) << scene;
+  }
+}
+
+TEST(PointTests, AWallIsFoundAlikeByAnyNumberOfThreads) {
+  const Planes planes{180.0, 25.0, 40.0, 8.0};
+  const Level level = [&](int x, int y, int k, double grain) {
+    return planes.level(x + (y > 80 ? 3 : 0), k, grain);  // with corners
+  };
+  const HeightMap one = map_of(level, {}, PeakMethod::kParabola, 1);
+  const HeightMap several = map_of(level, {}, PeakMethod::kParabola, 7);
+  EXPECT_TRUE(std::ranges::equal(one.mask.pixels(), several.mask.pixels()));
+  int strip = 0;
+  for (const MaskReasons reasons : one.mask.pixels()) strip += (reasons & mask_reason::kEdgeBand) != 0 ? 1 : 0;
+  EXPECT_GT(strip, 4 * kSide);
+}
+
+TEST(PointTests, ASteepSlopeIsNoWall) {
+  const HeightMap map = map_of([](int x, int, int k, double grain) {  // 0.8 slices per pixel, then back
+    const int column = x % 40;
+    return 100.0 + 25.0 * grain * contrast(k - 2.0 - 0.8 * std::min(column, 40 - column), 3.0);
+  });
+  for (const MaskReasons reasons : map.mask.pixels()) EXPECT_EQ(reasons & mask_reason::kEdgeBand, 0);
 }
 
 TEST(PointTests, APointLessCertainThanAskedForIsAHole) {

@@ -273,6 +273,30 @@ TEST(FocusKernels, FindTheSameAmplitudesAndSlopes) {
       return highest;
     });
   }
+  expect_same("any_apart", [](const FocusKernels& kernels, int width, std::mt19937& random) {
+    auto a = random_row<std::uint16_t>(width, random);
+    auto b = random_row<std::uint16_t>(width, random);
+    std::vector<MaskReasons> mask(a.size(), mask_reason::kSaturated);
+    for (std::size_t x = 0; x < a.size(); ++x) a[x] = static_cast<std::uint16_t>((b[x] = b[x] % 60000U) + random() % 6);
+    std::vector<unsigned> all;
+    for (const std::size_t place : {std::size_t{0}, static_cast<std::size_t>(width) / 2, a.size() - 1}) {
+      const auto apart = [&] {
+        return kernels.any_apart(a.data(), b.data(), mask.data(), mask.data(), width, 5) ? 1U : 0U;
+      };
+      all.push_back(apart());
+      const std::uint16_t before = a[place];
+      a[place] = static_cast<std::uint16_t>(b[place] + 6);
+      all.push_back(apart());
+      mask[place] |= mask_reason::kInsignificant;
+      all.push_back(apart());
+      mask[place] = 0;
+      a[place] = before;
+    }
+    EXPECT_EQ(all[0], 0U);
+    EXPECT_EQ(all[1], 1U);
+    EXPECT_EQ(all[2], 0U);
+    return all;
+  });
   expect_same("finish_sigma", [](const FocusKernels& kernels, int width, std::mt19937& random) {
     std::array<std::vector<float>, 4> rows;
     for (auto& row : rows) {

@@ -1,0 +1,92 @@
+#pragma once
+
+/// The strip beside a wall in which the stronger side's sharpness reaches across it.
+///
+/// A window that lies beside a wall and reaches over it sees the sharper side, at that side's height: so does every
+/// point up to half a window and the neighbour distance from the wall, which is measured too far out by as much. Where
+/// the heights of points two pixels apart jump, the strip of that width on the side with the clearly higher peaks is no
+/// surface that can be believed; between sides that are nearly alike it is two pixels on both. Insignificant and
+/// saturated points do not count, nor do those of narrow curves.
+///
+/// Only tiles in which a height jumps are looked at closely.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/focus/kernels/focus_kernels.hpp"
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/image/image.hpp"
+#include "core/runtime/worker_pool.hpp"
+
+namespace fvd {
+
+/// How far a window with its operator's neighbours reaches beyond its pixel, px; of a double box the box that spreads
+/// as far.
+[[nodiscard]] int window_reach_px(const FocusSettings& settings) noexcept;
+
+struct EdgeBandLimits {
+  int reach_px = 0;        ///< width of a strip
+  int most_samples = 0;    ///< of two points two pixels apart; more is a jump
+  bool root_code = false;  ///< see sharpness_code.hpp
+};
+
+/// Where heights jump: rows are shown by one thread, each band of rows from top to bottom. Not thread-safe; one
+/// instance per band, joined afterwards.
+class JumpTiles {
+ public:
+  JumpTiles(int width, int height, const EdgeBandLimits& limits);
+
+  /// Row y with its reasons; the row two above it is remembered if it was shown last but one. Points whose peak is
+  /// insignificant do not count.
+  void look_at(int y, const std::uint16_t* peak_index, const MaskReasons* mask);
+  /// Compares two rows alone, `upper` two above y.
+  void compare(int y, const std::uint16_t* upper, const std::uint16_t* lower, const MaskReasons* upper_mask,
+               const MaskReasons* lower_mask);
+  void join(const JumpTiles& other);
+
+  [[nodiscard]] int tile_px() const noexcept { return tile_; }
+  [[nodiscard]] int columns() const noexcept { return columns_; }
+  [[nodiscard]] int rows() const noexcept { return rows_; }
+  /// In this tile or one beside it.
+  [[nodiscard]] bool near(int column, int row) const noexcept;
+
+ private:
+  static constexpr int kApart_px = 2;
+  void mark(int x, int y, int count, const std::uint16_t* one, const std::uint16_t* other, const MaskReasons* one_mask,
+            const MaskReasons* other_mask);
+
+  int width_;
+  int tile_;
+  int columns_;
+  int rows_;
+  std::uint16_t most_;
+  int shown_ = 0;                                     // rows
+  std::vector<std::uint16_t> last_index_[kApart_px];  // of the rows before, by y % 2
+  std::vector<MaskReasons> last_mask_[kApart_px];
+  std::vector<std::uint8_t> jumps_;  // [rows][columns]
+};
+
+/// Condensed curves of row y, valid until the same thread's next call.
+using CurvesOfRow = std::function<CurveRow(int thread, int y)>;
+
+/// The points in the strips, as marks of shape [height][width]; empty where there are none.
+/// context: computes on the pool.
+class EdgeBands {
+ public:
+  EdgeBands(const JumpTiles& tiles, const EdgeBandLimits& limits, const Plane<MaskReasons>& mask,
+            const CurvesOfRow& curves, WorkerPool& pool);
+  /// Adds kEdgeBand to the points' reasons and takes their heights.
+  void apply(Plane<float>& height_m, Plane<float>& sigma_m, Plane<MaskReasons>& mask, WorkerPool& pool) const;
+
+ private:
+  struct Tile {
+    int x;
+    int y;
+    std::vector<std::uint8_t> marks;  // [tile][tile]
+  };
+  int side_;
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace fvd
