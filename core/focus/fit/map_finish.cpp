@@ -12,6 +12,7 @@
 #include "core/focus/fit/curve_misfit.hpp"
 #include "core/focus/fit/curve_shape.hpp"
 #include "core/focus/fit/curve_tuple.hpp"
+#include "core/focus/fit/gap_bias.hpp"
 #include "core/focus/kernels/five_sample_fit.hpp"
 #include "core/focus/measure/peak_tiles.hpp"
 #include "core/focus/measure/sharpness_rows.hpp"
@@ -200,7 +201,7 @@ class MapFinish {
   }
 
   /// All planes.
-  void fit(const RowFit& fit) {
+  void fit(const RowFit& fit, const GapBias& gaps) {
     const int bands = pool_.threads();
     const int reach = settings_.window_px / 2;
     pool_.run(bands, [&](int band) {
@@ -216,6 +217,7 @@ class MapFinish {
         }
         fit.fit(row, noise_row.data(), limits.least(), width_,
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
+        gaps.correct(row, width_, map_.height_m.row(y));
         if (y - 2 * reach >= first) finish_sigma(y - reach);  // while the rows are in the cache
       }
     });
@@ -241,8 +243,8 @@ class MapFinish {
     const int reach = settings_.window_px / 2;
     const bool inside = reach > 0 && y >= reach && y < height_ - reach;
     focus_kernels().finish_sigma(map_.height_m.row(y), inside ? map_.height_m.row(y - reach) : nullptr,
-                                 inside ? map_.height_m.row(y + reach) : nullptr, reach,
-                                 centroid_offset_px(settings_), width_, map_.sigma_m.row(y));
+                                 inside ? map_.height_m.row(y + reach) : nullptr, reach, centroid_offset_px(settings_),
+                                 width_, map_.sigma_m.row(y));
   }
 
   const CurveSource& curves_;
@@ -268,9 +270,10 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
     map.stage.reason = "not asked for";
   }
   const CurveShape shape = curve_shape(tuples, corrected, pool);
-  const double misfit =
-      curve_misfit(tuples, corrected, shape.exponent) * (settings.bin_slices > 1 ? kBinsShare : 1.0);
-  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias, misfit));
+  const double misfit = curve_misfit(tuples, corrected, shape.exponent) * (settings.bin_slices > 1 ? kBinsShare : 1.0);
+  const bool five = method == PeakMethod::kFiveSample;
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, shape.bias, misfit),
+             GapBias(corrected, five ? shape : CurveShape{}));
   map.noise_grey = noise.median();
   map.curve_width_um = shape.width_um;
 }
