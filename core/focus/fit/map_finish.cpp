@@ -17,6 +17,7 @@
 #include "core/focus/fit/curve_shape.hpp"
 #include "core/focus/fit/curve_tuple.hpp"
 #include "core/focus/fit/edge_band.hpp"
+#include "core/focus/fit/gap_bias.hpp"
 #include "core/focus/kernels/five_sample_fit.hpp"
 #include "core/focus/measure/peak_tiles.hpp"
 #include "core/focus/measure/sharpness_rows.hpp"
@@ -214,7 +215,7 @@ class MapFinish {
   }
 
   /// All planes. most_samples: see edge_band.hpp, 0 for no such test.
-  void fit(const RowFit& fit, int most_samples) {
+  void fit(const RowFit& fit, const GapBias& gaps, int most_samples) {
     const int bands = pool_.threads();
     const bool jumps_matter = most_samples > 0;
     const EdgeBandLimits strips{window_reach_px(settings_), most_samples,
@@ -235,6 +236,7 @@ class MapFinish {
         }
         fit.fit(row, noise_row.data(), limits.least(), width_,
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
+        gaps.correct(row, width_, map_.height_m.row(y));
         if (jumps_matter) jumps[static_cast<std::size_t>(band)].look_at(y, row.peak_index, map_.mask.row(y));
         if (y - 2 * reach >= first) finish_sigma(y - reach);  // while the rows are in the cache
       }
@@ -329,6 +331,7 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
   if (settings.bin_slices > 1) curves_in_common.misfit *= kBinsShare;
   curves_in_common.limits = curve_limits(spots.tuples, spots.looked_at, corrected, settings.tests);
   finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common),
+             GapBias(corrected, method == PeakMethod::kFiveSample ? shape : CurveShape{}),
              jump_samples(settings, corrected, shape.width_um));
   if (settings.tests.max_sigma_um > 0.0) finish.drop_uncertain(settings.tests.max_sigma_um);
   map.noise_grey = noise.median();

@@ -66,9 +66,9 @@ std::vector<const SliceFigures*> SliceJudge::next_believed() const {
   return next;
 }
 
-/// Brightness over that of the believed slices, or of those that follow the first.
+/// Brightness over that of the slices before, or over that of those that follow the first.
 double SliceJudge::light_of(const SliceFigures& figures, std::vector<const SliceFigures*>& next) const {
-  if (!light_.empty()) return brightness_ratio(figures, light_);
+  if (!light_.empty()) return brightness_ratio(figures, light_) / level_;
   if (next.empty()) return 1.0;
   std::vector<double> mean(figures.means.size());
   const std::size_t count = std::min<std::size_t>(2, next.size());
@@ -160,6 +160,7 @@ double SliceJudge::accept(SliceFigures figures) {
     const double ratio = brightness_ratio(figures, light_);
     if (ratio > 0.0) {
       note_flicker(ratio);
+      level_ += kFollow * (ratio - level_);
       gain = 1.0 / ratio;
       for (std::size_t tile = 0; tile < light_.size(); ++tile) {
         light_[tile] += kFollow * (gain * figures.means[tile] - light_[tile]);

@@ -60,6 +60,7 @@ class SliceJudge {
   std::optional<SliceFigures> last_believed_;
   std::vector<double> light_;                 // of the tiles, in the light of the first slice; grey levels
   std::vector<double> least_, second_least_;  // squared second difference of each tile
+  double level_ = 1.0;                        // of the light, over that of the first slice; follows a lamp that drifts
   std::vector<double> ratios_;                // the last three
   double flicker_squares_ = 0.0;
   int flicker_count_ = 0;
