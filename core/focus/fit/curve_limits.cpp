@@ -6,9 +6,6 @@
 #include <cstddef>
 #include <optional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "core/focus/fit/sample_heights.hpp"
 #include "core/focus/kernels/five_sample_fit.hpp"
 
@@ -18,6 +15,7 @@ namespace {
 
 constexpr std::size_t kLeastLookedAt = 500;
 constexpr std::size_t kLeastCurves = 20;
+constexpr std::size_t kMostCurves = 4000;  // the median of so many is good to 1 %
 /// Of the scan's median shoulder; spikes have less, curves of the recorded stacks and of steps up to a width have more.
 constexpr double kShoulderShare = 0.2;
 /// A median below this is one of spikes: theirs is 0.02, that of curves 0.9 widths from sample to sample 0.095.
@@ -28,19 +26,24 @@ constexpr double kNeighboursWithoutMedian = 1.0;  // three samples above half
 /// Curvature of G per sample distance squared, as fit_five finds it.
 std::optional<double> bend(const CurveTuple& tuple, const HeightEntry& at) {
   const std::array u{at.u_left2, at.u_left, 0.0F, at.u_right, at.u_right2};
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d sums = Eigen::Vector3d::Zero();
+  std::array<double, 5> s{};  // sums over the samples of w u^n, w = r^4
+  std::array<double, 3> t{};  // and of w u^n r^-1/2
   for (std::size_t i = 0; i < u.size(); ++i) {
     if (i != 2 && u[i] == 0.0F) continue;
-    const auto place = static_cast<double>(u[i]);
     const double r = std::max(static_cast<double>(tuple.share[i]), static_cast<double>(kSmallestShare));
-    const Eigen::Vector3d terms(1.0, place, place * place);
-    normal += std::pow(r, 4) * terms * terms.transpose();
-    sums += std::pow(r, 3.5) * terms;
+    double w = r * r * r * r;
+    const double g = 1.0 / std::sqrt(r);
+    for (std::size_t n = 0; n < s.size(); ++n, w *= static_cast<double>(u[i])) {
+      s[n] += w;
+      if (n < t.size()) t[n] += w * g;
+    }
   }
-  const Eigen::LLT<Eigen::Matrix3d> factor(normal);
-  const double found = factor.solve(sums)(2);
-  return factor.info() == Eigen::Success && found > 0.0 ? std::optional(found) : std::nullopt;
+  const double c20 = s[1] * s[3] - s[2] * s[2];
+  const double c12 = s[1] * s[2] - s[0] * s[3];
+  const double c22 = s[0] * s[2] - s[1] * s[1];
+  const double determinant = s[2] * c20 + s[3] * c12 + s[4] * c22;
+  const double found = (c20 * t[0] + c12 * t[1] + c22 * t[2]) / determinant;
+  return determinant > 0.0 && found > 0.0 ? std::optional(found) : std::nullopt;
 }
 
 std::optional<double> shoulder(const CurveTuple& tuple, const HeightEntry& at) {
@@ -70,7 +73,9 @@ CurveLimits curve_limits(std::span<const CurveTuple> tuples, std::size_t looked_
   const std::vector<HeightEntry> heights = height_table(z_um);
   std::vector<double> bends_per_um2;
   std::vector<double> shoulders;
-  for (const CurveTuple& tuple : tuples) {
+  const std::size_t count = std::min(tuples.size(), kMostCurves);
+  for (std::size_t i = 0; i < count; ++i) {
+    const CurveTuple& tuple = tuples[count == tuples.size() ? i : spread_index(i, tuples.size())];
     const HeightEntry& at = heights[static_cast<std::size_t>(tuple.index)];
     if (at.mask != 0) continue;
     const auto scale_um = static_cast<double>(at.scale_um);

@@ -168,7 +168,6 @@ JumpTiles::JumpTiles(int width, int height, const EdgeBandLimits& limits)
       most_(static_cast<std::uint16_t>(std::min(limits.most_samples, int{kHighest}))),
       jumps_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
   for (auto& row : last_index_) row.resize(static_cast<std::size_t>(width));
-  for (auto& row : last_mask_) row.resize(static_cast<std::size_t>(width));
 }
 
 void JumpTiles::mark(int x, int y, int count, const std::uint16_t* one, const std::uint16_t* other,
@@ -184,15 +183,14 @@ void JumpTiles::compare(int y, const std::uint16_t* upper, const std::uint16_t* 
   for (int x = 0; x < width_; x += tile_) mark(x, y, std::min(tile_, width_ - x), upper, lower, upper_mask, lower_mask);
 }
 
-void JumpTiles::look_at(int y, const std::uint16_t* peak_index, const MaskReasons* mask) {
+void JumpTiles::look_at(int y, const std::uint16_t* peak_index, const MaskReasons* mask,
+                        const MaskReasons* upper_mask) {
   for (int x = 0; x < width_; x += tile_) {
     mark(x, y, std::min(tile_, width_ - kApart - x), peak_index, peak_index + kApart, mask, mask + kApart);
   }
   auto& upper = last_index_[y % kApart];
-  auto& upper_mask = last_mask_[y % kApart];
-  if (shown_ >= kApart) compare(y, upper.data(), peak_index, upper_mask.data(), mask);
+  if (shown_ >= kApart) compare(y, upper.data(), peak_index, upper_mask, mask);
   std::copy_n(peak_index, width_, upper.begin());
-  std::copy_n(mask, width_, upper_mask.begin());
   ++shown_;
 }
 

@@ -37,9 +37,9 @@ class JumpTiles {
  public:
   JumpTiles(int width, int height, const EdgeBandLimits& limits);
 
-  /// Row y with its reasons; the row two above it is remembered if it was shown last but one. Points whose peak is
-  /// insignificant do not count.
-  void look_at(int y, const std::uint16_t* peak_index, const MaskReasons* mask);
+  /// Row y with its reasons; it is compared with the row two above, whose reasons are upper_mask, if that was shown.
+  /// Points whose peak is insignificant do not count.
+  void look_at(int y, const std::uint16_t* peak_index, const MaskReasons* mask, const MaskReasons* upper_mask);
   /// Compares two rows alone, `upper` two above y.
   void compare(int y, const std::uint16_t* upper, const std::uint16_t* lower, const MaskReasons* upper_mask,
                const MaskReasons* lower_mask);
@@ -63,8 +63,7 @@ class JumpTiles {
   std::uint16_t most_;
   int shown_ = 0;                                     // rows
   std::vector<std::uint16_t> last_index_[kApart_px];  // of the rows before, by y % 2
-  std::vector<MaskReasons> last_mask_[kApart_px];
-  std::vector<std::uint8_t> jumps_;  // [rows][columns]
+  std::vector<std::uint8_t> jumps_;                   // [rows][columns]
 };
 
 /// Condensed curves of row y, valid until the same thread's next call.

@@ -237,7 +237,9 @@ class MapFinish {
         fit.fit(row, noise_row.data(), limits.least(), width_,
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
         gaps.correct(row, width_, map_.height_m.row(y));
-        if (jumps_matter) jumps[static_cast<std::size_t>(band)].look_at(y, row.peak_index, map_.mask.row(y));
+        if (jumps_matter)
+          jumps[static_cast<std::size_t>(band)].look_at(y, row.peak_index, map_.mask.row(y),
+                                                        map_.mask.row(std::max(0, y - 2)));
         if (y - 2 * reach >= first) finish_sigma(y - reach);  // while the rows are in the cache
       }
     });
