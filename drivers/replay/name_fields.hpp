@@ -34,8 +34,8 @@ struct NameFields {
   [[nodiscard]] std::string words() const;
 };
 
-/// Splits a name without its extension. A '-' or '+' before a digit and not after one is a sign. Digits around one point
-/// are a decimal number, digits around a comma only where a unit of length follows.
+/// Splits a name without its extension. A '-' or '+' before a digit and not after one is a sign. Digits around one
+/// point are a decimal number, digits around a comma only where a unit of length follows.
 [[nodiscard]] NameFields name_fields(std::string_view stem);
 
 /// The unit of length with which the text after a number begins ("um", "mm", "nm", after a blank or '_' too) in um.

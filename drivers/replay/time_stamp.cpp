@@ -17,8 +17,7 @@ std::optional<TimeStamp> find_time_stamp(const std::string& name) {
   if (!std::regex_search(name, match, kFormat)) return std::nullopt;
   const auto number = [&match](std::size_t group) { return std::stoi(match[group].str()); };
   const std::chrono::sys_days day = std::chrono::year(number(1)) / number(2) / number(3);
-  const double fraction =
-      match[7].matched ? number(7) * std::pow(10.0, -static_cast<double>(match[7].length())) : 0.0;
+  const double fraction = match[7].matched ? number(7) * std::pow(10.0, -static_cast<double>(match[7].length())) : 0.0;
   const auto first = static_cast<std::size_t>(match.position(1));
   const auto end = static_cast<std::size_t>(match.position(0) + match.length(0));
   return TimeStamp{first, end - first,
