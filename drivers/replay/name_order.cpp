@@ -22,6 +22,7 @@ using Order = std::vector<std::size_t>;
 /// Numbers of more digits are time stamps or hashes, not counts.
 constexpr std::size_t kMaxCountDigits = 9;
 constexpr std::size_t kLeastRolloverDigits = 4;  ///< DSC_9999, DSC_0001; of s_99, s_01 it is not known
+constexpr double kLeastJump = 0.9;               ///< as a share of all numbers of a counter
 
 std::string in_folder(const NameColumns& columns, const std::string& pattern, const std::string& more = {}) {
   return pattern + " (" + std::to_string(columns.rows()) + " files" + more + ")";
@@ -73,8 +74,8 @@ std::string gap_of(const NameColumns& columns, std::size_t column, const Order& 
   return uneven_spacing(values_of(columns, column, order), names_in(columns, order), rounding(columns, column));
 }
 
-/// Whether a counter of fixed width ran from 9...9 to 0 or 1 within the stack: turns `order` so that the first slice
-/// comes first. values: in that order, made to rise across the turn.
+/// Whether a counter of fixed width began again within the stack, by a jump over nearly all its numbers: turns `order`
+/// so that the first slice comes first. values: in that order, made to rise across the turn.
 bool roll_over(const NameColumns& columns, std::size_t column, Order& order, std::vector<double>& values) {
   const std::size_t width = columns.at(order.front(), column).digits.size();
   if (width < kLeastRolloverDigits || width > kMaxCountDigits || order.size() < 2) return false;
@@ -83,14 +84,13 @@ bool roll_over(const NameColumns& columns, std::size_t column, Order& order, std
     if (number.digits.size() != width || number.sign != '\0' || !number.fraction.empty()) return false;
   }
   const double full = std::pow(10.0, static_cast<double>(width));
-  if (values.front() > 1.0 || values.back() != full - 1.0) return false;
   std::size_t turn = 1;
   for (std::size_t i = 2; i < values.size(); ++i) {
     if (values[i] - values[i - 1] > values[turn] - values[turn - 1]) turn = i;
   }
-  if (values[turn] - values[turn - 1] < full / 2.0) return false;
-  const double first = values.front();
-  for (std::size_t i = 0; i < turn; ++i) values[i] += full - first;  // 9999 is followed by 0000 or by 0001
+  if (values[turn] - values[turn - 1] < kLeastJump * full) return false;
+  const double period = values.front() == 0.0 ? full : full - 1.0;  // 9999 is followed by 0000 or by 0001
+  for (std::size_t i = 0; i < turn; ++i) values[i] += period;
   const auto by = static_cast<std::ptrdiff_t>(turn);
   std::rotate(values.begin(), values.begin() + by, values.end());
   std::rotate(order.begin(), order.begin() + by, order.end());
@@ -178,7 +178,7 @@ std::optional<TimedNames> time_stamps_in(const std::vector<std::string>& names) 
 
 /// A pause in which one slice more would have had room.
 std::string pause_in(const std::vector<double>& seconds, const std::vector<std::string>& names) {
-  constexpr double kLongPause = 1.8;
+  constexpr double kLongPause = 1.6;
   if (seconds.size() < 4) return {};
   std::vector<double> pauses;
   for (std::size_t i = 1; i < seconds.size(); ++i) pauses.push_back(seconds[i] - seconds[i - 1]);
