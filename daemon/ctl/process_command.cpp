@@ -37,7 +37,6 @@ constexpr const char* kRecordedHeights = "z.txt";
 ZSource z_source(const ProcessArguments& arguments, const Recipe& recipe, const SliceList& slices) {
   if (!arguments.z_file.empty())
     return ZFile{arguments.z_file, *length_unit_from_name(arguments.z_unit.value_or("um"))};
-  if (arguments.z_step_um == 0.0) throw UsageError("--z-step-um must not be 0: slices at one z make no height map");
   const bool named = !slices.z_um.empty() && !arguments.z_step_um && !arguments.z_start_um;
   if (arguments.recipe.empty() && !arguments.z_step_um && !named) {
     throw UsageError(
@@ -103,6 +102,7 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
 }
 
 ProcessOptions options_of(const ProcessArguments& arguments) {
+  if (arguments.z_step_um == 0.0) throw UsageError("--z-step-um must not be 0: slices at one z make no height map");
   ProcessOptions options;
   options.source = arguments.source;
   options.out = arguments.out;
