@@ -33,15 +33,20 @@ std::vector<std::string> operator_names() {
 /// Beside slices that a job recorded.
 constexpr const char* kRecordedHeights = "z.txt";
 
-ZSource z_source(const ProcessArguments& arguments, const Recipe& recipe) {
+/// What was typed, else the slices' own file, else their names, else the recipe.
+ZSource z_source(const ProcessArguments& arguments, const Recipe& recipe, const SliceList& slices) {
   if (!arguments.z_file.empty())
     return ZFile{arguments.z_file, *length_unit_from_name(arguments.z_unit.value_or("um"))};
-  if (arguments.z_step_um == 0.0 || (arguments.recipe.empty() && !arguments.z_step_um)) {
-    throw UsageError("the z of the slices is not known: give --z-step-um (not 0), --z-file or --recipe");
+  const bool named = !slices.z_um.empty() && !arguments.z_step_um && !arguments.z_start_um;
+  if (arguments.recipe.empty() && !arguments.z_step_um && !named) {
+    throw UsageError(
+        "the z of the slices is not known, and names such as " + slices.slices.front().name() +
+        " do not say it with a unit: give --z-step-um, --z-file, --recipe, or --pattern with {z_um} or {z_mm}");
   }
   const std::filesystem::path recorded = std::filesystem::path(arguments.source) / kRecordedHeights;
-  if (!arguments.z_step_um && !arguments.z_start_um && std::filesystem::exists(recorded))
+  if (!arguments.recipe.empty() && !arguments.z_step_um && !arguments.z_start_um && std::filesystem::exists(recorded))
     return ZFile{recorded, LengthUnit::kMicrometre};
+  if (named) return ZNames{};
   return ZSpacing{arguments.z_start_um.value_or(arguments.recipe.empty() ? 0.0 : recipe.start_um),
                   arguments.z_step_um.value_or(recipe.step_um)};
 }
@@ -102,6 +107,7 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
 }
 
 ProcessOptions options_of(const ProcessArguments& arguments) {
+  if (arguments.z_step_um == 0.0) throw UsageError("--z-step-um must not be 0: slices at one z make no height map");
   ProcessOptions options;
   options.source = arguments.source;
   options.out = arguments.out;
@@ -114,7 +120,8 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   }
   options.simulated = recorded_of_simulation(options.source);
   options.recipe_plans_scan = !arguments.recipe.empty();
-  options.z = z_source(arguments, options.recipe);
+  options.slices = find_slices(options.source, arguments.pattern);
+  options.z = z_source(arguments, options.recipe, options.slices);
   options.z_unit_assumed = std::holds_alternative<ZFile>(options.z) && !arguments.z_unit;
   const Overrides overrides = apply(arguments, options.recipe);
   if (!arguments.recipe.empty() && !overrides.options().empty()) {
@@ -151,7 +158,7 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
   text << "slices    " << report.slices_text << ", " << result.focus.width_px << " x " << result.focus.height_px
-       << " pixels\n";
+       << " pixels\nfiles     " << report.files_text << "\n";
   text << "valid     " << 100.0 * result.valid_fraction() << " %\n";
   if (um("height_median")) {
     text << "heights   " << *um("height_min") << " to " << *um("height_max") << " um, median " << *um("height_median")
@@ -178,12 +185,18 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
   command.add_option("--out", a.out, "directory to make for the result; must not exist")->required();
   command.add_option("--recipe", a.recipe, "file of a recipe: as a live job of it would; the options below change it")
       ->check(CLI::ExistingFile);
-  CLI::Option* step = command.add_option("--z-step-um", a.z_step_um, "z from one slice to the next, may be negative");
+  command.add_option("--pattern", a.pattern,
+                     "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um} or {z_mm} z with sign and "
+                     "decimals, * any text; default: by the names themselves");
+  CLI::Option* step = command.add_option(
+      "--z-step-um", a.z_step_um,
+      "z from one slice to the next, may be negative; default: z in the names that have a unit (z-20um, "
+      "1.15mm), the recipe's");
   CLI::Option* start =
       command.add_option("--z-start-um", a.z_start_um, "z of the first slice; default: the recipe's, else 0");
-  CLI::Option* file = command.add_option(
-      "--z-file", a.z_file,
-      "z of each slice, one number per line, # for comments; with a recipe, the source's own z.txt is used by itself");
+  CLI::Option* file = command.add_option("--z-file", a.z_file,
+                                         "z of each slice in their order, one number per line, UTF-8 or UTF-16, # for "
+                                         "comments; with a recipe, the source's own z.txt is used by itself");
   file->excludes(step)->excludes(start);
   command.add_option("--z-unit", a.z_unit, "unit of the z file, default um")
       ->needs(file)

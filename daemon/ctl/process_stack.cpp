@@ -41,6 +41,13 @@ void check_options(const ProcessOptions& options) {
   }
 }
 
+/// "11 used + 2 ignored = 13": no file is left out in silence.
+std::string files_text(const SliceList& list) {
+  const auto ignored = static_cast<int>(list.ignored.size());
+  return std::to_string(list.used_files) + " used + " + std::to_string(ignored) +
+         " ignored = " + std::to_string(list.used_files + ignored);
+}
+
 StepRecord step_record(int index, double z_um) {
   StepRecord step;
   step.index = index;
@@ -57,7 +64,7 @@ void describe(ResultData& data, const ProcessOptions& options, const RecordedSta
   auto source = std::filesystem::absolute(options.source).lexically_normal();
   if (!source.has_filename()) source = source.parent_path();  // a trailing slash
   data.part_id = options.part_id.empty() ? source.filename().string() : options.part_id;
-  data.source = source.string() + ": " + stack.list().description;
+  data.source = source.string() + ": " + stack.list().description + "; files: " + files_text(stack.list());
   note_recipe(options.recipe, data);
   if (!options.knows_pixel_pitch) {
     data.pixel_pitch_x_um.reset();
@@ -211,12 +218,12 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
 ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice) {
   const auto start = SteadyClock::now();
   check_options(options);
-  const RecordedStack stack(options.source);
+  const RecordedStack stack(options.slices);
   ResultData data;
   describe(data, options, stack);
   measure(options, stack, start, on_slice, data);
   data.step_summary = summarize_steps(data.steps);
-  return {stack.list().description, write_result(options.out, data)};
+  return {stack.list().description, files_text(stack.list()), write_result(options.out, data)};
 }
 
 }  // namespace fvd::ctl

@@ -17,6 +17,7 @@ namespace fvd::ctl {
 struct ProcessOptions {
   std::filesystem::path source;  ///< folder of slices or multi-page TIFF
   std::filesystem::path out;     ///< result directory, must not exist
+  SliceList slices;              ///< of the source
   ZSource z;
   bool simulated = false;          ///< the slices were recorded of simulated devices
   bool z_unit_assumed = false;     ///< z is a file, and nobody said that it is in um
@@ -31,6 +32,7 @@ struct ProcessOptions {
 
 struct ProcessReport {
   std::string slices_text;  ///< which files were taken for slices
+  std::string files_text;   ///< how many of the image files, and how many not
   Result result;
 };
 

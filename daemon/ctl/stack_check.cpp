@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -44,6 +45,22 @@ void require_plausible_unit(const ProcessOptions& options, double step_um) {
   throw Error(ErrorCode::kBadInput, message.str());
 }
 
+std::string ignored_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 10;
+  std::string text = std::to_string(names.size()) + (names.size() == 1 ? " image file is" : " image files are") +
+                     " not taken for slices: " + names.front();
+  for (std::size_t i = 1; i < std::min(names.size(), kNamed); ++i) text += ", " + names[i];
+  return names.size() > kNamed ? text + ", ..." : text;
+}
+
+/// The step that the names tell, where it is another than the one in use.
+std::optional<double> differing_names_step_um(const ProcessOptions& options, double step_um) {
+  if (options.slices.z_um.size() < 2) return std::nullopt;
+  const double names_um = median_step_um(options.slices.z_um);
+  if (std::abs(names_um - step_um) <= kMaxStepDifference * step_um) return std::nullopt;
+  return names_um;
+}
+
 }  // namespace
 
 double median_step_um(const std::vector<double>& z_um) {
@@ -65,6 +82,12 @@ std::vector<Warning> check_stack(const ProcessOptions& options, const std::vecto
     (text << ... << parts);
     warnings.push_back({code, text.str()});
   };
+  if (!options.slices.ignored.empty()) warn("files_ignored", ignored_text(options.slices.ignored));
+  if (!options.slices.doubt.empty()) warn("slice_may_be_missing", options.slices.doubt);
+  if (const auto names_um = differing_names_step_um(options, step_um)) {
+    warn("step_differs_from_names", "the step is ", step_um, " um, the z in the names of the slices are ", *names_um,
+         " um apart: without --z-step-um and --z-file z is taken from the names");
+  }
   if (options.recipe_plans_scan && z_um.size() != static_cast<std::size_t>(recipe.slices)) {
     warn("slices_differ", "there are ", z_um.size(), " slices, the recipe has ", recipe.slices);
   }

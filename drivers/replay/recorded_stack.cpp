@@ -1,6 +1,7 @@
 #include "drivers/replay/recorded_stack.hpp"
 
 #include <string>
+#include <utility>
 
 #include "core/base/error.hpp"
 
@@ -15,7 +16,7 @@ std::string shape_text(int width, int height, PixelFormat format) {
 
 }  // namespace
 
-RecordedStack::RecordedStack(const std::filesystem::path& source) : list_(find_slices(source)) {
+RecordedStack::RecordedStack(SliceList list) : list_(std::move(list)) {
   SliceImage first;
   read_slice(list_.slices.front(), first);
   width_ = first.width;

@@ -16,7 +16,9 @@ class RecordedStack {
  public:
   /// source: a folder of slices or a multi-page TIFF, see find_slices() for which files count. Reads the first slice.
   /// Throws Error kBadInput, naming the file: see find_slices(), read_slice().
-  explicit RecordedStack(const std::filesystem::path& source);
+  explicit RecordedStack(const std::filesystem::path& source) : RecordedStack(find_slices(source)) {}
+  /// Of slices that were found before.
+  explicit RecordedStack(SliceList list);
 
   [[nodiscard]] const SliceList& list() const noexcept { return list_; }
   [[nodiscard]] int slices() const noexcept { return static_cast<int>(list_.slices.size()); }

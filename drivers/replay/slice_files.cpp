@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <compare>
+#include <iterator>
 #include <map>
 #include <system_error>
 #include <tuple>
@@ -11,6 +10,10 @@
 
 #include "core/base/error.hpp"
 #include "drivers/replay/image_file.hpp"
+#include "drivers/replay/name_columns.hpp"
+#include "drivers/replay/name_fields.hpp"
+#include "drivers/replay/name_order.hpp"
+#include "drivers/replay/name_pattern.hpp"
 
 namespace fvd {
 
@@ -18,88 +21,90 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool is_tiff(const fs::path& file) {
-  const std::string extension = lower(file.extension().string());
+  const std::string extension = lower_case(file.extension().string());
   return extension == ".tif" || extension == ".tiff";
 }
 
 bool is_image(const fs::path& file) {
   constexpr std::array kExtensions{".png", ".jpg", ".jpeg", ".pgm"};
-  const std::string extension = lower(file.extension().string());
+  const std::string extension = lower_case(file.extension().string());
   return is_tiff(file) ||
          std::any_of(kExtensions.begin(), kExtensions.end(), [&](const char* known) { return extension == known; });
 }
 
-/// "a12b007.png" -> before "a12b", number "7", after ".png".
-struct NumberedName {
-  std::string before;
-  std::string number;  // without leading zeros, so that length orders before digits
-  std::string after;
-};
-
-std::optional<NumberedName> split_name(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  const auto last = std::find_if(stem.rbegin(), stem.rend(), is_digit);
-  if (last == stem.rend()) return std::nullopt;
-  const auto first = std::find_if_not(last, stem.rend(), is_digit);
-  std::string number(first.base(), last.base());
-  number.erase(0, std::min(number.find_first_not_of('0'), number.size() - 1));
-  return NumberedName{std::string(stem.begin(), first.base()), std::move(number),
-                      std::string(last.base(), stem.end()) + file.extension().string()};
+/// Whether it could be meant for a slice, readable or not.
+bool is_picture(const fs::path& file) {
+  constexpr std::array kOthers{".bmp", ".webp", ".gif", ".jp2", ".jxl", ".heic", ".exr", ".ppm", ".pnm", ".fits",
+                               ".raw", ".dng",  ".nef", ".cr2", ".cr3", ".arw",  ".czi", ".nd2", ".lif"};
+  const std::string extension = lower_case(file.extension().string());
+  return is_image(file) ||
+         std::any_of(kOthers.begin(), kOthers.end(), [&](const char* known) { return extension == known; });
 }
-
-struct NumberedFile {
-  std::string number;
-  fs::path file;
-};
-
-bool before(const NumberedFile& a, const NumberedFile& b) {
-  return std::tuple(a.number.size(), a.number) < std::tuple(b.number.size(), b.number);
-}
-
-/// Slices that belong together.
-struct Candidate {
-  std::string description;
-  std::vector<NumberedFile> files;  // a family, in natural order
-  fs::path tiff;                    // or one multi-page TIFF
-  std::size_t slices = 0;
-};
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::kBadInput, message); }
 
-Candidate family(const std::string& pattern, std::vector<NumberedFile> files) {
-  std::sort(files.begin(), files.end(), before);
-  Candidate candidate{pattern + " (" + std::to_string(files.size()) + " files)", {}, {}, files.size()};
-  candidate.files = std::move(files);
-  return candidate;
-}
-
-Candidate pages(const fs::path& file, int count) {
-  return {
-      file.filename().string() + " (" + std::to_string(count) + " pages)", {}, file, static_cast<std::size_t>(count)};
-}
-
-std::vector<Candidate> candidates_in(const fs::path& folder) {
-  std::map<std::pair<std::string, std::string>, std::vector<NumberedFile>> families;
-  std::vector<Candidate> candidates;
+/// Visible files that may be slices, by name.
+std::vector<std::string> pictures_in(const fs::path& folder) {
+  std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const fs::path& file = entry.path();
-    if (!entry.is_regular_file() || file.filename().string().starts_with('.') || !is_image(file)) continue;
-    if (const auto name = split_name(file)) families[{name->before, name->after}].push_back({name->number, file});
-    if (is_tiff(file)) {
-      if (const int count = count_tiff_pages(file); count > 1) candidates.push_back(pages(file, count));
-    }
+    std::string name = entry.path().filename().string();
+    if (entry.is_regular_file() && !name.starts_with('.') && is_picture(name)) names.push_back(std::move(name));
   }
   if (error) refuse("cannot read folder " + folder.string() + ": " + error.message());
-  for (auto& [key, files] : families) {
-    candidates.push_back(family(key.first + "*" + key.second, std::move(files)));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Slices that belong together: names of one skeleton, or one multi-page TIFF.
+struct Candidate {
+  std::string description;
+  std::vector<std::string> names;
+  std::string tiff;
+  std::size_t slices = 0;
+};
+
+/// "a*b*.png" of "a12b007.png".
+std::string starred(const std::string& name) {
+  const fs::path file(name);
+  const NameFields fields = name_fields(file.stem().string());
+  std::string text = fields.texts.front();
+  for (std::size_t i = 1; i < fields.texts.size(); ++i) text += "*" + fields.texts[i];
+  return text + file.extension().string();
+}
+
+/// "a*b{n}.png" of "a12b007.png".
+std::string counted(const std::string& name) {
+  std::string text = starred(name);
+  return text.replace(text.rfind('*'), 1, "{n}");
+}
+
+/// One extension in its several spellings.
+std::string extension_key(const std::string& name) {
+  const std::string extension = lower_case(fs::path(name).extension().string());
+  return extension == ".tiff" ? ".tif" : extension == ".jpeg" ? ".jpg" : extension;
+}
+
+Candidate pages(const std::string& name, int count) {
+  return {name + " (" + std::to_string(count) + " pages)", {}, name, static_cast<std::size_t>(count)};
+}
+
+std::vector<Candidate> candidates_in(const fs::path& folder, const std::vector<std::string>& pictures) {
+  std::map<std::string, std::vector<std::string>> families;
+  std::vector<Candidate> candidates;
+  for (const std::string& name : pictures) {
+    if (!is_image(name)) continue;
+    const NameFields fields = name_fields(fs::path(name).stem().string());
+    if (!fields.numbers.empty()) families[fields.skeleton() + extension_key(name)].push_back(name);
+    if (is_tiff(name)) {
+      if (const int count = count_tiff_pages(folder / name); count > 1) candidates.push_back(pages(name, count));
+    }
+  }
+  for (auto& [key, names] : families) {
+    const std::size_t count = names.size();
+    const std::string description = starred(names.front()) + " (" + std::to_string(count) + " files)";
+    candidates.push_back({description, std::move(names), {}, count});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return std::tuple(b.slices, a.description) < std::tuple(a.slices, b.description);
@@ -107,50 +112,60 @@ std::vector<Candidate> candidates_in(const fs::path& folder) {
   return candidates;
 }
 
-void check_duplicates(const Candidate& candidate) {
-  const auto twice = std::adjacent_find(candidate.files.begin(), candidate.files.end(),
-                                        [](const auto& a, const auto& b) { return a.number == b.number; });
-  if (twice == candidate.files.end()) return;
-  refuse(twice->file.string() + " and " + (twice + 1)->file.filename().string() +
-         " have the same number: their order is not known");
+/// Names that a person would take for slices of the same stack, although they have other numbers.
+void check_same_words(const fs::path& folder, const Candidate& best, const std::vector<Candidate>& all) {
+  if (best.names.empty()) return;
+  const auto words = [](const std::string& name) {
+    return name_fields(fs::path(name).stem().string()).words() + extension_key(name);
+  };
+  for (const Candidate& other : all) {
+    if (&other == &best || other.names.empty() || words(other.names.front()) != words(best.names.front())) continue;
+    ask_for_pattern("in " + folder.string() + " are " + best.description + " and also " + other.names.front() +
+                        ", which may be a slice of them",
+                    {counted(best.names.front()), counted(other.names.front())});
+  }
 }
 
-/// Numbers of more digits are time stamps or hashes, not counts.
-constexpr std::size_t kMaxCountDigits = 9;
-
-std::string find_gap(const std::vector<NumberedFile>& files) {
-  const auto value = [](const NumberedFile& file) { return std::stol(file.number); };
-  if (files.size() < 3) return {};
-  if (files.back().number.size() > kMaxCountDigits) {
-    return "the numbers in the names, such as " + files.back().file.filename().string() + ", are too long to be counts";
-  }
-  long smallest = value(files[1]) - value(files[0]);
-  for (std::size_t i = 2; i < files.size(); ++i) smallest = std::min(smallest, value(files[i]) - value(files[i - 1]));
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    if (value(files[i]) - value(files[i - 1]) == smallest) continue;
-    return files[i - 1].file.filename().string() + " is followed by " + files[i].file.filename().string();
-  }
-  return {};
+/// slices of the names that are used; the other pictures are ignored.
+SliceList listed(const fs::path& folder, const std::vector<std::string>& names, NameOrder order,
+                 const std::vector<std::string>& pictures) {
+  SliceList result;
+  result.description = std::move(order.description);
+  result.gap = std::move(order.gap);
+  result.doubt = std::move(order.doubt);
+  result.z_um = std::move(order.z_um);
+  for (const std::size_t index : order.order) result.slices.push_back({folder / names[index], std::nullopt});
+  result.used_files = static_cast<int>(names.size());
+  std::set_difference(pictures.begin(), pictures.end(), names.begin(), names.end(), std::back_inserter(result.ignored));
+  return result;
 }
 
-SliceList list(const Candidate& candidate) {
+SliceList listed_pages(const fs::path& file, const Candidate& candidate, const std::vector<std::string>& pictures) {
   SliceList result;
   result.description = candidate.description;
-  for (const auto& [number, file] : candidate.files) result.slices.push_back({file, std::nullopt});
-  if (!candidate.files.empty()) {
-    check_duplicates(candidate);
-    result.gap = find_gap(candidate.files);
-    return result;
-  }
-  for (std::size_t page = 0; page < candidate.slices; ++page) {
-    result.slices.push_back({candidate.tiff, static_cast<int>(page)});
-  }
+  for (std::size_t page = 0; page < candidate.slices; ++page) result.slices.push_back({file, static_cast<int>(page)});
+  result.used_files = 1;
+  std::copy_if(pictures.begin(), pictures.end(), std::back_inserter(result.ignored),
+               [&](const std::string& name) { return name != candidate.tiff; });
   return result;
 }
 
 constexpr const char* kExpected =
     "; expected image files (PNG, TIFF, JPEG, PGM) whose names differ in a number only, such as slice_000.png, "
-    "slice_001.png, or one multi-page TIFF";
+    "slice_001.png, or one multi-page TIFF; --pattern of fvdctl process describes other names";
+
+SliceList find_by_pattern(const fs::path& folder, const NamePattern& pattern) {
+  const auto pictures = pictures_in(folder);
+  std::vector<std::string> names;
+  std::copy_if(pictures.begin(), pictures.end(), std::back_inserter(names),
+               [&](const std::string& name) { return is_image(name) && pattern.matches(name); });
+  if (names.size() < 2) {
+    refuse("--pattern '" + pattern.text() + "' matches " + std::to_string(names.size()) + " of the " +
+           std::to_string(pictures.size()) + " image files in " + folder.string() +
+           (pictures.empty() ? "" : ", such as " + pictures.front()) + ": a height map needs several");
+  }
+  return listed(folder, names, pattern.order(names), pictures);
+}
 
 }  // namespace
 
@@ -158,28 +173,37 @@ std::string SliceLocation::name() const {
   return page ? file.filename().string() + " page " + std::to_string(*page + 1) : file.filename().string();
 }
 
-SliceList find_slices(const fs::path& source) {
+SliceList find_slices(const fs::path& source, const std::string& pattern) {
   std::error_code error;
   const auto status = fs::status(source, error);
   if (!fs::exists(status)) refuse("there is no folder " + source.string());
   if (fs::is_regular_file(status)) {
     const int count = is_tiff(source) ? count_tiff_pages(source) : 0;
     if (count < 2) refuse(source.string() + " is a file but not a TIFF with several pages" + kExpected);
-    return list(pages(source, count));
+    if (!pattern.empty()) refuse(source.string() + " is one file: --pattern is for the names in a folder");
+    return listed_pages(source, pages(source.filename().string(), count), {});
   }
   if (!fs::is_directory(status)) refuse(source.string() + " is neither a folder nor a file");
-  const auto candidates = candidates_in(source);
+  if (!pattern.empty()) return find_by_pattern(source, NamePattern(pattern));
+  const auto pictures = pictures_in(source);
+  const auto candidates = candidates_in(source, pictures);
   if (candidates.empty()) refuse("no slices in " + source.string() + kExpected);
   const Candidate& best = candidates.front();
+  if (best.slices < 2 && candidates.size() > 1) {
+    refuse("in " + source.string() + " no two names differ in their numbers only, as " + best.names.front() + " and " +
+           candidates[1].names.front() + " show" + kExpected);
+  }
   if (best.slices < 2) {
-    refuse(source.string() + " has only one slice, " + best.files.front().file.filename().string() +
-           ": a height map needs several" + kExpected);
+    refuse(source.string() + " has only one slice, " + best.names.front() + ": a height map needs several" + kExpected);
   }
   if (candidates.size() > 1 && 2 * candidates[1].slices > best.slices) {
-    refuse("in " + source.string() + " both " + best.description + " and " + candidates[1].description +
-           " could be the slices: move the others away");
+    refuse(
+        "in " + source.string() + " both " + best.description + " and " + candidates[1].description +
+        " could be the slices: move the others away, or say with --pattern of fvdctl process which names are slices");
   }
-  return list(best);
+  check_same_words(source, best, candidates);
+  if (!best.tiff.empty()) return listed_pages(source / best.tiff, best, pictures);
+  return listed(source, best.names, order_names(best.names), pictures);
 }
 
 }  // namespace fvd

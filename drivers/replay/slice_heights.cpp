@@ -1,19 +1,22 @@
 #include "drivers/replay/slice_heights.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string>
 
 #include "core/base/error.hpp"
+#include "drivers/replay/z_list.hpp"
 
 namespace fvd {
 
 namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::kBadInput, message); }
+
+std::string_view unit_name(LengthUnit unit) {
+  return unit == LengthUnit::kMicrometre ? "um" : unit == LengthUnit::kMillimetre ? "mm" : "m";
+}
 
 double to_um(double value, LengthUnit unit) {
   switch (unit) {
@@ -25,34 +28,6 @@ double to_um(double value, LengthUnit unit) {
       return value * 1e6;
   }
   return value;
-}
-
-std::string_view trimmed(std::string_view line) {
-  line = line.substr(0, line.find('#'));
-  const auto first = line.find_first_not_of(" \t\r\xEF\xBB\xBF");  // and a byte order mark
-  if (first == std::string_view::npos) return {};
-  return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<double> read_file(const ZFile& file) {
-  std::ifstream stream(file.path);
-  if (!stream) refuse("cannot read the z file " + file.path.string());
-  std::vector<double> z_um;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    const std::string_view text = trimmed(line);
-    if (text.empty()) continue;
-    const std::string where = file.path.string() + " line " + std::to_string(number) + ": '" + std::string(text) + "' ";
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      refuse(where + "is not one number with a decimal point");
-    }
-    if (!std::isfinite(value)) refuse(where + "is not a finite height");
-    z_um.push_back(to_um(value, file.unit));
-  }
-  if (stream.bad()) refuse("reading the z file " + file.path.string() + " failed");
-  return z_um;
 }
 
 /// No stage makes such steps: they are numbers of another unit.
@@ -69,13 +44,33 @@ void check_unit(const ZFile& file, const std::vector<double>& z_um) {
   refuse(message.str());
 }
 
-void check_monotonic(const std::vector<double>& z_um) {
+/// Whether slice i goes the way that the first two go.
+bool goes_on(const std::vector<double>& z_um, std::size_t i) {
+  return z_um[1] > z_um[0] ? z_um[i] > z_um[i - 1] : z_um[i] < z_um[i - 1];
+}
+
+void check_monotonic(const std::vector<double>& z_um, const SliceList& list) {
   for (std::size_t i = 1; i < z_um.size(); ++i) {
-    const bool rising = z_um[1] > z_um[0];
-    if (rising ? z_um[i] > z_um[i - 1] : z_um[i] < z_um[i - 1]) continue;
+    if (goes_on(z_um, i)) continue;
     std::ostringstream message;
-    message << "z of the slices must rise or fall all the way: slice " << i - 1 << " is at " << z_um[i - 1]
-            << " um, slice " << i << " at " << z_um[i] << " um";
+    message << "z of the slices must rise or fall all the way: slice " << i - 1 << " (" << list.slices[i - 1].name()
+            << ") is at " << z_um[i - 1] << " um, slice " << i << " (" << list.slices[i].name() << ") at " << z_um[i]
+            << " um; a list must be in the order of the slices, which is " << list.slices.front().name() << ", "
+            << list.slices[1].name() << " to " << list.slices.back().name();
+    refuse(message.str());
+  }
+}
+
+/// A list that goes the other way than z in the names belongs to another order of the images.
+void check_against_names(const ZFile& file, const std::vector<double>& z_um, const SliceList& list) {
+  if (list.z_um.size() != z_um.size() || z_um.size() < 2) return;
+  for (std::size_t i = 1; i < z_um.size(); ++i) {
+    if ((z_um[i] > z_um[i - 1]) == (list.z_um[i] > list.z_um[i - 1])) continue;
+    std::ostringstream message;
+    message << file.path.string() << " is in another order than the slices: it puts " << list.slices[i - 1].name()
+            << " at " << z_um[i - 1] << " um and " << list.slices[i].name() << " at " << z_um[i]
+            << " um, their names say " << list.z_um[i - 1] << " um and " << list.z_um[i]
+            << " um; sort it, or leave --z-file out to take z from the names";
     refuse(message.str());
   }
 }
@@ -104,12 +99,20 @@ std::optional<LengthUnit> length_unit_from_name(std::string_view name) noexcept 
 std::vector<double> slice_heights_um(const ZSource& source, const SliceList& list) {
   std::vector<double> z_um;
   if (const auto* file = std::get_if<ZFile>(&source)) {
-    z_um = read_file(*file);
+    z_um = read_z_list(file->path, unit_name(file->unit));
+    for (double& z : z_um) z = to_um(z, file->unit);
     if (z_um.size() != list.slices.size()) {
       refuse(file->path.string() + " has " + std::to_string(z_um.size()) + " heights, but there are " +
              std::to_string(list.slices.size()) + " slices: " + list.description);
     }
     check_unit(*file, z_um);
+    check_against_names(*file, z_um, list);
+  } else if (std::holds_alternative<ZNames>(source)) {
+    if (list.z_um.empty()) {
+      refuse("the names of the slices " + list.description + " carry no z with a unit, such as z_0.5um: give a step, " +
+             "a file with the z of each slice, or --pattern of fvdctl process with {z_um} or {z_mm}");
+    }
+    z_um = list.z_um;
   } else {
     if (!list.gap.empty()) {
       refuse("the slices " + list.description + " are not evenly numbered (" + list.gap +
@@ -118,7 +121,7 @@ std::vector<double> slice_heights_um(const ZSource& source, const SliceList& lis
     }
     z_um = spaced(std::get<ZSpacing>(source), list.slices.size());
   }
-  check_monotonic(z_um);
+  check_monotonic(z_um, list);
   return z_um;
 }
 

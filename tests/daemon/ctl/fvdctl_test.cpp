@@ -181,7 +181,6 @@ TEST(Fvdctl, ExitsWithUsageForWrongArguments) {
       {"state", "--what"},
       {"--address", "a:1", "--runtime-dir", "/run/fvd", "state"},
       {"process", "folder"},
-      {"process", "folder", "--out", "o"},
       {"process", "folder", "--out", "o", "--z-step-um", "0"},
       {"process", "folder", "--out", "o", "--z-step-um", "1", "--z-file", "z.txt"},
       {"process", "folder", "--out", "o", "--z-step-um", "1", "--peak", "mean"},
