@@ -120,7 +120,8 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   }
   options.simulated = recorded_of_simulation(options.source);
   options.recipe_plans_scan = !arguments.recipe.empty();
-  options.slices = find_slices(options.source, arguments.pattern);
+  options.slices = find_slices(options.source, {arguments.pattern, arguments.channel, arguments.time});
+  options.significant_bits = arguments.significant_bits.value_or(0);
   options.z = z_source(arguments, options.recipe, options.slices);
   options.z_unit_assumed = std::holds_alternative<ZFile>(options.z) && !arguments.z_unit;
   const Overrides overrides = apply(arguments, options.recipe);
@@ -181,13 +182,22 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
 }  // namespace
 
 void add_process_options(CLI::App& command, ProcessArguments& a) {
-  command.add_option("source", a.source, "folder of slices (PNG, TIFF, JPEG, PGM), or a multi-page TIFF")->required();
+  command.add_option("source", a.source, "folder of slices (PNG, TIFF, JPEG, PGM, BMP), or a multi-page TIFF")
+      ->required();
   command.add_option("--out", a.out, "directory to make for the result; must not exist")->required();
   command.add_option("--recipe", a.recipe, "file of a recipe: as a live job of it would; the options below change it")
       ->check(CLI::ExistingFile);
   command.add_option("--pattern", a.pattern,
                      "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um} or {z_mm} z with sign and "
                      "decimals, * any text; default: by the names themselves");
+  command.add_option("--channel", a.channel, "of the pages of a TIFF that has several, from 1")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--time", a.time, "of the pages of a TIFF that has several times, from 1")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--significant-bits", a.significant_bits,
+                  "of grey levels in files of 16 bit, at their lower or upper end; default: seen from the levels")
+      ->check(CLI::Range(8, 16));
   CLI::Option* step = command.add_option(
       "--z-step-um", a.z_step_um,
       "z from one slice to the next, may be negative; default: z in the names that have a unit (z-20um, "

@@ -26,8 +26,11 @@ struct ProcessArguments {
   std::string source;
   std::string out;
   std::string part_id;
-  std::string recipe;   ///< file; empty = the defaults of recipes, and the stage is not corrected
-  std::string pattern;  ///< of the slices' names; empty: by the names themselves
+  std::string recipe;                   ///< file; empty = the defaults of recipes, and the stage is not corrected
+  std::string pattern;                  ///< of the slices' names; empty: by the names themselves
+  std::optional<int> channel;           ///< of pages, from 1
+  std::optional<int> time;              ///< likewise
+  std::optional<int> significant_bits;  ///< of 16; absent: seen from the levels
   std::string z_file;
   std::optional<std::string> z_unit;  ///< of z_file; absent = um
   std::optional<double> z_step_um;

@@ -41,11 +41,22 @@ void check_options(const ProcessOptions& options) {
   }
 }
 
-/// "11 used + 2 ignored = 13": no file is left out in silence.
+std::string counted_text(int used, std::size_t ignored) {
+  return std::to_string(used) + " used + " + std::to_string(ignored) +
+         " ignored = " + std::to_string(static_cast<std::size_t>(used) + ignored);
+}
+
+/// "11 used + 2 ignored = 13", and the same of pages: nothing is left out in silence.
 std::string files_text(const SliceList& list) {
-  const auto ignored = static_cast<int>(list.ignored.size());
-  return std::to_string(list.used_files) + " used + " + std::to_string(ignored) +
-         " ignored = " + std::to_string(list.used_files + ignored);
+  std::string text = counted_text(list.used_files, list.ignored.size());
+  if (list.used_pages == 0) return text;
+  text += "; pages: " + counted_text(list.used_pages, list.ignored_pages.size());
+  constexpr std::size_t kNamed = 6;
+  for (std::size_t i = 0; i < std::min(kNamed, list.ignored_pages.size()); ++i) {
+    text += (i == 0 ? " (ignored: " : ", ") + list.ignored_pages[i];
+  }
+  if (list.ignored_pages.size() > kNamed) text += ", ...";
+  return list.ignored_pages.empty() ? text : text + ")";
 }
 
 StepRecord step_record(int index, double z_um) {
@@ -218,7 +229,7 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
 ProcessReport process_stack(const ProcessOptions& options, const std::function<void(int, int)>& on_slice) {
   const auto start = SteadyClock::now();
   check_options(options);
-  const RecordedStack stack(options.slices);
+  const RecordedStack stack(options.slices, options.significant_bits);
   ResultData data;
   describe(data, options, stack);
   measure(options, stack, start, on_slice, data);

@@ -18,6 +18,7 @@ struct ProcessOptions {
   std::filesystem::path source;  ///< folder of slices or multi-page TIFF
   std::filesystem::path out;     ///< result directory, must not exist
   SliceList slices;              ///< of the source
+  int significant_bits = 0;      ///< see GreySurvey; 0 = seen from the levels
   ZSource z;
   bool simulated = false;          ///< the slices were recorded of simulated devices
   bool z_unit_assumed = false;     ///< z is a file, and nobody said that it is in um

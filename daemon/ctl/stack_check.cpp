@@ -83,10 +83,10 @@ std::vector<Warning> check_stack(const ProcessOptions& options, const std::vecto
     warnings.push_back({code, text.str()});
   };
   if (!options.slices.ignored.empty()) warn("files_ignored", ignored_text(options.slices.ignored));
-  if (!options.slices.doubt.empty()) warn("slice_may_be_missing", options.slices.doubt);
+  if (!options.slices.doubt.empty()) warn("slice_order", options.slices.doubt);
   if (const auto names_um = differing_names_step_um(options, step_um)) {
-    warn("step_differs_from_names", "the step is ", step_um, " um, the z in the names of the slices are ", *names_um,
-         " um apart: without --z-step-um and --z-file z is taken from the names");
+    warn("step_differs_from_names", "the step is ", step_um, " um, the z in ", options.slices.z_from, " are ",
+         *names_um, " um apart: without --z-step-um and --z-file z is taken from there");
   }
   if (options.recipe_plans_scan && z_um.size() != static_cast<std::size_t>(recipe.slices)) {
     warn("slices_differ", "there are ", z_um.size(), " slices, the recipe has ", recipe.slices);

@@ -12,9 +12,9 @@
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/ctl/exit_codes.hpp"
-#include "drivers/replay/image_file.hpp"
 #include "drivers/replay/recorded_stack.hpp"
 #include "drivers/replay/slice_image.hpp"
+#include "drivers/replay/tiff_pages.hpp"
 
 namespace fvd::ctl {
 
@@ -55,7 +55,7 @@ Evidence look_at_stack(const std::filesystem::path& source) {
 }
 
 Evidence look_at(const std::filesystem::path& source) {
-  if (std::filesystem::is_directory(source) || count_tiff_pages(source) > 1) return look_at_stack(source);
+  if (std::filesystem::is_directory(source) || tiff_content(source).size() > 1) return look_at_stack(source);
   SliceImage slice;
   read_slice({source, std::nullopt}, slice);
   return {suggest_focus(slice.view()), std::nullopt};

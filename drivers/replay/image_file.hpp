@@ -10,12 +10,12 @@
 
 namespace fvd {
 
-/// The pixels of a file. Samples of 16 bit are in the machine's byte order.
+/// The pixels of a file. Samples of 16 bit, and real numbers, are in the machine's byte order.
 struct ImageFile {
   int width = 0;
   int height = 0;
   int channels = 1;                ///< 1 grey, 3 blue, green, red; transparency is dropped
-  int bytes_per_sample = 1;        ///< 1 or 2
+  int bytes_per_sample = 1;        ///< 1 or 2; 4: float, in the file's own range
   int max_level = 0;               ///< largest grey level that the file declares; 0: it declares none
   std::vector<std::byte> samples;  ///< shape [height][width][channels], rows contiguous; memory is reused
 
@@ -49,11 +49,16 @@ void read_png(const std::filesystem::path& file, ImageFile& image);
 /// JPEG, grey or colour. Data that libjpeg would fill in or guess is an error.
 void read_jpeg(const std::filesystem::path& file, ImageFile& image);
 
-/// One page of a TIFF (TIFF 6.0), 0-based: 8 or 16 bit unsigned grey or colour, strips or tiles; other encodings of 8
-/// bits and below (palette, YCbCr, bilevel) become 8-bit colour.
+/// BMP, uncompressed (BITMAPINFOHEADER and its successors) of 1, 4, 8, 24 or 32 bits; grey if its palette is.
+void read_bmp(const std::filesystem::path& file, ImageFile& image);
+
+/// One directory of a TIFF (TIFF 6.0), 0-based: grey or colour of 8 or 16 bit unsigned, packed 9 to 15 bits, and as
+/// float signed, 32-bit and real samples; strips or tiles. Other encodings of 8 bits and below (palette, YCbCr,
+/// bilevel) become 8-bit colour.
 void read_tiff(const std::filesystem::path& file, int page, ImageFile& image);
 
-/// Pages of a TIFF file; 0 if it cannot be read.
-[[nodiscard]] int count_tiff_pages(const std::filesystem::path& file);
+/// One image, 0-based, of those that stand one after the other behind the only directory of a TIFF: ImageJ writes
+/// stacks above 4 GB so. Samples as read_tiff() has them, of whole bytes and uncompressed.
+void read_contiguous_tiff(const std::filesystem::path& file, int index, ImageFile& image);
 
 }  // namespace fvd

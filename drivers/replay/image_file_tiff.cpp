@@ -1,73 +1,17 @@
 #include <algorithm>
-#include <cstdarg>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <memory>
+#include <fstream>
 #include <string>
 #include <vector>
 
-#include <tiffio.h>
-
 #include "drivers/replay/image_file.hpp"
+#include "drivers/replay/tiff_handle.hpp"
+#include "drivers/replay/tiff_samples.hpp"
 
 namespace fvd {
 
 namespace {
-
-struct TiffCloser {
-  void operator()(TIFF* tiff) const noexcept { TIFFClose(tiff); }
-};
-using Tiff = std::unique_ptr<TIFF, TiffCloser>;
-
-int keep_error(TIFF* /*tiff*/, void* text, const char* /*module*/, const char* format, std::va_list arguments) {
-  char line[160];
-  std::vsnprintf(line, sizeof line, format, arguments);
-  *static_cast<std::string*>(text) = line;
-  return 1;  // not to standard error as well
-}
-
-int drop_warning(TIFF*, void*, const char*, const char*, std::va_list) { return 1; }  // of unknown tags, mostly
-
-/// error: where the handle's errors go; must outlive it.
-Tiff open_tiff(const std::filesystem::path& file, std::string& error) {
-  const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(),
-                                                                                 TIFFOpenOptionsFree);
-  if (!options) throw std::bad_alloc();
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &error);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), drop_warning, nullptr);
-  return Tiff(TIFFOpenExt(file.c_str(), "r", options.get()));
-}
-
-/// The layout of one page.
-struct Page {
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::uint16_t bits = 1;
-  std::uint16_t samples = 1;
-  std::uint16_t sample_format = SAMPLEFORMAT_UINT;
-  std::uint16_t planes = PLANARCONFIG_CONTIG;
-  std::uint16_t photometric = PHOTOMETRIC_MINISBLACK;
-
-  /// Whether grey levels stand in the file as they are.
-  [[nodiscard]] bool plain() const {
-    const bool grey = photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE;
-    return (bits == 8 || bits == 16) && (grey || (photometric == PHOTOMETRIC_RGB && samples >= 3));
-  }
-  [[nodiscard]] int channels() const { return photometric == PHOTOMETRIC_RGB ? 3 : 1; }
-};
-
-Page page_of(TIFF* tiff) {
-  Page page;
-  TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page.width);
-  TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page.height);
-  TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &page.bits);
-  TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &page.samples);
-  TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &page.sample_format);
-  TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &page.planes);
-  TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &page.photometric);
-  return page;
-}
 
 /// Copies count pixels, of in_stride samples each in the file, to one channel or to all of image; red, green, blue
 /// become blue, green, red.
@@ -93,14 +37,25 @@ struct Plane {
   int first_channel = 0;
   int channels = 1;
   std::size_t stride = 1;  ///< samples from pixel to pixel
+  TiffSamples samples;
+
+  /// Puts count pixels of one row. spread: memory that is reused.
+  void put(const std::byte* in, std::size_t count, std::vector<std::byte>& spread, const ImageFile& image,
+           std::byte* out) const {
+    if (!samples.plain()) {
+      samples.spread(in, count * stride, spread);
+      in = spread.data();
+    }
+    put_pixels(in, stride, count, first_channel, channels, image, out);
+  }
 };
 
 bool read_strips(TIFF* tiff, const Plane& plane, ImageFile& image) {
   std::vector<std::byte> line(static_cast<std::size_t>(TIFFScanlineSize64(tiff)));
+  std::vector<std::byte> spread;
   for (int y = 0; y < image.height; ++y) {
     if (TIFFReadScanline(tiff, line.data(), static_cast<std::uint32_t>(y), plane.index) != 1) return false;
-    put_pixels(line.data(), plane.stride, static_cast<std::size_t>(image.width), plane.first_channel, plane.channels,
-               image, image.row(y));
+    plane.put(line.data(), static_cast<std::size_t>(image.width), spread, image, image.row(y));
   }
   return true;
 }
@@ -111,6 +66,7 @@ bool read_tiles(TIFF* tiff, const Plane& plane, ImageFile& image) {
   TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
   TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
   std::vector<std::byte> tile(static_cast<std::size_t>(TIFFTileSize64(tiff)));
+  std::vector<std::byte> spread;
   const std::size_t row_bytes = static_cast<std::size_t>(TIFFTileRowSize64(tiff));
   const auto pixel_bytes = static_cast<std::size_t>(image.channels) * static_cast<std::size_t>(image.bytes_per_sample);
   for (std::uint32_t top = 0; top < static_cast<std::uint32_t>(image.height); top += height) {
@@ -119,32 +75,53 @@ bool read_tiles(TIFF* tiff, const Plane& plane, ImageFile& image) {
       const std::size_t columns = std::min(width, static_cast<std::uint32_t>(image.width) - left);
       const std::uint32_t rows = std::min(height, static_cast<std::uint32_t>(image.height) - top);
       for (std::uint32_t y = 0; y < rows; ++y) {
-        put_pixels(tile.data() + y * row_bytes, plane.stride, columns, plane.first_channel, plane.channels, image,
-                   image.row(static_cast<int>(top + y)) + left * pixel_bytes);
+        plane.put(tile.data() + y * row_bytes, columns, spread, image,
+                  image.row(static_cast<int>(top + y)) + left * pixel_bytes);
       }
     }
   }
   return true;
 }
 
-bool read_plain(TIFF* tiff, const Page& page, ImageFile& image) {
-  image.resize(page.width, page.height, page.channels(), page.bits / 8);
+/// White is 0: the levels are turned about.
+void invert(const TiffSamples& samples, ImageFile& image) {
+  if (samples.bytes() == static_cast<int>(sizeof(float))) {
+    for (std::size_t i = 0; i < image.samples.size(); i += sizeof(float)) {
+      float value = 0;
+      std::memcpy(&value, &image.samples[i], sizeof value);
+      value = -value;
+      std::memcpy(&image.samples[i], &value, sizeof value);
+    }
+    return;
+  }
+  for (std::byte& sample : image.samples) sample = ~sample;
+  if (samples.max_level() == 0) return;
+  for (std::size_t i = 0; i < image.samples.size(); i += 2) {  // the bits above a packed sample
+    std::uint16_t value = 0;
+    std::memcpy(&value, &image.samples[i], 2);
+    value = static_cast<std::uint16_t>(value & static_cast<unsigned>(samples.max_level()));
+    std::memcpy(&image.samples[i], &value, 2);
+  }
+}
+
+bool read_direct(TIFF* tiff, const TiffPage& page, ImageFile& image) {
+  const TiffSamples samples(page);
+  image.resize(page.width, page.height, page.channels(), samples.bytes());
+  image.max_level = samples.max_level();
   const auto read = TIFFIsTiled(tiff) != 0 ? read_tiles : read_strips;
   if (page.planes == PLANARCONFIG_SEPARATE) {
     for (int c = 0; c < image.channels; ++c) {
-      if (!read(tiff, {static_cast<std::uint16_t>(c), c, 1, 1}, image)) return false;
+      if (!read(tiff, {static_cast<std::uint16_t>(c), c, 1, 1, samples}, image)) return false;
     }
-  } else if (!read(tiff, {0, 0, image.channels, page.samples}, image)) {
+  } else if (!read(tiff, {0, 0, image.channels, page.samples, samples}, image)) {
     return false;
   }
-  if (page.photometric == PHOTOMETRIC_MINISWHITE) {
-    for (std::byte& sample : image.samples) sample = ~sample;
-  }
+  if (page.photometric == PHOTOMETRIC_MINISWHITE) invert(samples, image);
   return true;
 }
 
 /// libtiff's conversion of everything else to 8-bit red, green, blue, alpha.
-bool read_converted(TIFF* tiff, const Page& page, ImageFile& image) {
+bool read_converted(TIFF* tiff, const TiffPage& page, ImageFile& image) {
   image.resize(page.width, page.height, 3, 1);
   std::vector<std::uint32_t> pixels(static_cast<std::size_t>(page.width) * page.height);
   if (TIFFReadRGBAImageOriented(tiff, page.width, page.height, pixels.data(), ORIENTATION_TOPLEFT, 1) != 1)
@@ -158,6 +135,18 @@ bool read_converted(TIFF* tiff, const Page& page, ImageFile& image) {
   return true;
 }
 
+/// Whether samples can be taken from the file as they are. Throws ImageFileError if the page cannot be read at all.
+bool is_direct(const TiffPage& page) {
+  const bool usual = page.sample_format == SAMPLEFORMAT_UINT || page.sample_format == SAMPLEFORMAT_VOID;
+  const bool direct = page.direct() && TiffSamples(page).readable();
+  if (!direct && (page.bits > 8 || !usual)) {
+    throw ImageFileError("samples of " + std::to_string(page.bits) +
+                         " bits are read as grey or as red, green and blue only, unsigned of 8 to 16 or 32 bits, "
+                         "signed of 8, 16 or 32, real of 32 or 64");
+  }
+  return direct;
+}
+
 }  // namespace
 
 void read_tiff(const std::filesystem::path& file, int page_index, ImageFile& image) {
@@ -166,21 +155,42 @@ void read_tiff(const std::filesystem::path& file, int page_index, ImageFile& ima
   if (!tiff || TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page_index)) != 1) {
     throw ImageFileError("libtiff: " + error);
   }
-  const Page page = page_of(tiff.get());
-  if (page.bits > 16 || (page.sample_format != SAMPLEFORMAT_UINT && page.sample_format != SAMPLEFORMAT_VOID)) {
-    throw ImageFileError("its pixels are not 8 or 16 bit unsigned integers");
-  }
-  if (page.bits > 8 && !page.plain()) {
-    throw ImageFileError("16 bit are read as grey or as red, green and blue only");
-  }
-  const bool done = page.plain() ? read_plain(tiff.get(), page, image) : read_converted(tiff.get(), page, image);
+  const TiffPage page = page_of(tiff.get());
+  const bool done = is_direct(page) ? read_direct(tiff.get(), page, image) : read_converted(tiff.get(), page, image);
   if (!done) throw ImageFileError("libtiff: " + error);
 }
 
-int count_tiff_pages(const std::filesystem::path& file) {
-  std::string error;
+void read_contiguous_tiff(const std::filesystem::path& file, int index, ImageFile& image) {
+  std::string error = "it is no TIFF";
   const Tiff tiff = open_tiff(file, error);
-  return tiff ? static_cast<int>(TIFFNumberOfDirectories(tiff.get())) : 0;
+  const std::uint64_t* offsets = nullptr;
+  if (!tiff || TIFFGetField(tiff.get(), TIFFTAG_STRIPOFFSETS, &offsets) != 1) {
+    throw ImageFileError("libtiff: " + error);
+  }
+  const TiffPage page = page_of(tiff.get());
+  const TiffSamples samples(page);
+  if (!is_direct(page) || page.bits % 8 != 0) throw ImageFileError("its pixels are not whole bytes");
+  image.resize(page.width, page.height, page.channels(), samples.bytes());
+  const Plane plane{0, 0, image.channels, page.samples, samples};
+  const std::size_t row_samples = std::size_t{page.width} * page.samples;
+  std::vector<std::byte> line(row_samples * (page.bits / 8U));
+  std::vector<std::byte> spread;
+  std::ifstream stream(file, std::ios::binary);
+  const std::uint64_t image_bytes = std::uint64_t{line.size()} * page.height;
+  stream.seekg(static_cast<std::streamoff>(offsets[0] + image_bytes * static_cast<std::uint64_t>(index)));
+  for (int y = 0; y < image.height; ++y) {
+    if (!stream.read(reinterpret_cast<char*>(line.data()), static_cast<std::streamsize>(line.size()))) {
+      throw ImageFileError("it ends before image " + std::to_string(index + 1) + " is complete");
+    }
+    if (TIFFIsByteSwapped(tiff.get()) != 0) {
+      const auto count = static_cast<tmsize_t>(row_samples);
+      if (page.bits == 16) TIFFSwabArrayOfShort(reinterpret_cast<std::uint16_t*>(line.data()), count);
+      if (page.bits == 32) TIFFSwabArrayOfLong(reinterpret_cast<std::uint32_t*>(line.data()), count);
+      if (page.bits == 64) TIFFSwabArrayOfDouble(reinterpret_cast<double*>(line.data()), count);
+    }
+    plane.put(line.data(), page.width, spread, image, image.row(y));
+  }
+  if (page.photometric == PHOTOMETRIC_MINISWHITE) invert(samples, image);
 }
 
 }  // namespace fvd

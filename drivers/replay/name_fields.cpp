@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <filesystem>
 #include <tuple>
 #include <utility>
 
@@ -136,6 +137,12 @@ std::string lower_case(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return result;
+}
+
+std::string plain_extension(const std::string& filename) {
+  const std::string extension = lower_case(std::filesystem::path(filename).extension().string());
+  if (extension == ".tiff") return ".tif";
+  return extension == ".jpeg" ? ".jpg" : extension;
 }
 
 }  // namespace fvd

@@ -43,4 +43,7 @@ struct NameFields {
 
 [[nodiscard]] std::string lower_case(std::string_view text);
 
+/// Of a file's name, one spelling for each kind: ".tif" of "a.TIFF", ".jpg" of "a.jpeg".
+[[nodiscard]] std::string plain_extension(const std::string& filename);
+
 }  // namespace fvd

@@ -17,14 +17,17 @@ class RecordedStack {
   /// source: a folder of slices or a multi-page TIFF, see find_slices() for which files count. Reads the first slice.
   /// Throws Error kBadInput, naming the file: see find_slices(), read_slice().
   explicit RecordedStack(const std::filesystem::path& source) : RecordedStack(find_slices(source)) {}
-  /// Of slices that were found before.
-  explicit RecordedStack(SliceList list);
+  /// Of slices that were found before. Looks at a few where they have more than 8 bits. significant_bits: see
+  /// GreySurvey; 0 = seen from the levels.
+  explicit RecordedStack(SliceList list, int significant_bits = 0);
 
   [[nodiscard]] const SliceList& list() const noexcept { return list_; }
   [[nodiscard]] int slices() const noexcept { return static_cast<int>(list_.slices.size()); }
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] int height() const noexcept { return height_; }
   [[nodiscard]] PixelFormat format() const noexcept { return format_; }
+  /// How the levels of the files become those of the slices.
+  [[nodiscard]] const GreyMapping& mapping() const noexcept { return mapping_; }
   /// Whether the first slice has colours; the others need not agree.
   [[nodiscard]] bool colour() const noexcept { return colour_; }
 
@@ -42,6 +45,7 @@ class RecordedStack {
   SliceList list_;
   int width_ = 0;
   int height_ = 0;
+  GreyMapping mapping_;
   PixelFormat format_ = PixelFormat::kMono8;
   bool colour_ = false;
 };

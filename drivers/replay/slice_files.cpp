@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "core/base/error.hpp"
-#include "drivers/replay/image_file.hpp"
 #include "drivers/replay/name_columns.hpp"
 #include "drivers/replay/name_fields.hpp"
 #include "drivers/replay/name_order.hpp"
 #include "drivers/replay/name_pattern.hpp"
+#include "drivers/replay/tiff_pages.hpp"
 
 namespace fvd {
 
@@ -21,22 +21,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_tiff(const fs::path& file) {
-  const std::string extension = lower_case(file.extension().string());
-  return extension == ".tif" || extension == ".tiff";
-}
+bool is_tiff(const fs::path& file) { return plain_extension(file.filename().string()) == ".tif"; }
 
 bool is_image(const fs::path& file) {
-  constexpr std::array kExtensions{".png", ".jpg", ".jpeg", ".pgm"};
-  const std::string extension = lower_case(file.extension().string());
-  return is_tiff(file) ||
-         std::any_of(kExtensions.begin(), kExtensions.end(), [&](const char* known) { return extension == known; });
+  constexpr std::array kExtensions{".png", ".tif", ".jpg", ".pgm", ".bmp"};
+  const std::string extension = plain_extension(file.filename().string());
+  return std::any_of(kExtensions.begin(), kExtensions.end(), [&](const char* known) { return extension == known; });
 }
 
 /// Whether it could be meant for a slice, readable or not.
 bool is_picture(const fs::path& file) {
-  constexpr std::array kOthers{".bmp", ".webp", ".gif", ".jp2", ".jxl", ".heic", ".exr", ".ppm", ".pnm", ".fits",
-                               ".raw", ".dng",  ".nef", ".cr2", ".cr3", ".arw",  ".czi", ".nd2", ".lif"};
+  constexpr std::array kOthers{".webp", ".gif", ".jp2", ".jxl", ".heic", ".exr", ".ppm", ".pnm", ".fits",
+                               ".raw",  ".dng", ".nef", ".cr2", ".cr3",  ".arw", ".czi", ".nd2", ".lif"};
   const std::string extension = lower_case(file.extension().string());
   return is_image(file) ||
          std::any_of(kOthers.begin(), kOthers.end(), [&](const char* known) { return extension == known; });
@@ -80,12 +76,6 @@ std::string counted(const std::string& name) {
   return text.replace(text.rfind('*'), 1, "{n}");
 }
 
-/// One extension in its several spellings.
-std::string extension_key(const std::string& name) {
-  const std::string extension = lower_case(fs::path(name).extension().string());
-  return extension == ".tiff" ? ".tif" : extension == ".jpeg" ? ".jpg" : extension;
-}
-
 Candidate pages(const std::string& name, int count) {
   return {name + " (" + std::to_string(count) + " pages)", {}, name, static_cast<std::size_t>(count)};
 }
@@ -96,9 +86,9 @@ std::vector<Candidate> candidates_in(const fs::path& folder, const std::vector<s
   for (const std::string& name : pictures) {
     if (!is_image(name)) continue;
     const NameFields fields = name_fields(fs::path(name).stem().string());
-    if (!fields.numbers.empty()) families[fields.skeleton() + extension_key(name)].push_back(name);
+    if (!fields.numbers.empty()) families[fields.skeleton() + plain_extension(name)].push_back(name);
     if (is_tiff(name)) {
-      if (const int count = count_tiff_pages(folder / name); count > 1) candidates.push_back(pages(name, count));
+      if (const int count = tiff_content(folder / name).size(); count > 1) candidates.push_back(pages(name, count));
     }
   }
   for (auto& [key, names] : families) {
@@ -116,7 +106,7 @@ std::vector<Candidate> candidates_in(const fs::path& folder, const std::vector<s
 void check_same_words(const fs::path& folder, const Candidate& best, const std::vector<Candidate>& all) {
   if (best.names.empty()) return;
   const auto words = [](const std::string& name) {
-    return name_fields(fs::path(name).stem().string()).words() + extension_key(name);
+    return name_fields(fs::path(name).stem().string()).words() + plain_extension(name);
   };
   for (const Candidate& other : all) {
     if (&other == &best || other.names.empty() || words(other.names.front()) != words(best.names.front())) continue;
@@ -134,24 +124,24 @@ SliceList listed(const fs::path& folder, const std::vector<std::string>& names, 
   result.gap = std::move(order.gap);
   result.doubt = std::move(order.doubt);
   result.z_um = std::move(order.z_um);
-  for (const std::size_t index : order.order) result.slices.push_back({folder / names[index], std::nullopt});
+  if (!result.z_um.empty()) result.z_from = "the names";
+  for (const std::size_t index : order.order) result.slices.push_back({folder / names[index], std::nullopt, false});
   result.used_files = static_cast<int>(names.size());
   std::set_difference(pictures.begin(), pictures.end(), names.begin(), names.end(), std::back_inserter(result.ignored));
   return result;
 }
 
-SliceList listed_pages(const fs::path& file, const Candidate& candidate, const std::vector<std::string>& pictures) {
-  SliceList result;
-  result.description = candidate.description;
-  for (std::size_t page = 0; page < candidate.slices; ++page) result.slices.push_back({file, static_cast<int>(page)});
+SliceList listed_pages(const fs::path& file, const StackChoice& choice, const std::vector<std::string>& pictures) {
+  SliceList result = tiff_slices(file, choice);
   result.used_files = 1;
+  const std::string used = file.filename().string();
   std::copy_if(pictures.begin(), pictures.end(), std::back_inserter(result.ignored),
-               [&](const std::string& name) { return name != candidate.tiff; });
+               [&](const std::string& name) { return name != used; });
   return result;
 }
 
 constexpr const char* kExpected =
-    "; expected image files (PNG, TIFF, JPEG, PGM) whose names differ in a number only, such as slice_000.png, "
+    "; expected image files (PNG, TIFF, JPEG, PGM, BMP) whose names differ in a number only, such as slice_000.png, "
     "slice_001.png, or one multi-page TIFF; --pattern of fvdctl process describes other names";
 
 SliceList find_by_pattern(const fs::path& folder, const NamePattern& pattern) {
@@ -173,18 +163,25 @@ std::string SliceLocation::name() const {
   return page ? file.filename().string() + " page " + std::to_string(*page + 1) : file.filename().string();
 }
 
-SliceList find_slices(const fs::path& source, const std::string& pattern) {
+SliceList find_slices(const fs::path& source, const StackChoice& choice) {
+  const std::string& pattern = choice.pattern;
   std::error_code error;
   const auto status = fs::status(source, error);
   if (!fs::exists(status)) refuse("there is no folder " + source.string());
   if (fs::is_regular_file(status)) {
-    const int count = is_tiff(source) ? count_tiff_pages(source) : 0;
-    if (count < 2) refuse(source.string() + " is a file but not a TIFF with several pages" + kExpected);
+    const TiffContent content = is_tiff(source) ? tiff_content(source) : TiffContent{};
+    if (content.size() < 2 && content.contiguous == 0)
+      refuse(source.string() + " is a file but not a TIFF with several pages" + kExpected);
     if (!pattern.empty()) refuse(source.string() + " is one file: --pattern is for the names in a folder");
-    return listed_pages(source, pages(source.filename().string(), count), {});
+    return listed_pages(source, choice, {});
   }
   if (!fs::is_directory(status)) refuse(source.string() + " is neither a folder nor a file");
   if (!pattern.empty()) return find_by_pattern(source, NamePattern(pattern));
+  const auto require_no_page = [&](const std::string& description) {
+    if (!choice.channel && !choice.time) return;
+    refuse("--channel and --time choose pages of a TIFF, but the slices are " + description +
+           ": choose files with --pattern");
+  };
   const auto pictures = pictures_in(source);
   const auto candidates = candidates_in(source, pictures);
   if (candidates.empty()) refuse("no slices in " + source.string() + kExpected);
@@ -202,7 +199,8 @@ SliceList find_slices(const fs::path& source, const std::string& pattern) {
         " could be the slices: move the others away, or say with --pattern of fvdctl process which names are slices");
   }
   check_same_words(source, best, candidates);
-  if (!best.tiff.empty()) return listed_pages(source / best.tiff, best, pictures);
+  if (!best.tiff.empty()) return listed_pages(source / best.tiff, choice, pictures);
+  require_no_page(best.description);
   return listed(source, best.names, order_names(best.names), pictures);
 }
 

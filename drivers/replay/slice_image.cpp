@@ -1,7 +1,5 @@
 #include "drivers/replay/slice_image.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 #include <utility>
 
@@ -9,7 +7,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/error.hpp"
-#include "drivers/replay/image_file.hpp"
+#include "drivers/replay/name_fields.hpp"
+#include "drivers/replay/tiff_pages.hpp"
 
 namespace fvd {
 
@@ -25,29 +24,18 @@ std::string folder_text(const SliceLocation& location) {
   throw Error(ErrorCode::kBadInput, "slice " + location.name() + folder_text(location) + " " + problem);
 }
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 void decode(const SliceLocation& location, ImageFile& image) {
-  const std::string extension = lower_extension(location.file);
+  const std::string extension = plain_extension(location.file.filename().string());
   if (extension == ".pgm") return read_pgm(location.file, image);
   if (extension == ".png") return read_png(location.file, image);
-  if (extension == ".jpg" || extension == ".jpeg") return read_jpeg(location.file, image);
-  if (extension != ".tif" && extension != ".tiff") refuse(location, "is none of PNG, TIFF, JPEG and PGM");
-  if (!location.page && count_tiff_pages(location.file) > 1) {
-    refuse(location, "has several pages; one slice a file was expected");
-  }
-  read_tiff(location.file, location.page.value_or(0), image);
-}
-
-PixelFormat format_of(const ImageFile& image) {
-  if (image.bytes_per_sample == 1) return PixelFormat::kMono8;
-  if (image.max_level == max_grey_level(PixelFormat::kMono10)) return PixelFormat::kMono10;
-  if (image.max_level == max_grey_level(PixelFormat::kMono12)) return PixelFormat::kMono12;
-  return PixelFormat::kMono16;
+  if (extension == ".jpg") return read_jpeg(location.file, image);
+  if (extension == ".bmp") return read_bmp(location.file, image);
+  if (extension != ".tif") refuse(location, "is none of PNG, TIFF, JPEG, PGM and BMP");
+  if (location.contiguous) return read_contiguous_tiff(location.file, *location.page, image);
+  if (location.page) return read_tiff(location.file, *location.page, image);
+  const std::vector<int> pages = tiff_content(location.file).images;
+  if (pages.size() > 1) refuse(location, "has several pages; one slice a file was expected");
+  read_tiff(location.file, pages.empty() ? 0 : pages.front(), image);
 }
 
 void split_colour(ImageFile& image, SliceImage& slice) {
@@ -59,22 +47,44 @@ void split_colour(ImageFile& image, SliceImage& slice) {
   cv::cvtColor(colour, grey, cv::COLOR_BGR2GRAY);
   slice.colour.resize(3 * points);
   cv::Mat shown(colour.size(), CV_8UC3, slice.colour.data());
-  colour.convertTo(shown, CV_8U, wide ? 1.0 / 257.0 : 1.0);  // for people: 16 bit keep their upper 8
+  colour.convertTo(shown, CV_8U, wide ? 255.0 / max_grey_level(slice.format) : 1.0);  // for people: the upper 8 bits
 }
 
 }  // namespace
 
-void read_slice(const SliceLocation& location, SliceImage& slice) {
-  ImageFile image;
-  image.samples = std::move(slice.pixels);
-  slice.colour.clear();
+namespace {
+
+/// Runs action on the file's image; its ImageFileError becomes an Error that names the slice.
+template <typename Action>
+void on_image(const SliceLocation& location, const Action& action) {
   try {
-    decode(location, image);
+    action();
   } catch (const ImageFileError& failure) {
     refuse(location, std::string("cannot be read: missing, damaged or not the image its name says (") + failure.what() +
                          "); record it again");
   }
-  slice.format = format_of(image);
+}
+
+/// As many slices tell how the levels of most stacks are used.
+constexpr std::size_t kSurveyed = 5;
+
+}  // namespace
+
+void decode_slice(const SliceLocation& location, ImageFile& image) {
+  on_image(location, [&] { decode(location, image); });
+}
+
+void read_slice(const SliceLocation& location, const GreyMapping& mapping, SliceImage& slice) {
+  ImageFile image;
+  image.samples = std::move(slice.pixels);
+  slice.colour.clear();
+  decode_slice(location, image);
+  try {
+    apply(mapping, image);
+  } catch (const ImageFileError& failure) {
+    refuse(location, std::string("does not fit the others: ") + failure.what());
+  }
+  slice.format = mapping.format;
   slice.width = image.width;
   slice.height = image.height;
   if (image.channels == 3) {
@@ -82,6 +92,28 @@ void read_slice(const SliceLocation& location, SliceImage& slice) {
   } else {
     slice.pixels = std::move(image.samples);
   }
+}
+
+void read_slice(const SliceLocation& location, SliceImage& slice) {
+  read_slice(location, survey_slices({location}, 0), slice);
+}
+
+GreyMapping survey_slices(const std::vector<SliceLocation>& slices, int significant_bits) {
+  GreySurvey survey(significant_bits);
+  ImageFile image;
+  std::vector<bool> seen(slices.size());
+  const auto look = [&](std::size_t index) {
+    if (seen[index]) return;
+    seen[index] = true;
+    decode_slice(slices[index], image);
+    on_image(slices[index], [&] { survey.add(image); });
+  };
+  const std::size_t last = slices.size() - 1;
+  for (std::size_t i = 0; i < kSurveyed && !survey.decided(); ++i) look(i * last / (kSurveyed - 1));
+  for (std::size_t i = 0; i <= last && survey.wants_all(); ++i) look(i);
+  GreyMapping mapping;
+  on_image(slices.front(), [&] { mapping = survey.mapping(); });
+  return mapping;
 }
 
 }  // namespace fvd

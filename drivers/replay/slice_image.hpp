@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "core/image/image.hpp"
+#include "drivers/replay/image_file.hpp"
+#include "drivers/replay/significant_bits.hpp"
 #include "drivers/replay/slice_files.hpp"
 
 namespace fvd {
@@ -24,11 +26,21 @@ struct SliceImage {
   }
 };
 
-/// Reads 8 or 16 bit, grey or colour, into `slice`, whose memory it reuses. Sharpness is measured in the luminance:
-/// colour becomes Y = 0.299 R + 0.587 G + 0.114 B (ITU-R BT.601), an alpha channel is ignored. 16-bit files are Mono16,
-/// except a PGM, whose largest grey level may mean Mono10 or Mono12. Throws Error kBadInput, naming the file, if it is
-/// unreadable, corrupt or truncated, of another kind of pixel, or a multi-page file where one slice was expected;
-/// `slice` is then undefined.
+/// Decodes the file of one slice as it is, without a mapping of its levels. Throws Error kBadInput, naming the file, if
+/// it is unreadable, corrupt or truncated, of another kind of pixel, or a multi-page file where one slice was expected;
+/// `image` is then undefined. context: thread-safe for different images.
+void decode_slice(const SliceLocation& location, ImageFile& image);
+
+/// Reads grey or colour into `slice`, whose memory it reuses. Sharpness is measured in the luminance: colour becomes
+/// Y = 0.299 R + 0.587 G + 0.114 B (ITU-R BT.601), an alpha channel is ignored. Throws as decode_slice(), and for
+/// levels that the mapping has no place for; `slice` is then undefined.
+void read_slice(const SliceLocation& location, const GreyMapping& mapping, SliceImage& slice);
+
+/// Likewise, with a mapping of this slice alone.
 void read_slice(const SliceLocation& location, SliceImage& slice);
+
+/// The mapping that fits all slices: a few of them are looked at, all where these do not tell. significant_bits: see
+/// GreySurvey. Throws as decode_slice().
+[[nodiscard]] GreyMapping survey_slices(const std::vector<SliceLocation>& slices, int significant_bits);
 
 }  // namespace fvd

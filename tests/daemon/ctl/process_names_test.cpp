@@ -161,7 +161,7 @@ TEST_F(SlicesOfAPlane, InSeveralChannelsNeedAPatternAndTheOthersAreNamed) {
 TEST_F(SlicesOfAPlane, WarnOfAStepThatIsNotTheirNames) {
   write(names("z#um.png", 0, 5));
   ASSERT_EQ(run({"--z-step-um", "10"}), kExitOk) << err_;
-  EXPECT_THAT(out_, HasSubstr("the step is 10 um, the z in the names of the slices are 5 um apart"));
+  EXPECT_THAT(out_, HasSubstr("the step is 10 um, the z in the names are 5 um apart"));
   expect_height_um(40);
 }
 

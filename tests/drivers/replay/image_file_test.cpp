@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <tiffio.h>
 
+#include "drivers/replay/tiff_pages.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -228,11 +229,11 @@ INSTANTIATE_TEST_SUITE_P(Recorded, EveryTiffLayout,
 TEST(TiffFile, HasThePagesItHas) {
   const test::ScratchDir scratch;
   cv::imwritemulti((scratch / "a.tif").string(), std::vector<cv::Mat>(3, cv::Mat(4, 4, CV_8U, cv::Scalar(5))));
-  EXPECT_EQ(count_tiff_pages(scratch / "a.tif"), 3);
+  EXPECT_EQ(tiff_content(scratch / "a.tif").size(), 3);
   expect_refused([&](ImageFile& image) { read_tiff(scratch / "a.tif", 3, image); }, "libtiff");
   test::write_text(scratch / "b.tif", "not a TIFF");
-  EXPECT_EQ(count_tiff_pages(scratch / "b.tif"), 0);
-  EXPECT_EQ(count_tiff_pages(scratch / "missing.tif"), 0);
+  EXPECT_EQ(tiff_content(scratch / "b.tif").size(), 0);
+  EXPECT_EQ(tiff_content(scratch / "missing.tif").size(), 0);
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ TEST(RecordedStack, NamesTheSliceOfAnotherKind) {
   cv::imwrite((scratch / "s2.tiff").string(), cv::Mat(30, 40, CV_32F, cv::Scalar(1)));
   write_pages(scratch / "s3.tiff", 2, 1);
   const RecordedStack stack(scratch.path());
-  expect_error(ErrorCode::kBadInput, {"s2.tiff", "8 or 16 bit"}, [&] { (void)stack.read(2); });
+  expect_error(ErrorCode::kBadInput, {"s2.tiff", "real or signed"}, [&] { (void)stack.read(2); });
   expect_error(ErrorCode::kBadInput, {"s3.tiff", "several pages"}, [&] { (void)stack.read(3); });
 }
 

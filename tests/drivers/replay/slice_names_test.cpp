@@ -193,7 +193,7 @@ TEST_P(SliceNames, GiveOrderAndZOrAClearQuestion) {
 
   if (!row.asks.empty()) {
     try {
-      const SliceList list = find_slices(scratch.path(), row.pattern);
+      const SliceList list = find_slices(scratch.path(), {row.pattern, {}, {}});
       FAIL() << "no question, but " << list.description;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kBadInput);
@@ -201,7 +201,7 @@ TEST_P(SliceNames, GiveOrderAndZOrAClearQuestion) {
     }
     return;
   }
-  const SliceList list = find_slices(scratch.path(), row.pattern);
+  const SliceList list = find_slices(scratch.path(), {row.pattern, {}, {}});
 
   Names found;
   for (const SliceLocation& slice : list.slices) found.push_back(slice.name());
