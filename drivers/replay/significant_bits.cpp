@@ -42,7 +42,7 @@ GreyMapping of_bits(int bits, int shift) { return {format_for(bits), 2, bits, sh
 
 /// The level that real samples up to `most` mean as full scale.
 double full_scale(double most) {
-  constexpr std::array kScales{1.0, 255.0, 1023.0, 4095.0, 16'383.0, 65'535.0};
+  constexpr std::array kScales{1.0, 255.0, 1023.0, 4095.0, 16'383.0, 32'767.0, 65'535.0};
   const auto* const scale = std::find_if(kScales.begin(), kScales.end(), [most](double s) { return most <= s; });
   return scale == kScales.end() || most < *scale / 8 ? most : *scale;
 }
@@ -125,7 +125,7 @@ GreyMapping GreySurvey::mapping() const {
   if (bytes_per_sample_ != 2) {
     const double offset = std::min(0.0, least_real_);
     const double most = most_real_ - offset;
-    double full = full_scale(most);
+    double full = offset < 0.0 ? most : full_scale(most);  // what full scale is below 0 nobody says
     if (told_bits_ > 0) full = std::max(most, static_cast<double>(most_of(told_bits_)));
     return {PixelFormat::kMono16, bytes_per_sample_, 16, 0, offset, full > 0 ? kMost16Bits / full : 1.0};
   }

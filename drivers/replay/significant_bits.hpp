@@ -40,9 +40,9 @@ class GreySurvey {
   [[nodiscard]] bool wants_all() const;
 
   /// Bits are recognised if all levels are multiples of 2^shift (high aligned), or the largest level is 2^n - 1 with n
-  /// 8, 10, 12 or 14. Real and signed samples: from 0, or the least where it is below, to full scale; that is 1 for
-  /// samples up to 1, else the next of 255, 1023, 4095, 16383, 65535; the largest where that is below an eighth of it.
-  /// Throws ImageFileError if the told bits do not fit.
+  /// 8, 10, 12 or 14. Real and signed samples from 0 to full scale: 1 for samples up to 1, else the next of 255, 1023,
+  /// 4095, 16383, 32767, 65535; the largest sample where that is below an eighth of it. With samples below 0: from the
+  /// least to the largest. Throws ImageFileError if the told bits do not fit.
   [[nodiscard]] GreyMapping mapping() const;
 
  private:

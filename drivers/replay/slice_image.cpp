@@ -99,6 +99,7 @@ void read_slice(const SliceLocation& location, SliceImage& slice) {
 }
 
 GreyMapping survey_slices(const std::vector<SliceLocation>& slices, int significant_bits) {
+  if (slices.empty()) throw Error(ErrorCode::kBadInput, "a recorded stack without slices");
   GreySurvey survey(significant_bits);
   ImageFile image;
   std::vector<bool> seen(slices.size());

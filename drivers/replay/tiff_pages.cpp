@@ -61,8 +61,9 @@ std::string listed(int count, const std::vector<std::string>& names) {
 /// The chosen one, 0-based.
 int choose(const std::filesystem::path& file, const PageDescription& told, const char* what, int count,
            const std::optional<int>& chosen, const std::vector<std::string>& names) {
-  const std::string there = told.written_by + "'s description tells of " + std::to_string(told.slices) + " slices, " +
-                            std::to_string(told.channels) + " channels, " + std::to_string(told.times) + " times";
+  std::string there = told.written_by + "'s description tells of " + std::to_string(told.slices) + " slices";
+  if (told.channels > 1) there += ", " + std::to_string(told.channels) + " channels";
+  if (told.times > 1) there += ", " + std::to_string(told.times) + " times";
   if (!chosen && count == 1) return 0;
   if (!chosen) {
     refuse(file, "has several " + std::string(what) + "s: " + there + "; say with fvdctl process --" + what +

@@ -146,6 +146,7 @@ TEST_F(AMicroscope, GivesBitForBitTheMapThatOfflineProcessingGives) {
   const auto live = result_dir(1);
   ctl::ProcessOptions offline;
   offline.source = live / "slices";
+  offline.slices = find_slices(offline.source);
   offline.out = folder_.path() / "offline";
   offline.z = ZFile{live / "slices" / "z.txt", LengthUnit::kMicrometre};
   offline.recipe =
