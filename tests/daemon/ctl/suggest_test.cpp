@@ -1,0 +1,66 @@
+/// fvdctl suggest.
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/fvdctl.hpp"
+#include "tests/support/scratch_dir.hpp"
+#include "tests/support/stack_folder.hpp"
+
+namespace fvd::ctl {
+namespace {
+
+using test::ScratchDir;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+
+TEST(Suggest, PrintsSettingsForARecipeAndRefusesWhatItCannotRead) {
+  const ScratchDir scratch;
+  fs::create_directories(scratch / "in");
+  cv::Mat image(200, 400, CV_8UC1, cv::Scalar(100));  // bare on the left, three columns a period on the right
+  for (int x = 150; x < image.cols; x += 3) image.col(x).setTo(160);
+  cv::imwrite((scratch / "in/s2.png").string(), image);
+  const auto suggest = [](const std::string& file) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int code = run_fvdctl({"suggest", file}, {out, err, false, false});
+    return Outcome{code, out.str(), err.str()};
+  };
+  const Outcome good = suggest((scratch / "in/s2.png").string());
+  EXPECT_EQ(good.code, kExitOk) << good.err;
+  EXPECT_THAT(good.out, HasSubstr("\"distance_px\": 2, \"window_px\": 9 }  (the defaults)"));
+  const Outcome bad = suggest((scratch / "in/s9.png").string());
+  EXPECT_NE(bad.code, kExitOk);
+  EXPECT_THAT(bad.err, HasSubstr("s9.png"));
+}
+
+TEST(Suggest, LooksAtAWholeStack) {
+  const ScratchDir scratch;
+  fs::create_directories(scratch / "in");
+  for (int i = 10; i < 41; ++i) {
+    cv::Mat slice;
+    cv::repeat(test::pattern_slice(i, 24.0, CV_8UC1), 2, 2, slice);
+    cv::imwrite((scratch / "in" / ("s" + std::to_string(i) + ".png")).string(), slice);
+  }
+  std::ostringstream out;
+  std::ostringstream err;
+  ASSERT_EQ(run_fvdctl({"suggest", scratch / "in"}, {out, err, false, false}), kExitOk) << err.str();
+  EXPECT_THAT(out.str(), HasSubstr("\"window_px\": 9"));
+  EXPECT_THAT(out.str(), HasSubstr("slices wide at half its height"));
+}
+
+}  // namespace
+}  // namespace fvd::ctl
