@@ -12,8 +12,7 @@ namespace {
 
 constexpr int kApart = 2;  // px, of the points that are compared
 constexpr int kLeastTile_px = 64;
-constexpr double kLeastRatio = 1.5;  // of sharpness; sides that are more alike reach across by a pixel or two
-constexpr int kAlikeReach_px = 2;
+constexpr double kUncertainty = 1.06;  // of the ratio of the sides' sharpness, which varies along a wall
 /// Reasons of points whose height says nothing of the surface.
 constexpr MaskReasons kNoPoint = mask_reason::kInsignificant | mask_reason::kSaturated | mask_reason::kNarrowCurve;
 constexpr std::uint16_t kHighest = std::numeric_limits<std::uint16_t>::max();
@@ -26,26 +25,8 @@ struct Square {
     return values[static_cast<std::size_t>(y) * side_t() + static_cast<std::size_t>(x)];
   }
   [[nodiscard]] T* row(int y) { return values.data() + static_cast<std::size_t>(y) * side_t(); }
-  void fill(T value) { std::fill(values.begin(), values.end(), value); }
   [[nodiscard]] std::size_t side_t() const { return static_cast<std::size_t>(side); }
-
-  /// Each value becomes the extreme one of those from it to `count` - 1 further, along rows and columns.
-  template <typename Pick>
-  void gather(int count, Pick pick) {
-    for (int covered = 1; covered < count;) {
-      const int further = std::min(covered, count - covered);
-      for (int y = 0; y < side; ++y) {
-        T* const line = row(y);
-        for (int x = 0; x + further < side; ++x) line[x] = pick(line[x], line[x + further]);
-      }
-      for (int y = 0; y + further < side; ++y) {
-        T* const line = row(y);
-        const T* const below = row(y + further);
-        for (int x = 0; x < side; ++x) line[x] = pick(line[x], below[x]);
-      }
-      covered += further;
-    }
-  }
+  void fill(T value) { std::fill(values.begin(), values.end(), value); }
 
   int side;
   std::vector<T> values;
@@ -54,19 +35,78 @@ struct Square {
 constexpr auto kLarger = [](auto a, auto b) { return a > b ? a : b; };
 constexpr auto kSmaller = [](auto a, auto b) { return a < b ? a : b; };
 
+/// Walls about a tile as limits of the samples' numbers, each of which holds as far as the wall's side reaches.
+template <typename Pick>
+class Reaches {
+ public:
+  /// none: what limits nothing.
+  Reaches(int side, int reach_px, std::uint16_t none, Pick pick)
+      : none_(none), pick_(pick), walls_(static_cast<std::size_t>(reach_px) + 1), limits_(side), before_(side) {}
+
+  void add(int x, int y, int reach_px, int limit) {
+    walls_[static_cast<std::size_t>(reach_px)].push_back({x, y, static_cast<std::uint16_t>(limit)});
+  }
+  /// Afterwards each place has the extreme limit of the walls that reach there, and there are no walls. A wall that
+  /// reaches n px is spread n times to the places beside, together with those that reach less.
+  void spread() {
+    limits_.fill(none_);
+    bool any = false;
+    for (std::size_t reach = walls_.size(); reach-- > 0;) {
+      for (const Wall& wall : walls_[reach]) {
+        std::uint16_t& limit = limits_.at(wall.x, wall.y);
+        limit = pick_(limit, wall.limit);
+        any = true;
+      }
+      walls_[reach].clear();
+      if (any && reach > 0) widen();
+    }
+  }
+  [[nodiscard]] int at(int x, int y) { return limits_.at(x, y); }
+
+ private:
+  struct Wall {
+    int x;
+    int y;
+    std::uint16_t limit;
+  };
+
+  /// By a place to all sides. Walls lie further from the square's rim than they reach.
+  void widen() {
+    const int side = limits_.side;
+    for (int y = 0; y < side; ++y) {
+      const std::uint16_t* const line = limits_.row(y);
+      std::uint16_t* const wider = before_.row(y);
+      wider[0] = line[0];
+      for (int x = 1; x + 1 < side; ++x) wider[x] = pick_(line[x], pick_(line[x - 1], line[x + 1]));
+      wider[side - 1] = line[side - 1];
+    }
+    for (int y = 1; y + 1 < side; ++y) {
+      const std::uint16_t* const above = before_.row(y - 1);
+      const std::uint16_t* const line = before_.row(y);
+      const std::uint16_t* const below = before_.row(y + 1);
+      std::uint16_t* const wider = limits_.row(y);
+      for (int x = 0; x < side; ++x) wider[x] = pick_(line[x], pick_(above[x], below[x]));
+    }
+  }
+
+  std::uint16_t none_;
+  Pick pick_;
+  std::vector<std::vector<Wall>> walls_;  // by how far they reach
+  Square<std::uint16_t> limits_;
+  Square<std::uint16_t> before_;
+};
+
 /// One tile with what its strips hang on: walls up to `reach` about it, and the points as far about those.
 class Surroundings {
  public:
   Surroundings(int tile, const EdgeBandLimits& limits)
       : tile_(tile),
-        reach_(limits.reach_px),
-        most_(limits.most_samples),
-        least_ratio_(limits.root_code ? std::sqrt(kLeastRatio) : kLeastRatio),
-        margin_(2 * limits.reach_px + kApart),
+        limits_(limits),
+        reach_(limits.reach_px()),
+        margin_(2 * reach_ + kApart),
         points_(tile + 2 * margin_),
-        above_(tile + 2 * margin_),
-        below_(tile + 2 * margin_),
-        alike_(tile + 2 * margin_) {}
+        above_(tile + 2 * margin_, reach_, kHighest, kSmaller),
+        below_(tile + 2 * margin_, reach_, 0, kLarger) {}
 
   [[nodiscard]] int side() const { return points_.side; }
   [[nodiscard]] int margin() const { return margin_; }
@@ -75,27 +115,21 @@ class Surroundings {
 
   /// Returns whether any point of the tile lies in a strip.
   bool find(std::vector<std::uint8_t>& marks) {
-    above_.fill(kHighest);
-    below_.fill(0);
-    alike_.fill(0);
     for (int y = reach_; y < side() - reach_ - kApart; ++y) {
       for (int x = reach_; x < side() - reach_ - kApart; ++x) {
         compare(x, y, 1, 0);
         compare(x, y, 0, 1);
       }
     }
-    above_.gather(2 * reach_ + 1, kSmaller);
-    below_.gather(2 * reach_ + 1, kLarger);
-    alike_.gather(2 * kAlikeReach_px + 1, kLarger);
+    above_.spread();
+    below_.spread();
     bool any = false;
     marks.assign(static_cast<std::size_t>(tile_) * static_cast<std::size_t>(tile_), 0);
     for (int y = 0; y < tile_; ++y) {
       for (int x = 0; x < tile_; ++x) {
         const std::uint32_t point = points_.at(x + margin_, y + margin_);
-        const int corner = margin_ - reach_;  // what was gathered reaches from there on
         const int index = index_of(point);
-        const bool inside = index > above_.at(x + corner, y + corner) || index < below_.at(x + corner, y + corner) ||
-                            alike_.at(x + margin_ - kAlikeReach_px, y + margin_ - kAlikeReach_px) != 0;
+        const bool inside = index > above_.at(x + margin_, y + margin_) || index < below_.at(x + margin_, y + margin_);
         if (point == 0 || !inside) continue;
         marks[static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_) + static_cast<std::size_t>(x)] = 1;
         any = true;
@@ -107,14 +141,24 @@ class Surroundings {
  private:
   static int index_of(std::uint32_t point) { return static_cast<int>(point & kHighest); }
 
-  /// The highest peak from (x, y) on in a direction, of the points nearer to the height of `index` than to `other`.
+  /// The highest peak from (x, y) half a reach on in a direction and a pixel to either side, because walls have jags;
+  /// of the points nearer to the height of `index` than to `other`.
   double highest(int x, int y, int along_x, int along_y, int index, int other) {
     std::uint32_t peak = 0;
-    for (int i = 0; i < reach_; ++i) {
-      const std::uint32_t point = points_.at(x + i * along_x, y + i * along_y);
-      if (std::abs(index_of(point) - index) < std::abs(index_of(point) - other)) peak = std::max(peak, point >> 16U);
+    for (int i = 0; i < (reach_ + 1) / 2; ++i) {
+      for (int j = -1; j <= 1; ++j) {
+        const std::uint32_t point = points_.at(x + i * along_x + j * along_y, y + i * along_y + j * along_x);
+        if (std::abs(index_of(point) - index) < std::abs(index_of(point) - other)) peak = std::max(peak, point >> 16U);
+      }
     }
-    return peak;
+    return limits_.root_code ? static_cast<double>(peak) * peak : peak;
+  }
+
+  /// How far a side reaches across a wall, px.
+  [[nodiscard]] int reach(double own, double others) const {
+    int count = 0;
+    while (count < reach_ && limits_.spill[static_cast<std::size_t>(count)] * kUncertainty * own >= others) ++count;
+    return count;
   }
 
   void compare(int x, int y, int along_x, int along_y) {
@@ -124,45 +168,51 @@ class Surroundings {
     const std::uint32_t other = points_.at(u, v);
     const int first = index_of(one);
     const int second = index_of(other);
-    if (one == 0 || other == 0 || std::abs(first - second) <= most_) return;
+    if (one == 0 || other == 0 || std::abs(first - second) <= limits_.most_samples) return;
     const double before = highest(x, y, -along_x, -along_y, first, second);
     const double behind = highest(u, v, along_x, along_y, second, first);
-    const int strong = before > behind ? first : second;
-    if (std::max(before, behind) < least_ratio_ * std::min(before, behind)) {
-      alike_.at(x + along_x, y + along_y) = 1;
-      return;
-    }
+    const int upper_reach = first > second ? reach(before, behind) : reach(behind, before);
+    const int lower_reach = first > second ? reach(behind, before) : reach(before, behind);
     const int between = (first + second) / 2;
-    if (strong > between) {
-      std::uint16_t& limit = above_.at(x + along_x, y + along_y);
-      limit = std::min(limit, static_cast<std::uint16_t>(between));
-    } else {
-      std::uint16_t& limit = below_.at(x + along_x, y + along_y);
-      limit = std::max(limit, static_cast<std::uint16_t>(between + 1));
-    }
+    if (upper_reach > 0) above_.add(x + along_x, y + along_y, upper_reach, between);
+    if (lower_reach > 0) below_.add(x + along_x, y + along_y, lower_reach, between + 1);
   }
 
   int tile_;
+  const EdgeBandLimits& limits_;
   int reach_;
-  int most_;
-  double least_ratio_;
   int margin_;
   Square<std::uint32_t> points_;
-  Square<std::uint16_t> above_;  // points above this number lie in a strip
-  Square<std::uint16_t> below_;
-  Square<std::uint8_t> alike_;  // 1 at walls between sides of nearly the same sharpness
+  Reaches<decltype(kSmaller)> above_;  // points above a limit lie in a strip
+  Reaches<decltype(kLarger)> below_;
 };
+
+/// The means over `count` successive values, times count.
+std::vector<double> box_sums(const std::vector<double>& values, int count) {
+  std::vector<double> sums(values.size() + static_cast<std::size_t>(count) - 1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t n = 0; n < static_cast<std::size_t>(count); ++n) sums[i + n] += values[i];
+  }
+  return sums;
+}
 
 }  // namespace
 
-int window_reach_px(const FocusSettings& settings) noexcept {
+std::vector<double> edge_spill(const FocusSettings& settings) {
+  const WindowSides sides = window_sides(settings);
   const int distance = settings.focus_operator == FocusOperator::kIntensity ? 0 : settings.distance_px;
-  return settings.window_px / 2 + distance;
+  const std::vector<double> response(static_cast<std::size_t>(std::max(2 * distance, 1)), 1.0);
+  const std::vector<double> weights = box_sums(box_sums(response, sides.first), sides.second);
+  std::vector<double> spill(weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
+  const double middle = spill.front();
+  for (double& share : spill) share /= middle;
+  spill.resize(std::min(spill.size(), static_cast<std::size_t>(settings.window_px / 2 + distance)));
+  return spill;
 }
 
 JumpTiles::JumpTiles(int width, int height, const EdgeBandLimits& limits)
     : width_(width),
-      tile_(std::max(kLeastTile_px, 4 * limits.reach_px)),
+      tile_(std::max(kLeastTile_px, 4 * limits.reach_px())),
       columns_((width + tile_ - 1) / tile_),
       rows_((height + tile_ - 1) / tile_),
       most_(static_cast<std::uint16_t>(std::min(limits.most_samples, int{kHighest}))),

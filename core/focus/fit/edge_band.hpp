@@ -3,10 +3,10 @@
 /// The strip beside a wall in which the stronger side's sharpness reaches across it.
 ///
 /// A window that lies beside a wall and reaches over it sees the sharper side, at that side's height: so does every
-/// point up to half a window and the neighbour distance from the wall, which is measured too far out by as much. Where
-/// the heights of points two pixels apart jump, the strip of that width on the side with the clearly higher peaks is no
-/// surface that can be believed; between sides that are nearly alike it is two pixels on both. Insignificant and
-/// saturated points do not count, nor do those of narrow curves.
+/// point up to where the sharper side's share of the window is less than the other's own, and the wall is measured too
+/// far out by as much. Where the heights of points two pixels apart jump, the strip of that width on the sharper side
+/// is no surface that can be believed; between sides that are nearly alike there is a narrow one on both. Insignificant
+/// and saturated points do not count, nor do those of narrow curves.
 ///
 /// Only tiles in which a height jumps are looked at closely.
 
@@ -21,14 +21,18 @@
 
 namespace fvd {
 
-/// How far a window with its operator's neighbours reaches beyond its pixel, px; of a double box the box that spreads
-/// as far.
-[[nodiscard]] int window_reach_px(const FocusSettings& settings) noexcept;
+/// How much of an edge's sharpness reaches a window whose middle lies n + 1/2 px beyond it, as a share of that at
+/// half a pixel; n = 0 .. half a window and the operator's distance, less 1. The operator sees an edge on as many
+/// pixels as both its arms are long.
+[[nodiscard]] std::vector<double> edge_spill(const FocusSettings& settings);
 
 struct EdgeBandLimits {
-  int reach_px = 0;        ///< width of a strip
-  int most_samples = 0;    ///< of two points two pixels apart; more is a jump
-  bool root_code = false;  ///< see sharpness_code.hpp
+  std::vector<double> spill;  ///< see edge_spill
+  int most_samples = 0;       ///< of two points two pixels apart; more is a jump
+  bool root_code = false;     ///< see sharpness_code.hpp
+
+  /// Largest width of a strip.
+  [[nodiscard]] int reach_px() const noexcept { return static_cast<int>(spill.size()); }
 };
 
 /// Where heights jump: rows are shown by one thread, each band of rows from top to bottom. Not thread-safe; one

@@ -218,7 +218,7 @@ class MapFinish {
   void fit(const RowFit& fit, const GapBias& gaps, int most_samples) {
     const int bands = pool_.threads();
     const bool jumps_matter = most_samples > 0;
-    const EdgeBandLimits strips{window_reach_px(settings_), most_samples,
+    const EdgeBandLimits strips{edge_spill(settings_), most_samples,
                                 sharpness_code(settings_, map_.texture_format).root};
     std::vector<JumpTiles> jumps(jumps_matter ? static_cast<std::size_t>(bands) : 0,
                                  JumpTiles(width_, height_, strips));

@@ -7,7 +7,7 @@ namespace fvd {
 
 namespace {
 
-constexpr float kMinAmplitudeShare = 0.1F;
+constexpr float kMinAmplitudeShare = 0.07F;
 constexpr int kSampledRowsPerTile = 5;  // enough: within a fifth of its size a window's sum hardly changes
 
 }  // namespace

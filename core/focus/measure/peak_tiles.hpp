@@ -4,7 +4,7 @@
 ///
 /// Out of focus, light of a bright edge reaches windows beside it that hold no texture of their own. Their curves then
 /// have a peak at a height where there is no surface. This peak is low compared with that of the edge: a point whose
-/// curve rises less than a tenth of the highest curve within about one window is a hole.
+/// curve rises less than 0.07 of the highest curve within about one window is a hole.
 
 #include <array>
 #include <cstdint>
@@ -28,7 +28,7 @@ class PeakTiles {
 
   [[nodiscard]] int tile_row(int y) const noexcept { return y / reach_px_; }
 
-  /// Writes a tenth of the neighbourhood's highest amplitude at each pixel of a row of tiles, as shares of full scale,
+  /// Writes 0.07 of the neighbourhood's highest amplitude at each pixel of a row of tiles, as shares of full scale,
   /// shape [width].
   /// Reads the curves of that row of tiles and of its neighbours; reuses the tile rows that the previous call read.
   void least_amplitude(int tile_row, float* out);
