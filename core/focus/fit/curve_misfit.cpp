@@ -1,12 +1,13 @@
 #include "core/focus/fit/curve_misfit.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include "core/focus/fit/sample_heights.hpp"
 

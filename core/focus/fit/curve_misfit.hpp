@@ -18,7 +18,6 @@ namespace fvd {
 /// Standard deviation that a sample has beside its noise, as a share of its curve's amplitude; 0 where the noise
 /// explains all or fewer than 100 curves have all five samples. Tuples: spread over the image, their indices within
 /// z_um. exponent: that of the scan's curves, see curve_shape.hpp.
-[[nodiscard]] double curve_misfit(std::span<const CurveTuple> tuples, const std::vector<double>& z_um,
-                                  double exponent);
+[[nodiscard]] double curve_misfit(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, double exponent);
 
 }  // namespace fvd

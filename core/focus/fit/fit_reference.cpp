@@ -46,7 +46,8 @@ std::optional<ReferencePeak> fit_reference(const ReferenceCurve& curve) {
     design.row(i) << 1.0, u, u * u;
     root_weights(i) = r * r;
     values(i) = 1.0 / std::sqrt(r);
-    value_sigmas(i) = std::hypot(curve.noise / amplitude, curve.misfit) / (2.0 * r * std::sqrt(r));  // dG = r^-3/2 dr / 2
+    value_sigmas(i) =
+        std::hypot(curve.noise / amplitude, curve.misfit) / (2.0 * r * std::sqrt(r));  // dG = r^-3/2 dr / 2
   }
   // k = solution * G. The rows are scaled by the weights' roots, so that their
   // squares are least.

@@ -1,12 +1,13 @@
 #include "core/focus/fit/smooth_heights.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include "core/base/error.hpp"
 
@@ -17,8 +18,8 @@ namespace {
 /// Weights beyond so many standard deviations are left out: 1 % of the largest.
 constexpr double kReach = 3.0;
 
-/// A fit whose variance is more than so many times that of a point is one that its neighbours do not hold: at the end of a
-/// strip, or where nearly all of them are holes.
+/// A fit whose variance is more than so many times that of a point is one that its neighbours do not hold: at the end
+/// of a strip, or where nearly all of them are holes.
 constexpr double kLargestFactor = 4.0;
 
 /// Along one direction: weight times the offset to the powers 0..4. Offsets are in sigma, so that all powers are of one
@@ -150,7 +151,8 @@ class Smoother {
       variance[x] = s * s;
     }
     const std::size_t at = slot(row);
-    for (int i = 0; i < kPointSums; ++i) convolve(valid - radius_, taps_[static_cast<std::size_t>(i)], row_sum(band, at, i));
+    for (int i = 0; i < kPointSums; ++i)
+      convolve(valid - radius_, taps_[static_cast<std::size_t>(i)], row_sum(band, at, i));
     for (int i = 0; i < kHeightSums; ++i) {
       convolve(value - radius_, taps_[static_cast<std::size_t>(i)], row_sum(band, at, kPointSums + i));
     }
@@ -196,12 +198,12 @@ class Smoother {
     sigma_out = sigma_m_.at(x, y);
     if (std::isnan(height_out)) return;
     const auto point = [&](int term) {
-      return band.points[static_cast<std::size_t>(term) * static_cast<std::size_t>(width_) +
-                         static_cast<std::size_t>(x)];
+      return band
+          .points[static_cast<std::size_t>(term) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
     };
     const auto height = [&](int term) {
-      return band.heights[static_cast<std::size_t>(term) * static_cast<std::size_t>(width_) +
-                          static_cast<std::size_t>(x)];
+      return band
+          .heights[static_cast<std::size_t>(term) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
     };
     Matrix normal;
     for (int i = 0; i < kUnknowns; ++i) {
@@ -251,8 +253,7 @@ class Smoother {
     std::array<std::array<int, kUnknowns>, kUnknowns> products{};
     for (std::size_t i = 0; i < kUnknowns; ++i) {
       for (std::size_t j = 0; j < kUnknowns; ++j) {
-        products[i][j] =
-            term_index(kPointTerms[i].u + kPointTerms[j].u, kPointTerms[i].v + kPointTerms[j].v);
+        products[i][j] = term_index(kPointTerms[i].u + kPointTerms[j].u, kPointTerms[i].v + kPointTerms[j].v);
       }
     }
     return products;
@@ -278,8 +279,8 @@ SmoothedHeights smooth_heights(const Plane<float>& height_m, const Plane<float>&
                 "smoothing over " + std::to_string(settings.sigma_px) + " px: must be within 1..16 px");
   }
   if (!(settings.correlated_px >= 1.0)) {
-    throw Error(ErrorCode::kBadInput, "errors correlated over " + std::to_string(settings.correlated_px) +
-                                          " px^2: must be at least 1 px^2");
+    throw Error(ErrorCode::kBadInput,
+                "errors correlated over " + std::to_string(settings.correlated_px) + " px^2: must be at least 1 px^2");
   }
   const int width = height_m.width();
   const int height = height_m.height();

@@ -18,7 +18,7 @@ namespace fvd {
 
 inline constexpr float kFloorShare = 0.9F;      ///< share of the curve's minimum that is subtracted
 inline constexpr float kSmallestShare = 1e-3F;  ///< share of the peak that a sample at or below the floor counts as
-inline constexpr float kShapeError = 0.028F;   ///< standard deviation over b / (1 + 0.9 b), in sample distances
+inline constexpr float kShapeError = 0.028F;    ///< standard deviation over b / (1 + 0.9 b), in sample distances
 inline constexpr float kBinnedShapeError = 0.0175F;  ///< the same where samples are bins
 
 }  // namespace fvd

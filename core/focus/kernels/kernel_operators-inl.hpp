@@ -31,11 +31,12 @@ inline __attribute__((always_inline)) std::uint32_t diagonal_value(const Diagona
   const int d = rows.distance;
   const int s = rows.inner;
   const int centre = 2 * rows.row[x];
-  const int straight = size_of(centre - rows.row[x - d] - rows.row[x + d]) + size_of(centre - rows.above[x] - rows.below[x]);
-  const int outer = size_of(centre - rows.above[x - d] - rows.below[x + d]) +
-                    size_of(centre - rows.above[x + d] - rows.below[x - d]);
-  const int inner = size_of(centre - rows.upper[x - s] - rows.lower[x + s]) +
-                    size_of(centre - rows.upper[x + s] - rows.lower[x - s]);
+  const int straight =
+      size_of(centre - rows.row[x - d] - rows.row[x + d]) + size_of(centre - rows.above[x] - rows.below[x]);
+  const int outer =
+      size_of(centre - rows.above[x - d] - rows.below[x + d]) + size_of(centre - rows.above[x + d] - rows.below[x - d]);
+  const int inner =
+      size_of(centre - rows.upper[x - s] - rows.lower[x + s]) + size_of(centre - rows.upper[x + s] - rows.lower[x - s]);
   return static_cast<std::uint32_t>(2 * straight + outer + inner);
 }
 

@@ -101,6 +101,19 @@ inline __attribute__((always_inline)) bool any_clipped(const CurveRow& row, cons
   return (words[0] | words[1]) != 0;
 }
 
+/// Takes one sample's shares of clipped pixels in, nullptr for none.
+template <typename Level>
+inline __attribute__((always_inline)) void take_clipped(const Level* shares, int there, const CodeMask& stays,
+                                                        const CodeMask& follows, Flags& clipped) {
+  Flags levels{};
+  if (shares != nullptr) load_pixels(shares, there, levels);
+  FlagMask narrow_stays;
+  narrow_mask(stays, narrow_stays);
+  FlagMask narrow_follows;
+  narrow_mask(follows, narrow_follows);
+  take_levels(levels, narrow_stays, narrow_follows, clipped);
+}
+
 /// 16 columns at x. The state stays in registers while several samples are taken in. there: columns from x on that the
 /// image has, 16 if more.
 template <typename Texture, typename TextureVector, bool kClipped>
@@ -141,13 +154,7 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
     right = follows ? value : right;
     right2 = follows2 ? value : right2;
     if constexpr (kClipped) {
-      Flags levels{};
-      if (sample.clipped != nullptr) load_pixels(sample.clipped + x, there, levels);
-      FlagMask narrow_stays;
-      narrow_mask(stays, narrow_stays);
-      FlagMask narrow_follows;
-      narrow_mask(follows, narrow_follows);
-      take_levels(levels, narrow_stays, narrow_follows, clipped);
+      take_clipped(sample.clipped == nullptr ? nullptr : sample.clipped + x, there, stays, follows, clipped);
     }
     // In most slices of a scan 16 neighbours are all past their peak, or before it in the noise.
     if (!all(stays)) {

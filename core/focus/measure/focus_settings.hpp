@@ -100,8 +100,8 @@ struct WindowSides {
 /// sums is one. window_px^2 for a box.
 [[nodiscard]] double window_area_px2(const FocusSettings& settings) noexcept;
 
-/// The number of slices per bin with which samples lie about 0.35 of the curve's full width at half maximum apart. There
-/// the peak is located best: closer samples differ by more noise than signal. 1 if the width is unknown (0).
+/// The number of slices per bin with which samples lie about 0.35 of the curve's full width at half maximum apart.
+/// There the peak is located best: closer samples differ by more noise than signal. 1 if the width is unknown (0).
 /// context: pure.
 [[nodiscard]] int choose_bin_slices(double step_um, double curve_width_um) noexcept;
 
