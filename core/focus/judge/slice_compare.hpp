@@ -19,9 +19,23 @@ namespace fvd {
 /// All samples have the same grey level.
 [[nodiscard]] bool one_level(const SliceFigures& slice) noexcept;
 
+/// Which rows of tiles change from slice to slice. What never changes, a scale bar or a masked region, is no sign of a
+/// slice that came in part.
+class LivingRows {
+ public:
+  /// Two slices that follow each other.
+  void compare(const SliceFigures& slice, const SliceFigures& next);
+  [[nodiscard]] bool lives(int row) const noexcept {
+    return static_cast<std::size_t>(row) < lives_.size() && lives_[static_cast<std::size_t>(row)];
+  }
+
+ private:
+  std::vector<bool> lives_;
+};
+
 /// Share of the rows, at the top or at the bottom, that hold no signal of their own while the rest does: 0 for a whole
 /// slice. reference: a slice nearby that is believed.
-[[nodiscard]] double missing_share(const SliceFigures& slice, const SliceFigures& reference);
+[[nodiscard]] double missing_share(const SliceFigures& slice, const SliceFigures& reference, const LivingRows& rows);
 
 /// Whether slices follow each other in the order before, first, second, after: the correlation, tile by tile, of the
 /// change from first to second with the change from before to after. Slices in order change in the same direction over
@@ -30,11 +44,19 @@ struct OrderFigure {
   double correlation = 0.0;     ///< mean over the tiles, -1..1
   double negative_share = 0.0;  ///< of the tiles
   double significance = 0.0;    ///< the mean over its standard error
-  /// Certain that first and second are exchanged.
-  [[nodiscard]] bool exchanged() const noexcept;
+  /// Certain that first and second are not in order.
+  [[nodiscard]] bool reversed() const noexcept;
+  /// Certain that they are.
+  [[nodiscard]] bool in_order() const noexcept;
 };
 [[nodiscard]] OrderFigure order_of(const SliceFigures& before, const SliceFigures& first, const SliceFigures& second,
                                    const SliceFigures& after);
+
+/// Whether two slices amid others have changed places: the four about them are in the order of the scan only if they
+/// are exchanged back, and their distances say the same. Lateral jitter, which also makes slices differ at random, does
+/// not do all of that.
+[[nodiscard]] bool exchanged(const SliceFigures& before2, const SliceFigures& before, const SliceFigures& first,
+                             const SliceFigures& second, const SliceFigures& after, const SliceFigures& after2);
 
 /// Whether a slice is as sharp, in every direction, as its neighbours let expect.
 struct MotionFigure {
@@ -42,6 +64,9 @@ struct MotionFigure {
   double direction = 0.0;     ///< |logarithm| by which the ratio of two crossed directions differs from the neighbours'
   double significance = 0.0;  ///< that over its standard error
   double sharpness = 0.0;     ///< logarithm of the sharpness over the neighbours' geometric mean
+  /// Correlation of what either neighbour has and the slice lacks: near 1 for a slice that was smeared. Between two
+  /// levels of a surface each neighbour has the texture of its own level, and it is below 0.
+  double agreement = 0.0;
   /// Certain that the slice is blurred in one direction: no other order of slices makes that.
   [[nodiscard]] bool turned() const noexcept;
   /// Certain that the slice was moved or exposed twice.

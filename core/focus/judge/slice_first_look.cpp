@@ -38,7 +38,7 @@ std::optional<SuspectSlice> SliceFirstLook::compare(const SliceFigures& figures,
     return doubted(SuspectReason::kDark, brightness / figures.full_scale);
   }
   if (same_samples(figures, *believed_) && hash == believed_hash_) return doubted(SuspectReason::kRepeated, 1.0);
-  const double missing = missing_share(figures, *believed_);
+  const double missing = missing_share(figures, *believed_, rows_);
   if (missing > 0.0) return doubted(SuspectReason::kPartial, missing);
   const double light = brightness_ratio(figures, believed_->means);
   if (light > 0.0 && light < kLeastLight) return doubted(SuspectReason::kDark, light);
@@ -55,6 +55,7 @@ std::optional<SuspectSlice> SliceFirstLook::doubt(const ImageView& slice, int in
     suspect->index = index;
     suspect->z_um = z_um;
   } else {
+    if (believed_) rows_.compare(*believed_, figures);
     believed_ = std::move(figures);
     believed_hash_ = hash;
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/focus/judge/slice_compare.hpp"
 #include "core/focus/judge/slice_figures.hpp"
 #include "core/focus/judge/suspect_slice.hpp"
 
@@ -25,6 +26,7 @@ class SliceFirstLook {
                                                     std::uint64_t hash);
 
   std::optional<SliceFigures> believed_;
+  LivingRows rows_;
   std::uint64_t believed_hash_ = 0;
   std::optional<double> doubted_dark_;  // brightness of the first slice, grey levels
   bool withdrew_ = false;

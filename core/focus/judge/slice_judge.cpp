@@ -38,6 +38,7 @@ void SliceJudge::add(SliceFigures figures, int index, double z_um, bool constant
     } else {
       note_noise(figures);
     }
+    if (last_added_.tiles() > 0) rows_.compare(last_added_, figures);
     last_added_ = figures;
   }
   slice.figures = std::move(figures);
@@ -79,23 +80,23 @@ double SliceJudge::light_of(const SliceFigures& figures, std::vector<const Slice
   return brightness_ratio(figures, mean);
 }
 
-void SliceJudge::doubt_order(const std::vector<const SliceFigures*>& next) {
-  if (!last_believed_ || next.size() < 2) return;
-  const OrderFigure order = order_of(*last_believed_, waiting_.front().figures, *next[0], *next[1]);
-  if (!order.exchanged()) return;
-  // A slice that was moved resembles its neighbours less, as if it were out of order.
+void SliceJudge::doubt_order(const Neighbours& next) {
+  if (!last_believed_ || !before_last_ || next.size() < 3) return;
   const SliceFigures& oldest = waiting_.front().figures;
+  if (!exchanged(*before_last_, *last_believed_, oldest, *next[0], *next[1], *next[2])) return;
+  // A slice that was moved resembles its neighbours less, as if it were out of order.
   if (motion_of(*last_believed_, oldest, *next[0], second_least_).turned()) return;
   if (motion_of(oldest, *next[0], *next[1], second_least_).turned()) return;
+  const double figure = order_of(*last_believed_, oldest, *next[0], *next[1]).correlation;
   for (Waiting& slice : waiting_) {
     if (&slice != &waiting_.front() && &slice.figures != next[0]) continue;
     slice.suspect = true;
     slice.slice.reason = SuspectReason::kExchanged;
-    slice.slice.figure = order.correlation;
+    slice.slice.figure = figure;
   }
 }
 
-void SliceJudge::doubt_motion(Waiting& oldest, const std::vector<const SliceFigures*>& next) {
+void SliceJudge::doubt_motion(Waiting& oldest, const Neighbours& next) {
   if (!last_believed_ || next.empty()) return;
   const MotionFigure motion = motion_of(*last_believed_, oldest.figures, *next[0], second_least_);
   if (!motion.moved()) return;
@@ -103,11 +104,27 @@ void SliceJudge::doubt_motion(Waiting& oldest, const std::vector<const SliceFigu
   if (next.size() >= 2) {
     const MotionFigure of_next = motion_of(oldest.figures, *next[0], *next[1], second_least_);
     if (of_next.moved() && of_next.strength() > motion.strength()) return;
-    if (next.size() >= 3 && order_of(oldest.figures, *next[0], *next[1], *next[2]).exchanged()) return;
+    if (next.size() >= 3 && order_of(oldest.figures, *next[0], *next[1], *next[2]).reversed()) return;
   }
   oldest.suspect = true;
   oldest.slice.reason = SuspectReason::kVibration;
   oldest.slice.figure = motion.direction >= -motion.sharpness ? motion.direction : motion.sharpness;
+}
+
+/// Beside a slice that is not believed the others are not evenly spaced: their order and sharpness say nothing.
+SliceJudge::Neighbours SliceJudge::evenly_spaced_next() const {
+  Neighbours next;
+  int index = waiting_.front().slice.index;
+  if (last_believed_index_ != index - 1) return next;
+  for (std::size_t i = 1; i < waiting_.size(); ++i) {
+    const Waiting& slice = waiting_[i];
+    if (slice.suspect || slice.slice.index != ++index) break;
+    const double light = brightness_ratio(slice.figures, waiting_.front().figures.means);
+    const bool lit = !(light > 0.0 && light < kLeastLight) && light <= kMostLight;
+    if (!lit || missing_share(slice.figures, waiting_.front().figures, rows_) > 0.0) break;
+    next.push_back(&slice.figures);
+  }
+  return next;
 }
 
 std::optional<SuspectSlice> SliceJudge::doubt(Waiting& oldest) {
@@ -120,20 +137,15 @@ std::optional<SuspectSlice> SliceJudge::doubt(Waiting& oldest) {
   };
   const SliceFigures* const near = last_believed_ ? &*last_believed_ : next.empty() ? nullptr : next[0];
   if (near != nullptr) {
-    const double missing = missing_share(oldest.figures, *near);
+    const double missing = missing_share(oldest.figures, *near, rows_);
     if (missing > 0.0) return condemned(SuspectReason::kPartial, missing);
   }
   const double light = light_of(oldest.figures, next);
   if (light > 0.0 && light < kLeastLight) return condemned(SuspectReason::kDark, light);
   if (light > kMostLight) return condemned(SuspectReason::kBrighter, light);
-  // Only slices that are whole and lit tell of order and motion.
-  std::erase_if(next, [&](const SliceFigures* figures) {
-    const double next_light = brightness_ratio(*figures, oldest.figures.means);
-    return missing_share(*figures, oldest.figures) > 0.0 || (next_light > 0.0 && next_light < kLeastLight) ||
-           next_light > kMostLight;
-  });
-  doubt_order(next);
-  if (!oldest.suspect) doubt_motion(oldest, next);
+  const Neighbours even = evenly_spaced_next();
+  doubt_order(even);
+  if (!oldest.suspect) doubt_motion(oldest, even);
   return oldest.suspect ? std::optional(oldest.slice) : std::nullopt;
 }
 
@@ -151,7 +163,7 @@ double SliceJudge::flicker_percent() const noexcept {
   return flicker_count_ == 0 ? 0.0 : 100.0 * std::sqrt(flicker_squares_ / flicker_count_);
 }
 
-double SliceJudge::accept(SliceFigures figures) {
+double SliceJudge::accept(SliceFigures figures, int index) {
   double gain = 1.0;
   if (light_.empty()) {
     light_ = figures.means;
@@ -168,7 +180,9 @@ double SliceJudge::accept(SliceFigures figures) {
       if (std::abs(ratio - 1.0) < kLeastFlicker) gain = 1.0;
     }
   }
+  before_last_ = last_believed_index_ == index - 1 ? std::exchange(last_believed_, std::nullopt) : std::nullopt;
   last_believed_ = std::move(figures);
+  last_believed_index_ = index;
   return gain;
 }
 
@@ -180,7 +194,7 @@ std::optional<SliceDecision> SliceJudge::decide() {
   SliceDecision decision;
   if (waiting_.front().figures.tiles() > 0) decision.suspect = doubt(waiting_.front());
   if (!decision.suspect && waiting_.front().figures.tiles() > 0)
-    decision.gain = accept(std::move(waiting_.front().figures));
+    decision.gain = accept(std::move(waiting_.front().figures), waiting_.front().slice.index);
   waiting_.pop_front();
   return decision;
 }

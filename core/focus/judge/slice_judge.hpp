@@ -49,15 +49,20 @@ class SliceJudge {
   [[nodiscard]] std::optional<SuspectSlice> doubt(Waiting& oldest);
   [[nodiscard]] double light_of(const SliceFigures& figures, std::vector<const SliceFigures*>& next) const;
   [[nodiscard]] std::vector<const SliceFigures*> next_believed() const;
-  void doubt_order(const std::vector<const SliceFigures*>& next);
-  void doubt_motion(Waiting& oldest, const std::vector<const SliceFigures*>& next);
+  using Neighbours = std::vector<const SliceFigures*>;
+  [[nodiscard]] Neighbours evenly_spaced_next() const;
+  void doubt_order(const Neighbours& next);
+  void doubt_motion(Waiting& oldest, const Neighbours& next);
   void note_noise(const SliceFigures& figures);
-  [[nodiscard]] double accept(SliceFigures figures);
+  [[nodiscard]] double accept(SliceFigures figures, int index);
   void note_flicker(double ratio);
 
   std::deque<Waiting> waiting_;
   SliceFigures last_added_;  // believed or not
   std::optional<SliceFigures> last_believed_;
+  std::optional<SliceFigures> before_last_;  // where it was the slice before that one
+  int last_believed_index_ = -2;
+  LivingRows rows_;
   std::vector<double> light_;                 // of the tiles, in the light of the first slice; grey levels
   std::vector<double> least_, second_least_;  // squared second difference of each tile
   double level_ = 1.0;                        // of the light, over that of the first slice; follows a lamp that drifts
