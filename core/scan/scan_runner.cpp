@@ -107,14 +107,18 @@ std::optional<CapturedFrame> ScanRunner::capture_believed(const ScanPlan& plan, 
     auto captured = capture.capture(settled, plan.frame_retries, stop);
     if (!captured) return captured;
     triggers = captured->triggers += triggers;
-    auto suspect = look_.doubt(captured->frame.image, index, plan.target(index).value);
+    const bool comes_again = attempt < plan.frame_retries;
+    auto suspect = look_.doubt(captured->frame.image, index, plan.target(index).value, comes_again);
     if (!suspect) {
-      if (look_.withdrew()) report.suspects.pop_back();
+      const auto withdrawn = [index](const SuspectSlice& slice) {
+        return slice.index == index && slice.reason == SuspectReason::kDark;
+      };
+      if (look_.withdrew()) std::erase_if(report.suspects, withdrawn);
       return captured;
     }
-    suspect->done = attempt < plan.frame_retries ? SuspectDone::kTakenAgain : SuspectDone::kLeftOut;
+    suspect->done = comes_again ? SuspectDone::kTakenAgain : SuspectDone::kLeftOut;
     report.suspects.push_back(*suspect);
-    if (attempt == plan.frame_retries) return std::nullopt;
+    if (!comes_again) return std::nullopt;
   }
 }
 
@@ -141,6 +145,9 @@ void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::functi
       StepRecord step = record_move(index, target, move);
       report.frames = ledger.counts();
       if (!captured) {
+        for (SuspectSlice& slice : report.suspects) {
+          if (slice.index == index) slice.done = SuspectDone::kLeftOut;
+        }
         if (++report.lost_slices > plan.allowed_lost_slices) throw too_many_lost(index, target, plan, report);
         step.measured = false;
         step.triggers = 1 + plan.frame_retries;

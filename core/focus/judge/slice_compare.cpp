@@ -8,8 +8,10 @@ namespace fvd {
 
 namespace {
 
-/// Tiles darker or brighter than these shares of full scale say nothing of the light.
-constexpr double kLeastLit = 0.012;
+/// Tiles darker than this share of the brightest, or than so many grey levels, say nothing of the light; nor do tiles
+/// that are brighter than this share of full scale. A 12-bit camera's image may fill a hundredth of 16 bits.
+constexpr double kLeastLit = 0.05;
+constexpr double kLeastLit_grey = 2.0;
 constexpr double kMostLit = 0.92;
 /// Ratios of tiles within this share of their median are averaged.
 constexpr double kNearMedian = 0.1;
@@ -27,6 +29,8 @@ constexpr double kNotFarther = 1.1;
 
 /// A tile shows texture if both neighbours' second differences are this often those of noise.
 constexpr double kTexture = 2.5;
+/// Of the second difference of rounded grey levels: 6 times 1/12.
+constexpr double kRoundingEnergy = 0.5;
 constexpr int kMinTiles = 6;
 constexpr double kMinDirection = 0.35;
 constexpr double kMinMotionSignificance = 8.0;
@@ -56,6 +60,11 @@ bool band_same(const SliceFigures& a, const SliceFigures& b, int row) noexcept {
                     b.tile_samples(row * a.columns));
 }
 
+double least_lit(const std::vector<double>& means) {
+  const double most = means.empty() ? 0.0 : *std::max_element(means.begin(), means.end());
+  return std::max(kLeastLit_grey, kLeastLit * most);
+}
+
 double band_mean(const SliceFigures& slice, int row) noexcept {
   double sum = 0.0;
   for (int column = 0; column < slice.columns; ++column) {
@@ -72,7 +81,7 @@ bool band_missing(const SliceFigures& slice, const SliceFigures& reference, int 
   const double light = band_mean(reference, row);
   // Clipped or black rows of a clean slice may have one level too, but that of the slice before.
   if (band_one_level(slice, row) && std::abs(band_mean(slice, row) - light) > kOtherLevel * light) return true;
-  return light > 2.0 * kLeastLit * slice.full_scale && band_mean(slice, row) < kBandDark * light;
+  return light > 2.0 * least_lit(reference.means) && band_mean(slice, row) < kBandDark * light;
 }
 
 /// Gain that makes a slice as bright as another.
@@ -132,7 +141,7 @@ double distance(const SliceFigures& a, const SliceFigures& b) {
 double brightness_ratio(const SliceFigures& slice, const std::vector<double>& reference) {
   std::vector<double> ratios;
   ratios.reserve(slice.means.size());
-  const double least = kLeastLit * slice.full_scale;
+  const double least = least_lit(reference);
   const double most = kMostLit * slice.full_scale;
   for (std::size_t tile = 0; tile < slice.means.size(); ++tile) {
     if (reference[tile] < least || reference[tile] > most || slice.means[tile] > most) continue;
@@ -242,7 +251,7 @@ MotionFigure motion_of(const SliceFigures& before, const SliceFigures& slice, co
   const auto after_gain = static_cast<float>(std::sqrt(gain2[2]));
   for (int tile = 0; tile < slice.tiles(); ++tile) {
     const auto at = static_cast<std::size_t>(tile);
-    const double floor = noise[at];
+    const double floor = std::max(noise[at], kRoundingEnergy);
     std::array<double, 3> sharpness{};
     for (std::size_t i = 0; i < 3; ++i) sharpness[i] = gain2[i] * three[i]->sharpness(tile);
     if (!(std::min(sharpness[0], sharpness[2]) > kTexture * floor)) continue;

@@ -23,13 +23,13 @@ SuspectSlice doubted(SuspectReason reason, double figure) {
 }  // namespace
 
 std::optional<SuspectSlice> SliceFirstLook::compare(const SliceFigures& figures, const ImageView& slice,
-                                                    std::uint64_t hash) {
+                                                    std::uint64_t hash, bool comes_again) {
   if (one_level(figures) && is_constant(slice)) {
     return doubted(SuspectReason::kConstant, figures.samples.front() / figures.full_scale);
   }
   if (!believed_) {
     const double brightness = figures.brightness();
-    if (brightness > kDarkFirst * figures.full_scale) return std::nullopt;
+    if (brightness > kDarkFirst * figures.full_scale || !comes_again) return std::nullopt;
     if (doubted_dark_ && std::abs(brightness - *doubted_dark_) <= kSameDark * *doubted_dark_) {
       withdrew_ = true;
       return std::nullopt;
@@ -45,12 +45,12 @@ std::optional<SuspectSlice> SliceFirstLook::compare(const SliceFigures& figures,
   return std::nullopt;
 }
 
-std::optional<SuspectSlice> SliceFirstLook::doubt(const ImageView& slice, int index, double z_um) {
+std::optional<SuspectSlice> SliceFirstLook::doubt(const ImageView& slice, int index, double z_um, bool comes_again) {
   withdrew_ = false;
   SliceFigures figures = slice_figures(slice);
   if (figures.tiles() == 0) return std::nullopt;
   const std::uint64_t hash = content_hash(slice);
-  std::optional<SuspectSlice> suspect = compare(figures, slice, hash);
+  std::optional<SuspectSlice> suspect = compare(figures, slice, hash, comes_again);
   if (suspect) {
     suspect->index = index;
     suspect->z_um = z_um;

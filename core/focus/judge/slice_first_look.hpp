@@ -15,15 +15,16 @@ namespace fvd {
 class SliceFirstLook {
  public:
   /// What speaks against the slice; nothing = it may be believed, and is what the next is compared with. A dark slice
-  /// that comes first, or comes again as dark as before, is a dark scene: it is doubted once.
-  [[nodiscard]] std::optional<SuspectSlice> doubt(const ImageView& slice, int index, double z_um);
+  /// that comes first, or comes again as dark as before, is a dark scene: it is doubted once, if it can come again.
+  [[nodiscard]] std::optional<SuspectSlice> doubt(const ImageView& slice, int index, double z_um,
+                                                  bool comes_again = true);
 
   /// The last slice was believed although the one before it was doubted as dark: the scene is as dark as that.
   [[nodiscard]] bool withdrew() const noexcept { return withdrew_; }
 
  private:
   [[nodiscard]] std::optional<SuspectSlice> compare(const SliceFigures& figures, const ImageView& slice,
-                                                    std::uint64_t hash);
+                                                    std::uint64_t hash, bool comes_again);
 
   std::optional<SliceFigures> believed_;
   LivingRows rows_;

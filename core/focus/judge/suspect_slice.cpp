@@ -18,7 +18,7 @@ struct Words {
 Words words(SuspectReason reason) noexcept {
   switch (reason) {
     case SuspectReason::kDark:
-      return {"dark", "is dark", "brightness over its neighbours'"};
+      return {"dark", "is dark", "brightness over its neighbours', or over full scale where it has none"};
     case SuspectReason::kBrighter:
       return {"brighter", "is far brighter than the others", "brightness over its neighbours'"};
     case SuspectReason::kConstant:

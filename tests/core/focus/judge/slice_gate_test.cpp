@@ -16,6 +16,8 @@ namespace fvd {
 namespace {
 
 using test::change;
+using test::dark_level;
+using test::Image;
 using test::judge_scene;
 using test::Judged;
 using test::Scene;
@@ -163,6 +165,66 @@ TEST_P(AFault, IsFoundAndNothingElseIs) {
 
 INSTANTIATE_TEST_SUITE_P(Planted, AFault, testing::ValuesIn(kFaults),
                          [](const auto& test) { return std::string(test.param.name); });
+
+/// Stripes of 16 px at two heights, so that every tile has both: between them a slice is less sharp than its
+/// neighbours.
+TEST(SliceGate, BelievesTheSlicesBetweenTwoLevels) {
+  for (const double apart_um : {20.0, 30.0, 40.0}) {
+    SceneSettings level;
+    level.tilt_x_um_per_px = 0.0;
+    Scene scene(level);
+    level.base_um += apart_um;
+    const Scene other(level);
+    for (std::size_t k = 0; k < scene.slices.size(); ++k) {
+      change(scene.slices[k], [&](double grey, int x, int y) {
+        return x / 16 % 2 == 0 ? grey : static_cast<double>(other.slices[k].at(x, y));
+      });
+    }
+    EXPECT_THAT(judge_scene(scene).suspect_indices(), IsEmpty()) << apart_um;
+  }
+}
+
+/// Every slice a fraction of a pixel aside, as a stage that trembles leaves it: in a fine scan more than what defocus
+/// changes.
+TEST(SliceGate, BelievesSlicesThatJitter) {
+  for (const double rms_px : {0.1, 0.2, 0.4}) {
+    Scene scene({.step_um = 4.0, .slices = 40});
+    std::mt19937 random(7);
+    std::normal_distribution<double> aside(0.0, rms_px);
+    for (Image& slice : scene.slices) {
+      const Image still = slice.clone();
+      const double by = std::clamp(aside(random), -1.0, 1.0);
+      change(slice, [&](double grey, int x, int y) {
+        const int u = std::clamp(x + (by > 0.0 ? 1 : -1), 0, still.width() - 1);
+        return grey + std::abs(by) * (static_cast<double>(still.at(u, y)) - grey);
+      });
+    }
+    EXPECT_THAT(judge_scene(scene).suspect_indices(), IsEmpty()) << rms_px;
+  }
+}
+
+TEST(SliceGate, BelievesSlicesWithABarThatNeverChanges) {
+  Scene scene({});
+  for (Image& slice : scene.slices) {
+    change(slice, [&](double grey, int x, int y) { return y < 200 ? grey : (x / 7 + y / 9) % 5 == 0 ? 255.0 : 0.0; });
+  }
+  EXPECT_THAT(judge_scene(scene).suspect_indices(), IsEmpty());
+}
+
+TEST(SliceGate, LeavesOutNothingBesideABadSlice) {
+  for (const std::size_t bad : {std::size_t{8}, std::size_t{9}, std::size_t{10}, std::size_t{11}}) {
+    Scene scene({.tilt_x_um_per_px = 0.0});
+    change(scene.slices[bad], [](double, int, int) { return 0.0; });
+    EXPECT_THAT(judge_scene(scene).suspect_indices(), ElementsAre(static_cast<int>(bad)));
+  }
+}
+
+TEST(SliceFirstLook, BelievesADarkFirstSliceThatCannotComeAgain) {
+  Scene scene({.slices = 1});
+  change(scene.slices[0], [](double, int x, int y) { return dark_level(x, y); });
+  SliceFirstLook look;
+  EXPECT_FALSE(look.doubt(scene.view(0), 0, 0.0, false));
+}
 
 TEST(SliceGate, LeavesOutTheDarkSlicesOfALampThatComesUp) {
   const auto left_out = [](std::array<double, 3> light) {
