@@ -17,7 +17,7 @@ constexpr std::size_t kLeastLookedAt = 500;
 constexpr std::size_t kLeastCurves = 20;
 constexpr std::size_t kMostCurves = 4000;  // the median of so many is good to 1 %
 /// Of the scan's median shoulder; spikes have less, curves of the recorded stacks and of steps up to a width have more.
-constexpr double kShoulderShare = 0.2;
+constexpr double kShoulderShare = 0.48;
 /// A median below this is one of spikes: theirs is 0.02, that of curves 0.9 widths from sample to sample 0.095.
 constexpr double kLeastMedianShoulder = 0.06;
 constexpr double kShoulderWithoutMedian = 0.1;

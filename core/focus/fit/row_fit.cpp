@@ -99,8 +99,10 @@ unsigned RowFit::shape_reasons(const CurveRow& row, int x) const noexcept {
   const double left = over_floor(row.left[x]);
   const double right = over_floor(row.right[x]);
   const double near = left + right;
-  const double far =
-      (at.u_left2 != 0.0F ? over_floor(row.left2[x]) : 0.0) + (at.u_right2 != 0.0F ? over_floor(row.right2[x]) : 0.0);
+  // Without one of the samples two away the other stands for both.
+  const double left2 = at.u_left2 != 0.0F ? over_floor(row.left2[x]) : 0.0;
+  const double right2 = at.u_right2 != 0.0F ? over_floor(row.right2[x]) : 0.0;
+  const double far = (at.u_left2 != 0.0F ? left2 : right2) + (at.u_right2 != 0.0F ? right2 : left2);
   const auto u_left = static_cast<double>(at.u_left);
   const auto u_right = static_cast<double>(at.u_right);
   const auto scale_um = static_cast<double>(at.scale_um);
@@ -109,8 +111,10 @@ unsigned RowFit::shape_reasons(const CurveRow& row, int x) const noexcept {
   unsigned reasons = 0;
   const bool clipped = (row.clipped[x] & clipping::kPeakBits) != 0;  // that flattens a curve's top
   if (!clipped && bend < curves_.limits.least_bend_per_um2 * scale_um * scale_um) reasons |= mask_reason::kBroadCurve;
-  if (near < static_cast<double>(at.least_neighbours) || (near - far < curves_.limits.least_shoulder * (2.0 - near) &&
-                                                          near < static_cast<double>(CurveLimits::kMostNeighbours))) {
+  const auto least = static_cast<double>(at.least_neighbours);
+  if (near < least || std::min(left, right) < static_cast<double>(kLowerNeighbour) * least ||
+      (near - far < curves_.limits.least_shoulder * (2.0 - near) &&
+       near < static_cast<double>(CurveLimits::kMostNeighbours))) {
     reasons |= mask_reason::kNarrowCurve;
   }
   return reasons;

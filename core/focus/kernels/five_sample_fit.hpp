@@ -16,7 +16,10 @@
 
 namespace fvd {
 
-inline constexpr float kFloorShare = 0.9F;      ///< share of the curve's minimum that is subtracted
+inline constexpr float kFloorShare = 0.9F;  ///< share of the curve's minimum that is subtracted
+/// The lower neighbour has at least this share of what both must have: where a vertex lies midway between two samples,
+/// 1 / (1 + b u^2)^2 leaves 0.3 of 2 / (1 + b)^2 to the third, nearly whatever b; a curve near the limit has more.
+inline constexpr float kLowerNeighbour = 0.37F;
 inline constexpr float kSmallestShare = 1e-3F;  ///< share of the peak that a sample at or below the floor counts as
 inline constexpr float kShapeError = 0.028F;    ///< standard deviation over b / (1 + 0.9 b), in sample distances
 inline constexpr float kBinnedShapeError = 0.0175F;  ///< the same where samples are bins

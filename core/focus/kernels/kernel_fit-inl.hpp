@@ -162,8 +162,12 @@ inline void find_shares(int count, const FitParameters& parameters, FitPixels& a
     at.r.left2[x] = left2;
     at.r.right2[x] = right2;
     const float near = left + right;
+    const float lower = left < right ? left : right;
+    // Without one of the samples two away the other stands for both.
+    const float far = (at.u.left2[x] != 0.0F ? left2 : right2) + (at.u.right2[x] != 0.0F ? right2 : left2);
     at.narrow[x] = static_cast<std::int32_t>(near < at.least_neighbours[x]) |
-                   (static_cast<std::int32_t>(near - (left2 + right2) < least_shoulder * (2.0F - near)) &
+                   static_cast<std::int32_t>(lower < kLowerNeighbour * at.least_neighbours[x]) |
+                   (static_cast<std::int32_t>(near - far < least_shoulder * (2.0F - near)) &
                     static_cast<std::int32_t>(near < most_neighbours));
   }
 }

@@ -106,6 +106,21 @@ TEST(PointTests, ABlinkingPixelIsNoSurfaceBesideTexture) {
   }
 }
 
+TEST(PointTests, PixelsThatBlinkOneAfterTheOtherAreNoSurface) {
+  const Level level = [&](int x, int y, int k, double grain) {
+    const double texture = x < kSide / 2 ? 25.0 * grain * contrast(tilted_slices(x, k), 3.0) : 0.0;
+    const int place = y / 20 + 8 * (x / 20);  // of pairs 3 px apart in a slice and the next, also near the scan's ends
+    const bool first = x % 20 == 8 && y % 20 == 10 && k == 1 + place % (kSlices - 3);
+    const bool second = x % 20 == 11 && y % 20 == 10 && k == 2 + place % (kSlices - 3);
+    return 100.0 + texture + (first || second ? 60.0 : 0.0);
+  };
+  for (const PeakMethod method : {PeakMethod::kFiveSample, PeakMethod::kParabola}) {
+    const HeightMap map = map_of(level, {}, method);
+    EXPECT_LE(share_kept(map, kSide / 2 + 12, kSide), 0.01);
+    EXPECT_GE(share_kept(map, 0, kSide / 2 - 12), 0.98);
+  }
+}
+
 TEST(PointTests, BlinkingPixelsAreNoSurfaceWhereNothingElseHasAPeak) {
   const Blinking blinking;
   const Level level = [&](int x, int y, int k, double) { return 100.0 + blinking.at(x, y, k); };
