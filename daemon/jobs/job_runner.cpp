@@ -1,5 +1,6 @@
 #include "daemon/jobs/job_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -26,8 +27,15 @@ Recipe with_learnt_width(Recipe recipe, const CurveWidthTable& widths) {
   return recipe;
 }
 
-void learn_width(const Recipe& recipe, double width_um, CurveWidthTable& widths) {
+/// The width that the curves of a handful of points have is no width of the scan.
+constexpr double kLeastValidShare = 0.1;
+
+void learn_width(const Recipe& recipe, const HeightMap& map, CurveWidthTable& widths) {
+  const auto points = map.mask.pixels();
+  const auto valid = static_cast<double>(std::count(points.begin(), points.end(), MaskReasons{0}));
+  const double width_um = map.curve_width_um;
   if (!learns_bins(recipe) || !(width_um > 0.0)) return;
+  if (valid < kLeastValidShare * static_cast<double>(points.size())) return;
   try {
     widths.learn(recipe, width_um);
   } catch (const Error& failure) {
@@ -109,7 +117,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
   if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
   if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
   JobResult result = deps_.make_result(directory, acquired);
-  if (!result.error) learn_width(recipe, acquired.map.curve_width_um, deps_.store.curve_widths());
+  if (!result.error) learn_width(recipe, acquired.map, deps_.store.curve_widths());
   return result;
 }
 

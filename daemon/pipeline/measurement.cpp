@@ -1,6 +1,7 @@
 #include "daemon/pipeline/measurement.hpp"
 
 #include <utility>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
@@ -55,7 +56,9 @@ void acquire(const ScanPlan& plan, const CameraSettings& settings, const Measure
   note_light(worker.suspects(), worker.flicker_percent(), result);
   if (report.lost_slices + static_cast<int>(worker.suspects().size()) > plan.allowed_lost_slices &&
       !worker.suspects().empty()) {
-    throw_suspects(result.suspects, plan.allowed_lost_slices);
+    std::vector<SuspectSlice> left_out = result.suspects;
+    std::erase_if(left_out, [](const SuspectSlice& slice) { return slice.done != SuspectDone::kLeftOut; });
+    throw_suspects(left_out, plan.allowed_lost_slices);
   }
 }
 

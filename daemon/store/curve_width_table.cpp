@@ -17,7 +17,8 @@ std::string settings_of(const Recipe& recipe) {
   std::ostringstream text;
   text << focus_operator_name(focus.focus_operator) << " distance " << focus.distance_px << ", "
        << focus_window_name(focus.window) << ' ' << focus.window_px << ", region " << camera.width << 'x'
-       << camera.height << '+' << camera.offset_x << '+' << camera.offset_y << ", step " << recipe.step_um;
+       << camera.height << '+' << camera.offset_x << '+' << camera.offset_y << ", step " << recipe.step_um
+       << (recipe.mode == ScanMode::kContinuous ? " in motion" : "");
   return text.str();
 }
 
