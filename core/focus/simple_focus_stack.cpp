@@ -44,7 +44,8 @@ std::uint8_t clipped_level(const Plane<std::uint16_t>& pixels, int x, int y, con
 std::uint8_t clipped_peak(std::optional<int> before, int at, std::optional<int> after) {
   const int left = before.value_or(at) - at;
   const int right = after.value_or(at) - at;
-  if (at == clipping::kTooMuch || left > 1 || right > 1 || left * right < 0) return clipping::kNoPeak;
+  if (at == clipping::kTooMuch || left > clipping::kMostGrowth || right > clipping::kMostGrowth || left * right < 0)
+    return clipping::kNoPeak;
   if (at >= clipping::kManyLevel) return clipping::kMany;
   return at > 0 ? clipping::kSome : std::uint8_t{0};
 }

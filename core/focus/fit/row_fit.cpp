@@ -112,9 +112,10 @@ unsigned RowFit::shape_reasons(const CurveRow& row, int x) const noexcept {
   const bool clipped = (row.clipped[x] & clipping::kPeakBits) != 0;  // that flattens a curve's top
   if (!clipped && bend < curves_.limits.least_bend_per_um2 * scale_um * scale_um) reasons |= mask_reason::kBroadCurve;
   const auto least = static_cast<double>(at.least_neighbours);
+  const bool uneven = std::abs(at.u_left + at.u_right) > kUneven;
+  const double least_shoulder = curves_.limits.least_shoulder * (uneven ? static_cast<double>(kUnevenShoulder) : 1.0);
   if (near < least || std::min(left, right) < static_cast<double>(kLowerNeighbour) * least ||
-      (near - far < curves_.limits.least_shoulder * (2.0 - near) &&
-       near < static_cast<double>(CurveLimits::kMostNeighbours))) {
+      (near - far < least_shoulder * (2.0 - near) && near < static_cast<double>(CurveLimits::kMostNeighbours))) {
     reasons |= mask_reason::kNarrowCurve;
   }
   return reasons;

@@ -60,8 +60,11 @@ bool band_same(const SliceFigures& a, const SliceFigures& b, int row) noexcept {
                     b.tile_samples(row * a.columns));
 }
 
-double least_lit(const std::vector<double>& means) {
-  const double most = means.empty() ? 0.0 : *std::max_element(means.begin(), means.end());
+double least_lit(const std::vector<double>& means, double full_scale) {
+  double most = 0.0;
+  for (const double mean : means) {
+    if (mean <= kMostLit * full_scale) most = std::max(most, mean);
+  }
   return std::max(kLeastLit_grey, kLeastLit * most);
 }
 
@@ -81,7 +84,7 @@ bool band_missing(const SliceFigures& slice, const SliceFigures& reference, int 
   const double light = band_mean(reference, row);
   // Clipped or black rows of a clean slice may have one level too, but that of the slice before.
   if (band_one_level(slice, row) && std::abs(band_mean(slice, row) - light) > kOtherLevel * light) return true;
-  return light > 2.0 * least_lit(reference.means) && band_mean(slice, row) < kBandDark * light;
+  return light > 2.0 * least_lit(reference.means, reference.full_scale) && band_mean(slice, row) < kBandDark * light;
 }
 
 /// Gain that makes a slice as bright as another.
@@ -141,7 +144,7 @@ double distance(const SliceFigures& a, const SliceFigures& b) {
 double brightness_ratio(const SliceFigures& slice, const std::vector<double>& reference) {
   std::vector<double> ratios;
   ratios.reserve(slice.means.size());
-  const double least = least_lit(reference);
+  const double least = least_lit(reference, slice.full_scale);
   const double most = kMostLit * slice.full_scale;
   for (std::size_t tile = 0; tile < slice.means.size(); ++tile) {
     if (reference[tile] < least || reference[tile] > most || slice.means[tile] > most) continue;

@@ -17,6 +17,8 @@ constexpr double kMostLight = 2.5;
 constexpr double kLeastFlicker = 0.002;
 /// Share by which the reference follows the scene.
 constexpr double kFollow = 0.25;
+/// Share of a tile's samples at full scale with which the tile says nothing of the light.
+constexpr double kMostClipped = 0.005;
 
 }  // namespace
 
@@ -163,21 +165,36 @@ double SliceJudge::flicker_percent() const noexcept {
   return flicker_count_ == 0 ? 0.0 : 100.0 * std::sqrt(flicker_squares_ / flicker_count_);
 }
 
+/// The reference without the tiles that are clipped in places: there the mean changes with the focus, as light that was
+/// cut off in focus is spread over pixels that show it.
+std::vector<double> SliceJudge::unclipped_light(const SliceFigures& figures) {
+  std::vector<double> light = light_;
+  clipped_.resize(light.size());
+  for (std::size_t tile = 0; tile < light.size(); ++tile) {
+    const std::uint16_t* const samples = figures.tile_samples(static_cast<int>(tile));
+    const auto full = std::count(samples, samples + figures.samples_per_tile, figures.full_scale);
+    if (static_cast<double>(full) > kMostClipped * figures.samples_per_tile) clipped_[tile] = true;
+    if (clipped_[tile]) light[tile] = figures.full_scale;
+  }
+  return light;
+}
+
 double SliceJudge::accept(SliceFigures figures, int index) {
   double gain = 1.0;
   if (light_.empty()) {
     light_ = figures.means;
+    (void)unclipped_light(figures);
     note_flicker(1.0);
   } else {
-    const double ratio = brightness_ratio(figures, light_);
+    const double unclipped = brightness_ratio(figures, unclipped_light(figures));
+    const double ratio = unclipped > 0.0 ? unclipped : brightness_ratio(figures, light_);
     if (ratio > 0.0) {
       note_flicker(ratio);
       level_ += kFollow * (ratio - level_);
-      gain = 1.0 / ratio;
       for (std::size_t tile = 0; tile < light_.size(); ++tile) {
-        light_[tile] += kFollow * (gain * figures.means[tile] - light_[tile]);
+        light_[tile] += kFollow * (figures.means[tile] / ratio - light_[tile]);
       }
-      if (std::abs(ratio - 1.0) < kLeastFlicker) gain = 1.0;
+      if (unclipped > 0.0 && std::abs(ratio - 1.0) >= kLeastFlicker) gain = 1.0 / ratio;
     }
   }
   before_last_ = last_believed_index_ == index - 1 ? std::exchange(last_believed_, std::nullopt) : std::nullopt;

@@ -55,6 +55,7 @@ class SliceJudge {
   void doubt_motion(Waiting& oldest, const Neighbours& next);
   void note_noise(const SliceFigures& figures);
   [[nodiscard]] double accept(SliceFigures figures, int index);
+  [[nodiscard]] std::vector<double> unclipped_light(const SliceFigures& figures);
   void note_flicker(double ratio);
 
   std::deque<Waiting> waiting_;
@@ -65,6 +66,7 @@ class SliceJudge {
   LivingRows rows_;
   std::vector<double> light_;                 // of the tiles, in the light of the first slice; grey levels
   std::vector<double> least_, second_least_;  // squared second difference of each tile
+  std::vector<bool> clipped_;                 // tiles in which a slice had more than a few pixels at full scale
   double level_ = 1.0;                        // of the light, over that of the first slice; follows a lamp that drifts
   std::vector<double> ratios_;                // the last three
   double flicker_squares_ = 0.0;

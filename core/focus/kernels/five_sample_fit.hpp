@@ -20,6 +20,10 @@ inline constexpr float kFloorShare = 0.9F;  ///< share of the curve's minimum th
 /// The lower neighbour has at least this share of what both must have: where a vertex lies midway between two samples,
 /// 1 / (1 + b u^2)^2 leaves 0.3 of 2 / (1 + b)^2 to the third, nearly whatever b; a curve near the limit has more.
 inline constexpr float kLowerNeighbour = 0.37F;
+/// Beside a missing slice a neighbour lies as far out as the sample two away on the other side: the shoulder is asked
+/// for this share of what it must be, where the sum of both neighbours' u is larger than kUneven.
+inline constexpr float kUnevenShoulder = 0.4F;
+inline constexpr float kUneven = 0.3F;
 inline constexpr float kSmallestShare = 1e-3F;  ///< share of the peak that a sample at or below the floor counts as
 inline constexpr float kShapeError = 0.028F;    ///< standard deviation over b / (1 + 0.9 b), in sample distances
 inline constexpr float kBinnedShapeError = 0.0175F;  ///< the same where samples are bins

@@ -21,11 +21,12 @@ namespace fvd {
 ///
 /// Level of a sample: 0 nothing, 1 .. 62 that many 62nds of the window's area, rounded up, 63 more than the settings
 /// allow. In the state, the last sample's level shares a byte with what is known of the peak. A surface's clipped share
-/// is least where it is in focus, or nearly so: where it grows by more than one level beside the peak, or grows on one
-/// side and falls on the other, the peak is the rim of a blurred glint.
+/// is least where it is in focus, or nearly so: where it grows by more than three levels beside the peak, or grows on
+/// one side and falls on the other, the peak is the rim of a blurred glint.
 namespace clipping {
 inline constexpr std::uint8_t kMostLevel = 62;
 inline constexpr std::uint8_t kTooMuch = 63;
+inline constexpr std::uint8_t kMostGrowth = 3;  ///< levels from the peak to the sample beside it
 inline constexpr std::uint8_t kManyLevel = 22;  ///< from here on the height is less certain by a fifth
 inline constexpr std::uint8_t kLevelBits = 63;
 inline constexpr std::uint8_t kPeakBits = 0xC0;

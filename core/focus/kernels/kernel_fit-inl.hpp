@@ -165,9 +165,11 @@ inline void find_shares(int count, const FitParameters& parameters, FitPixels& a
     const float lower = left < right ? left : right;
     // Without one of the samples two away the other stands for both.
     const float far = (at.u.left2[x] != 0.0F ? left2 : right2) + (at.u.right2[x] != 0.0F ? right2 : left2);
+    const float sum = at.u.left[x] + at.u.right[x];
+    const float least = sum * sum > kUneven * kUneven ? kUnevenShoulder * least_shoulder : least_shoulder;
     at.narrow[x] = static_cast<std::int32_t>(near < at.least_neighbours[x]) |
                    static_cast<std::int32_t>(lower < kLowerNeighbour * at.least_neighbours[x]) |
-                   (static_cast<std::int32_t>(near - far < least_shoulder * (2.0F - near)) &
+                   (static_cast<std::int32_t>(near - far < least * (2.0F - near)) &
                     static_cast<std::int32_t>(near < most_neighbours));
   }
 }

@@ -71,12 +71,12 @@ inline __attribute__((always_inline)) void take_levels(const Flags& levels, cons
   // This sample is the peak.
   Flags fresh = before < levels ? none + clipping::kRose : none;
   fresh = before > levels ? none + clipping::kFell : fresh;
-  fresh = before > levels + 1 ? lost : fresh;
+  fresh = before > levels + clipping::kMostGrowth ? lost : fresh;
   fresh = levels == none + clipping::kTooMuch ? lost : fresh;
   // The sample before is.
   Flags settled = before > none ? none + clipping::kSome : none;
   settled = before >= none + clipping::kManyLevel ? none + clipping::kMany : settled;
-  const FlagMask grows = (levels > before + 1) | (known == lost) |
+  const FlagMask grows = (levels > before + clipping::kMostGrowth) | (known == lost) |
                          ((levels > before) & (known == none + clipping::kRose)) |
                          ((levels < before) & (known == none + clipping::kFell));
   settled = grows ? lost : settled;

@@ -24,7 +24,7 @@ constexpr double kStep_um = 10.0;
 using Level = std::function<double(int x, int y, int k, double grain)>;
 
 HeightMap map_of(const Level& level, const FocusSettings& settings = {}, PeakMethod method = PeakMethod::kFiveSample,
-                 int threads = 1) {
+                 int threads = 1, int missing = -1) {
   std::mt19937 random(21);
   std::normal_distribution<double> normal;
   std::vector<double> grain(static_cast<std::size_t>(kSide) * kSide);
@@ -32,6 +32,7 @@ HeightMap map_of(const Level& level, const FocusSettings& settings = {}, PeakMet
   WorkerPool pool(threads);
   StreamingFocusStack stack(kSide, kSide, PixelFormat::kMono8, settings, pool);
   for (int k = 0; k < kSlices; ++k) {
+    if (k == missing) continue;
     Plane<std::uint8_t> slice(kSide, kSide);
     for (int y = 0; y < kSide; ++y) {
       for (int x = 0; x < kSide; ++x) {
@@ -134,6 +135,15 @@ TEST(PointTests, AScanInStepsOfAWholeWidthKeepsItsPoints) {
   const HeightMap map =
       map_of([](int x, int, int k, double grain) { return 100.0 + 25.0 * grain * contrast(tilted_slices(x, k), 1.0); });
   EXPECT_GE(share_kept(map, 0, kSide), 0.995);
+}
+
+TEST(PointTests, PointsBesideAMissingSliceAreKept) {
+  const Level level = [](int x, int, int k, double grain) {
+    return 100.0 + 25.0 * grain * contrast(tilted_slices(x, k), 3.0);
+  };
+  for (const PeakMethod method : {PeakMethod::kFiveSample, PeakMethod::kParabola}) {
+    EXPECT_GE(share_kept(map_of(level, {}, method, 1, 10), 0, kSide), 0.98);
+  }
 }
 
 TEST(PointTests, ACurveFarBroaderThanTheScansIsABlurFromElsewhere) {

@@ -257,6 +257,21 @@ TEST(SliceGate, TellsTheGainOfFlickeringLight) {
   }
 }
 
+TEST(SliceGate, TakesLightThatIsSpreadFromClippedPixelsForNoFlicker) {
+  Scene scene({});
+  for (std::size_t k = 0; k < scene.slices.size(); ++k) {
+    // A glint in each of the places, clipped in focus; its halo grows by a pixel a slice on either side of slice 10.
+    const int reach = 2 + std::abs(static_cast<int>(k) - 10);
+    change(scene.slices[k], [&](double level, int x, int y) {
+      const int away = std::max(std::abs(x % 24 - 12), std::abs(y % 24 - 12));
+      return away <= 1 ? 400.0 : away <= reach ? level + 40.0 : level;
+    });
+  }
+  const Judged judged = judge_scene(scene);
+  EXPECT_THAT(judged.suspects, IsEmpty());
+  for (const double gain : judged.gains) EXPECT_EQ(gain, 1.0);
+}
+
 TEST(SliceGate, RefusesOneSuspectMoreThanIsAllowedAndNamesIt) {
   Scene scene({});
   for (const std::size_t at : {std::size_t{5}, std::size_t{9}}) {

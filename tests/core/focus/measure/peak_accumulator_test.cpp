@@ -65,7 +65,7 @@ TYPED_TEST(APeakAccumulator, KeepsWhatTheWholeCurveSays) {
         const int before = level(peak - 1) - level(peak);
         const int after = level(peak + 1) - level(peak);
         int known = level(peak) == 0 ? 0 : level(peak) < 22 ? clipping::kSome : clipping::kMany;
-        if (before > 1 || after > 1 || before * after < 0 || level(peak) == 63) known = clipping::kNoPeak;
+        if (before > 3 || after > 3 || before * after < 0 || level(peak) == 63) known = clipping::kNoPeak;
         ASSERT_EQ(row.curve.clipped[x] & clipping::kPeakBits, known)
             << "level " << level(peak) << ", beside it " << before << " and " << after << " more";
       }
