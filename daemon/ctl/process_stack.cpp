@@ -191,7 +191,7 @@ class Pass {
 
 /// Whether a pass without bins told a width that wants them.
 bool wants_bins(const Recipe& recipe, const HeightMap& map) {
-  return learns_bins(recipe) && !recipe.learnt_width && choose_bin_slices(recipe.step_um, map.curve_width_um) > 1;
+  return learns_bins(recipe) && !recipe.learnt_width && choose_bin_slices(recipe.step_um, map.curve_width_um, recipe.slices) > 1;
 }
 
 /// From the slices to the maps; twice where the first pass finds the steps so fine that bins are better. The memory of
@@ -203,6 +203,7 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
   Recipe recipe = options.recipe;
+  recipe.slices = static_cast<int>(z_um.size());
   if (!options.recipe_plans_scan) recipe.step_um = median_step_um(z_um);
   const std::vector<Warning> warnings = data.warnings;
   auto pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, pool);

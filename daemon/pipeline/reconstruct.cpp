@@ -35,7 +35,7 @@ void note_light(const std::vector<SuspectSlice>& left_out, double flicker_percen
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
   data.state_bytes_per_pixel = stack.state_bytes_per_pixel();
   data.map = stack.finish(recipe.peak);
-  const int wanted = choose_bin_slices(recipe.step_um, data.map.curve_width_um);
+  const int wanted = choose_bin_slices(recipe.step_um, data.map.curve_width_um, recipe.slices);
   if (data.bins_by != BinChoice::kUnknownWidth || wanted == data.focus.bin_slices) return;
   std::ostringstream text;
   text.precision(3);

@@ -93,7 +93,7 @@ TEST_F(AMicroscope, BinsTheSecondScanOfAFineStepByTheWidthThatTheFirstTold) {
   std::vector<std::string> second_warnings;
   const json second = focus_of(2, second_warnings);
   EXPECT_EQ(second["bins_by"], "earlier_scans");
-  EXPECT_EQ(second["bin_slices"], choose_bin_slices(4.0, first["curve_width_um"].get<double>()));
+  EXPECT_EQ(second["bin_slices"], choose_bin_slices(4.0, first["curve_width_um"].get<double>(), 30));
   EXPECT_GT(second["bin_slices"], 1);
   EXPECT_EQ(std::count(second_warnings.begin(), second_warnings.end(), "bins_unknown"), 0);
 }

@@ -99,29 +99,14 @@ double window_area_px2(const FocusSettings& settings) noexcept {
   return along * along;
 }
 
-int choose_bin_slices(double step_um, double curve_width_um) noexcept {
+int choose_bin_slices(double step_um, double curve_width_um, int slices) noexcept {
   constexpr double kSampleDistance = 0.35;
+  constexpr int kLeastSamples = 8;
   if (!(curve_width_um > 0.0) || !(std::abs(step_um) > 0.0)) return 1;
-  const double slices = std::floor(kSampleDistance * curve_width_um / std::abs(step_um) + 0.3);
-  return static_cast<int>(std::clamp(slices, 1.0, static_cast<double>(kMaxBinSlices)));
+  const double wanted = std::floor(kSampleDistance * curve_width_um / std::abs(step_um) + 0.3);
+  const int most = std::clamp(slices / kLeastSamples, 1, kMaxBinSlices);
+  return static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most)));
 }
-
-namespace {
-
-void check_point_tests(const PointTests& tests) {
-  const auto check = [](const char* name, double value, double most) {
-    if (value >= 0.0 && value <= most) return;
-    throw Error(ErrorCode::kBadInput, std::string(name) + " of " + std::to_string(value) + ": must be within 0.." +
-                                          std::to_string(static_cast<int>(most)) + ", 0 for none");
-  };
-  check("limit of the broad curve", tests.broad_curve, 1.0);
-  check("limit of the narrow curve", tests.narrow_curve, 1.0);
-  check("clipped share of a window", tests.clipped_share, 1.0);
-  check("jump beside which a strip is dropped, in slices,", tests.edge_band_slices, kMaxEdgeBandSlices);
-  check("largest sigma in um", tests.max_sigma_um, kMaxSigmaLimit_um);
-}
-
-}  // namespace
 
 void check_focus_settings(const FocusSettings& settings) {
   const bool point = settings.focus_operator == FocusOperator::kIntensity && settings.window_px == 1;

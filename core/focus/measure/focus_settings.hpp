@@ -53,6 +53,7 @@ inline constexpr int kMaxWindowPx = 63;
 inline constexpr int kMaxDistancePx = 7;
 
 inline constexpr int kMaxBinSlices = 64;
+inline constexpr int kMaxSlicesOfAScan = 65535;
 inline constexpr int kMaxEdgeBandSlices = 65535;
 inline constexpr double kMaxSigmaLimit_um = 1e6;
 
@@ -102,8 +103,9 @@ struct WindowSides {
 
 /// The number of slices per bin with which samples lie about 0.35 of the curve's full width at half maximum apart.
 /// There the peak is located best: closer samples differ by more noise than signal. 1 if the width is unknown (0).
+/// A short scan has fewer slices in a bin: eight samples at the least, or the peaks near its ends are lost.
 /// context: pure.
-[[nodiscard]] int choose_bin_slices(double step_um, double curve_width_um) noexcept;
+[[nodiscard]] int choose_bin_slices(double step_um, double curve_width_um, int slices = kMaxSlicesOfAScan) noexcept;
 
 /// Throws Error kBadInput with the value and its range.
 void check_focus_settings(const FocusSettings& settings);

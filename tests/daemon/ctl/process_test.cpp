@@ -90,9 +90,18 @@ TEST(Process, ChoosesItsBinsByTheWidthThatAFirstPassTells) {
   EXPECT_EQ(without["bins_by"], "recipe");
   const auto itself = focus_of("itself", {});
   EXPECT_EQ(itself["bins_by"], "slices");
-  EXPECT_EQ(itself["bin_slices"], choose_bin_slices(10.0, without["curve_width_um"].get<double>()));
+  EXPECT_EQ(itself["bin_slices"], choose_bin_slices(10.0, without["curve_width_um"].get<double>(), 31));
   ASSERT_GT(itself["bin_slices"], 1);
   EXPECT_EQ(read_float(scratch / "itself/height.tiff").rows, 30);
+}
+
+TEST(Process, BinsNoStackThatIsTooShort) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 14, 7.0);
+  ASSERT_EQ(process({scratch / "in", "--z-step-um", "10", "--out", scratch / "out"}).code, kExitOk);
+  const auto focus = nlohmann::json::parse(test::read_text(scratch / "out/result.json"))["focus"];
+  EXPECT_GT(choose_bin_slices(10.0, focus["curve_width_um"].get<double>()), 1);
+  EXPECT_EQ(focus["bin_slices"], 1);
 }
 
 TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
