@@ -15,11 +15,13 @@ constexpr std::chrono::seconds kLongestBatch{60};
 
 }  // namespace
 
-FocusWorker::FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, int allowed_lost_slices, Tap tap)
+FocusWorker::FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, int allowed_lost_slices, Tap tap,
+                         DriftPath drift)
     : stack_(stack),
       queue_(queue_slices),
       tap_(std::move(tap)),
       gate_(allowed_lost_slices),
+      undo_(std::move(drift)),
       thread_(start_thread(
           "fvd-focus", [this](std::stop_token stop) { run(stop); },
           [this](std::string_view /*name*/, const std::exception_ptr& failure) {
@@ -79,8 +81,10 @@ void FocusWorker::consume() {
   std::vector<ZSlice> slices;
   slices.reserve(believed_.size());
   for (const Believed& believed : believed_) {
+    drift_.add(slice_patches(believed.slice.frame.image), believed.slice.z_um);
     slices.push_back({believed.slice.frame.image, believed.slice.z_um, nullptr, believed.gain});
   }
+  undo_.apply(slices);
   stack_.push(slices);
   believed_.clear();
 }

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/focus/drift_undo.hpp"
 #include "core/focus/judge/slice_gate.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/bounded_queue.hpp"
@@ -27,8 +28,10 @@ class FocusWorker final : public SliceSink {
   static constexpr int kHeldBack = SliceGate<Slice>::kHeldBack;
 
   /// queue_slices: how many slices the computation may fall behind, >= 1. allowed_lost_slices: so many that must not be
-  /// believed are left out, one more is an error. The stack outlives the worker.
-  FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, int allowed_lost_slices, Tap tap = {});
+  /// believed are left out, one more is an error. drift: undone before slices are computed. The stack outlives the
+  /// worker.
+  FocusWorker(StreamingFocusStack& stack, std::size_t queue_slices, int allowed_lost_slices, Tap tap = {},
+              DriftPath drift = {});
   /// Drops the slices that are still queued.
   ~FocusWorker() override = default;
 
@@ -42,6 +45,10 @@ class FocusWorker final : public SliceSink {
   [[nodiscard]] const std::vector<SuspectSlice>& suspects() const noexcept { return gate_.suspects(); }
   /// After finish(): see SliceJudge.
   [[nodiscard]] double flicker_percent() const noexcept { return gate_.flicker_percent(); }
+  /// After finish(): of the slices as they came, see DriftMeter.
+  [[nodiscard]] const DriftMeter& drift() const noexcept { return drift_; }
+  /// After finish(): what not every slice shows.
+  [[nodiscard]] const HiddenBorder& hidden_border() const noexcept { return undo_.border(); }
 
  private:
   struct Believed {
@@ -56,6 +63,8 @@ class FocusWorker final : public SliceSink {
   BoundedQueue<Slice> queue_;
   Tap tap_;
   SliceGate<Slice> gate_;
+  DriftMeter drift_;
+  DriftUndo undo_;
   std::vector<Believed> believed_;  // not yet computed; at most a batch
   std::exception_ptr failure_;      // written by the worker before it ends, read after join
   std::jthread thread_;             // last: everything above outlives it

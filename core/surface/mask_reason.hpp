@@ -25,6 +25,7 @@ inline constexpr MaskReasons kNarrowCurve = 1U << 8U;  ///< far narrower: a pixe
 inline constexpr MaskReasons kSecondPeak = 1U << 9U;   ///< the curve has another peak of nearly the same height
 inline constexpr MaskReasons kEdgeBand = 1U << 10U;    ///< beside a wall, whose sharpness reaches across it
 inline constexpr MaskReasons kMaxSigma = 1U << 11U;    ///< the standard error is larger than the recipe allows
+inline constexpr MaskReasons kOutOfView = 1U << 14U;   ///< at the border, where drift was undone: not in every slice
 }  // namespace mask_reason
 
 }  // namespace fvd

@@ -54,6 +54,7 @@ void count_reasons(MaskReasons reasons, std::size_t points, HoleCounts& holes) {
   if ((reasons & mask_reason::kSecondPeak) != 0) holes.second_peak += points;
   if ((reasons & mask_reason::kEdgeBand) != 0) holes.edge_band += points;
   if ((reasons & mask_reason::kMaxSigma) != 0) holes.max_sigma += points;
+  if ((reasons & mask_reason::kOutOfView) != 0) holes.out_of_view += points;
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct HoleCounts {
   std::size_t second_peak = 0;
   std::size_t edge_band = 0;
   std::size_t max_sigma = 0;
+  std::size_t out_of_view = 0;
   bool operator==(const HoleCounts&) const = default;
 };
 

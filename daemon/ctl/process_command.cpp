@@ -90,6 +90,7 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   overrides.set("--clipped-share", arguments.clipped_share, recipe.focus.tests.clipped_share);
   overrides.set("--edge-band", arguments.edge_band_slices, recipe.focus.tests.edge_band_slices);
   overrides.set("--max-sigma", arguments.max_sigma_um, recipe.focus.tests.max_sigma_um);
+  if (arguments.drift) overrides.note("--drift");
   overrides.set("--bin", arguments.bin_slices, recipe.bin_slices);
   overrides.set("--peak", named<PeakMethod>(arguments.peak, peak_method_from_name), recipe.peak);
   overrides.set("--pixel-pitch-um", arguments.pixel_pitch_um, recipe.pixel_pitch_x_um);
@@ -131,6 +132,7 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   }
   if (options.recipe_plans_scan) options.allowed_lost_slices = options.recipe.allowed_lost_slices;
   if (arguments.allowed_lost_slices) options.allowed_lost_slices = *arguments.allowed_lost_slices;
+  if (arguments.drift) options.undo_drift = *arguments.drift == "auto";
   options.knows_pixel_pitch = arguments.pixel_pitch_um || !arguments.recipe.empty();
   options.threads = arguments.threads;
   return options;
@@ -250,6 +252,12 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                   "so many slices that must not be believed are left out, one more is an error; default: the recipe's, "
                   "else 2")
       ->check(CLI::Range(0, 65532));
+  command
+      .add_option(
+          "--drift", a.drift,
+          "lateral drift of the slices: auto = measured in a first pass and undone by whole pixels, off = left as "
+          "it is; default: the recipe's, else off")
+      ->check(CLI::IsMember({"auto", "off"}));
   command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");
   command.add_option("--part", a.part_id, "part id to write into the result; default: the name of the source");
   command.add_option("--threads", a.threads, "threads that compute, 0 = one per core")

@@ -53,6 +53,7 @@ struct ProcessArguments {
   std::vector<std::string> extra_peaks;
   std::optional<double> pixel_pitch_um;
   std::optional<int> allowed_lost_slices;
+  std::optional<std::string> drift;  ///< "auto" or "off"; absent = as the recipe says
   int threads = 0;
 };
 

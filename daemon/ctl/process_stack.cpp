@@ -89,8 +89,10 @@ void describe(ResultData& data, const ProcessOptions& options, const RecordedSta
 /// Reads a batch of slices at a time and hands on those that are believed.
 class SliceFeed {
  public:
-  SliceFeed(StreamingFocusStack& focus, WorkerPool& pool, const RecordedStack& stack, int allowed_lost_slices)
-      : focus_(focus), pool_(pool), stack_(stack), gate_(allowed_lost_slices) {}
+  /// focus: null to measure the drift alone.
+  SliceFeed(StreamingFocusStack* focus, WorkerPool& pool, const RecordedStack& stack, int allowed_lost_slices,
+            DriftPath drift)
+      : focus_(focus), pool_(pool), stack_(stack), gate_(allowed_lost_slices), undo_(std::move(drift)) {}
 
   void run(const std::vector<double>& z_um, ResultData& data, const std::function<void(int, int)>& on_slice) {
     for (int first = 0; first < stack_.slices(); first += StreamingFocusStack::kMaxBatch) {
@@ -102,8 +104,8 @@ class SliceFeed {
         ++data.frames.expected;
         ++data.frames.ok;
         const auto place = static_cast<std::size_t>(index - first);
-        const ImageView view = images_[place].view();
-        gate_.push(std::move(images_[place]), view, std::move(figures_[place]), index, z, pass_);
+        const ImageView view = read_[place].image.view();
+        gate_.push(std::move(read_[place]), view, std::move(figures_[place]), index, z, pass_);
       }
       compute();
       if (on_slice) on_slice(end, stack_.slices());
@@ -111,51 +113,65 @@ class SliceFeed {
     gate_.finish(pass_);
     compute();
     note_light(gate_.suspects(), gate_.flicker_percent(), data);
+    note_drift(drift_, undo_.border(), data);
   }
+  [[nodiscard]] DriftPath drift() const { return drift_.path(); }
 
  private:
-  struct Believed {
+  struct ReadSlice {
     SliceImage image;
+    SlicePatches patches;
+  };
+  struct Believed {
+    ReadSlice read;
     double z_um;
     double gain;
   };
 
-  /// Into images_ and figures_; decoding takes as long as computing.
+  /// Into read_ and figures_; decoding takes as long as computing.
   void read(int first, int end) {
-    images_.resize(static_cast<std::size_t>(end - first));
-    figures_.resize(images_.size());
-    for (SliceImage& image : images_) {
+    read_.resize(static_cast<std::size_t>(end - first));
+    figures_.resize(read_.size());
+    for (ReadSlice& slice : read_) {
       if (spare_.empty()) break;
-      image = std::move(spare_.back());
+      slice.image = std::move(spare_.back());
       spare_.pop_back();
     }
     const auto body = [&](int i) {
       const auto place = static_cast<std::size_t>(i);
-      stack_.read(first + i, images_[place]);
-      figures_[place] = slice_figures(images_[place].view());
+      stack_.read(first + i, read_[place].image);
+      const ImageView view = read_[place].image.view();
+      figures_[place] = slice_figures(view);
+      read_[place].patches = slice_patches(view);
     };
     pool_.run(end - first, std::ref(body));
   }
 
   void compute() {
     batch_.clear();
-    for (const Believed& slice : believed_) {
-      const SliceImage& image = slice.image;
+    for (Believed& slice : believed_) {
+      const SliceImage& image = slice.read.image;
+      drift_.add(std::move(slice.read.patches), slice.z_um);
       batch_.push_back({image.view(), slice.z_um, image.colour.empty() ? nullptr : image.colour.data(), slice.gain});
     }
-    focus_.push(batch_);
-    for (Believed& slice : believed_) spare_.push_back(std::move(slice.image));
+    if (focus_ != nullptr) {
+      undo_.apply(batch_);
+      focus_->push(batch_);
+    }
+    for (Believed& slice : believed_) spare_.push_back(std::move(slice.read.image));
     believed_.clear();
   }
 
-  StreamingFocusStack& focus_;
+  StreamingFocusStack* focus_;
   WorkerPool& pool_;
   const RecordedStack& stack_;
-  SliceGate<SliceImage> gate_;
-  SliceGate<SliceImage>::Pass pass_ = [this](SliceImage&& image, double z_um, double gain) {
-    believed_.push_back({std::move(image), z_um, gain});
+  SliceGate<ReadSlice> gate_;
+  SliceGate<ReadSlice>::Pass pass_ = [this](ReadSlice&& slice, double z_um, double gain) {
+    believed_.push_back({std::move(slice), z_um, gain});
   };
-  std::vector<SliceImage> images_;
+  DriftMeter drift_;
+  DriftUndo undo_;
+  std::vector<ReadSlice> read_;
   std::vector<SliceFigures> figures_;
   std::vector<Believed> believed_;
   std::vector<SliceImage> spare_;  // whose memory is used again
@@ -165,16 +181,17 @@ class SliceFeed {
 /// One pass over the slices, to their map.
 class Pass {
  public:
-  Pass(const Recipe& recipe, const RecordedStack& stack, int allowed_lost_slices, WorkerPool& pool)
+  Pass(const Recipe& recipe, const RecordedStack& stack, int allowed_lost_slices, DriftPath drift, WorkerPool& pool)
       : recipe_(recipe),
         allowed_lost_slices_(allowed_lost_slices),
+        drift_(std::move(drift)),
         pool_(pool),
         focus_(stack.width(), stack.height(), stack.format(), focus_settings(recipe), pool, stack.colour()) {}
 
   void run(const RecordedStack& stack, const std::vector<double>& z_um, ResultData& data,
            const std::function<void(int, int)>& on_slice) {
     const auto scan_start = SteadyClock::now();
-    SliceFeed(focus_, pool_, stack, allowed_lost_slices_).run(z_um, data, on_slice);
+    SliceFeed(&focus_, pool_, stack, allowed_lost_slices_, drift_).run(z_um, data, on_slice);
     data.times.scan_ms += milliseconds_since(scan_start);
     const auto finish_start = SteadyClock::now();
     reconstruct(focus_, recipe_, data);
@@ -185,6 +202,7 @@ class Pass {
  private:
   const Recipe& recipe_;
   int allowed_lost_slices_;
+  DriftPath drift_;
   WorkerPool& pool_;
   StreamingFocusStack focus_;
 };
@@ -192,6 +210,23 @@ class Pass {
 /// Whether a pass without bins told a width that wants them.
 bool wants_bins(const Recipe& recipe, const HeightMap& map) {
   return learns_bins(recipe) && !recipe.learnt_width && choose_bin_slices(recipe.step_um, map.curve_width_um, recipe.slices) > 1;
+}
+
+/// What is to be undone, after a pass over the slices where they have to show it.
+DriftPath drift_of(const ProcessOptions& options, const RecordedStack& stack, const std::vector<double>& z_um,
+                   WorkerPool& pool, ResultData& data) {
+  if (!options.undo_drift) return recipe_drift(options.recipe, z_um[z_um.size() / 2]);
+  data.drift_undone = DriftUndone::kNothing;
+  data.drift_undone_x_px_per_um = data.drift_undone_y_px_per_um = 0.0;
+  if (!*options.undo_drift) return {};
+  const auto start = SteadyClock::now();
+  SliceFeed look(nullptr, pool, stack, options.allowed_lost_slices, {});
+  ResultData books;
+  look.run(z_um, books, {});
+  DriftPath path = look.drift();
+  if (!path.empty()) data.drift_undone = DriftUndone::kSlices;
+  data.times.scan_ms += milliseconds_since(start);
+  return path;
 }
 
 /// From the slices to the maps; twice where the first pass finds the steps so fine that bins are better. The memory of
@@ -206,8 +241,9 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
   recipe.slices = static_cast<int>(z_um.size());
   if (!options.recipe_plans_scan) recipe.step_um = median_step_um(z_um);
   const std::vector<Warning> warnings = data.warnings;
-  auto pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, pool);
   data.times.prepare_ms = milliseconds_since(start);
+  const DriftPath drift = drift_of(options, stack, z_um, pool, data);
+  auto pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, drift, pool);
   pass->run(stack, z_um, data, on_slice);
   if (wants_bins(recipe, data.map)) {
     recipe.learnt_width = LearntWidth{.width_um = data.map.curve_width_um};
@@ -219,7 +255,7 @@ void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyCl
     data.focus = focus_settings(recipe);
     data.bins_by = bin_choice(recipe);
     pass.reset();  // its memory first
-    pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, pool);
+    pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, drift, pool);
     pass->run(stack, z_um, data, on_slice);
   }
   pass->further(data);

@@ -26,6 +26,7 @@ struct ProcessOptions {
   bool recipe_plans_scan = false;  ///< the slices should be as many, and as far apart, as the recipe says
   bool knows_pixel_pitch = false;  ///< false: the recipe's is a default, and the files carry pixels
   int threads = 0;                 ///< 0 = one per core
+  std::optional<bool> undo_drift;  ///< true: as the slices show it; false: not at all; absent: as the recipe says
   int allowed_lost_slices = 2;     ///< so many slices that must not be believed are left out
   std::string part_id;             ///< empty = the name of the source
   std::vector<Warning> warnings;   ///< go into the result

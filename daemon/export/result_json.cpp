@@ -69,7 +69,8 @@ Json holes(const HoleCounts& counts) {
           {"saturated", counts.saturated},           {"insignificant", counts.insignificant},
           {"edge_bleeding", counts.edge_bleeding},   {"broad_curve", counts.broad_curve},
           {"narrow_curve", counts.narrow_curve},     {"second_peak", counts.second_peak},
-          {"edge_band", counts.edge_band},           {"max_sigma", counts.max_sigma}};
+          {"edge_band", counts.edge_band},           {"max_sigma", counts.max_sigma},
+          {"out_of_view", counts.out_of_view}};
 }
 
 Json values(const Result& result) {
@@ -141,6 +142,14 @@ Json suspects(const std::vector<SuspectSlice>& slices) {
   return list;
 }
 
+Json drift(const Result::Drift& drift) {
+  return {{"x", rounded(drift.x_px, 3)},
+          {"y", rounded(drift.y_px, 3)},
+          {"x_per_um", rounded(drift.x_px_per_um, 6)},
+          {"y_per_um", rounded(drift.y_px_per_um, 6)},
+          {"undone", drift_undone_name(drift.undone)}};
+}
+
 Json slices(const Result::Slices& slices) {
   Json json{{"planned", slices.planned},
             {"measured", slices.measured},
@@ -154,6 +163,8 @@ Json slices(const Result::Slices& slices) {
   json["suspect"] = suspects(slices.suspect);
   json["retaken"] = slices.retaken;
   json["flicker_percent"] = slices.flicker_percent ? rounded(*slices.flicker_percent, 3) : Json(nullptr);
+  json["drift_px"] = slices.drift ? drift(*slices.drift) : Json(nullptr);
+  json["scale_percent"] = slices.scale_percent ? rounded(*slices.scale_percent, 4) : Json(nullptr);
   return json;
 }
 

@@ -131,7 +131,8 @@ HoleCounts holes(const Node& node) {
   const auto later = [&node, &count](const char* key) { return node.has(key) ? count(key) : 0; };
   return {count("low_prominence"), count("first_slice"),   count("last_slice"),    count("not_bracketed"),
           count("saturated"),      count("insignificant"), count("edge_bleeding"), later("broad_curve"),
-          later("narrow_curve"),   later("second_peak"),   later("edge_band"),     later("max_sigma")};
+          later("narrow_curve"),   later("second_peak"),   later("edge_band"),     later("max_sigma"),
+          later("out_of_view")};
 }
 
 /// What a result does not tell was not looked for.
@@ -208,6 +209,13 @@ SuspectSlice suspect_slice(const Node& node) {
   return slice;
 }
 
+std::optional<Result::Drift> drift(const Node& node) {
+  if (node.is_null()) return std::nullopt;
+  return Result::Drift{node.at("x").number(), node.at("y").number(), node.at("x_per_um").number(),
+                       node.at("y_per_um").number(),
+                       node.at("undone").named(drift_undone_from_name, "nothing, recipe or slices")};
+}
+
 Result::Slices slices(const Node& node) {
   Result::Slices slices;
   slices.planned = node.at("planned").integer<int>();
@@ -220,9 +228,11 @@ Result::Slices slices(const Node& node) {
     slices.ramp_frames = node.at("ramp_frames").integer<int>();
   }
   node.at("suspect").elements([&slices](const Node& suspect) { slices.suspect.push_back(suspect_slice(suspect)); });
-  // Results of 0.1.0 had neither.
+  // Results of 0.1.0 had none of these.
   if (node.has("retaken")) slices.retaken = node.at("retaken").integer<int>();
   if (node.has("flicker_percent")) slices.flicker_percent = node.at("flicker_percent").optional_number();
+  if (node.has("drift_px")) slices.drift = drift(node.at("drift_px"));
+  if (node.has("scale_percent")) slices.scale_percent = node.at("scale_percent").optional_number();
   return slices;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
+#include "core/scan/focus_worker.hpp"
 
 namespace fvd {
 
@@ -32,6 +33,11 @@ JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
   if (recipe.smooth_px) needed.maps_bytes += 2 * pixels * sizeof(float);
   needed.frames_bytes =
       pixels * static_cast<std::size_t>(bytes_per_pixel(format)) * static_cast<std::size_t>(recipe.camera.pool_frames);
+  if (recipe.drift_px_per_um_x != 0.0 || recipe.drift_px_per_um_y != 0.0) {
+    // Shifted copies of a batch, and of the frames that were held back.
+    needed.frames_bytes += pixels * static_cast<std::size_t>(bytes_per_pixel(format)) *
+                           static_cast<std::size_t>(StreamingFocusStack::kMaxBatch + FocusWorker::kHeldBack);
+  }
   needed.encoding_bytes = pixels * kEncodingBytesPerPixel;
   return needed;
 }

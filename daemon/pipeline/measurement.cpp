@@ -31,10 +31,10 @@ void copy_books(const ScanReport& report, ResultData& result) {
 
 /// Runs the scan into the stack. What broke the focus thread is the reason to report, not the push it then refused.
 void acquire(const ScanPlan& plan, const CameraSettings& settings, const MeasurementDependencies& deps,
-             const MeasurementObserver& observer, StreamingFocusStack& stack, ResultData& result,
+             const MeasurementObserver& observer, StreamingFocusStack& stack, DriftPath drift, ResultData& result,
              std::stop_token stop) {
   FreeRun free_run(deps.camera, settings);  // ends after the worker, which holds frames
-  FocusWorker worker(stack, deps.queue_slices, plan.allowed_lost_slices, observer.tap);
+  FocusWorker worker(stack, deps.queue_slices, plan.allowed_lost_slices, observer.tap, std::move(drift));
   const ScanDependencies scan{deps.camera, deps.stage, deps.clock, worker};
   ScanReport report;
   try {
@@ -54,6 +54,7 @@ void acquire(const ScanPlan& plan, const CameraSettings& settings, const Measure
   observer.on_phase("computing");
   worker.finish();
   note_light(worker.suspects(), worker.flicker_percent(), result);
+  note_drift(worker.drift(), worker.hidden_border(), result);
   if (report.lost_slices + static_cast<int>(worker.suspects().size()) > plan.allowed_lost_slices &&
       !worker.suspects().empty()) {
     std::vector<SuspectSlice> left_out = result.suspects;
@@ -108,7 +109,8 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   };
   ScanPlan plan = scan_plan(recipe);
   plan.time_offset = deps.time_offset;
-  acquire(plan, settings, deps, timed, stack, result, stop);
+  const double middle_um = recipe.start_um + recipe.step_um * (recipe.slices / 2);
+  acquire(plan, settings, deps, timed, stack, recipe_drift(recipe, middle_um), result, stop);
   result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
   reconstruct(stack, recipe, result);
   result.times.finish_ms = milliseconds_since(deps.clock, told);

@@ -7,6 +7,16 @@
 
 namespace fvd {
 
+namespace {
+
+HeightMap finish(const StreamingFocusStack& stack, PeakMethod method, const ResultData& data) {
+  HeightMap map = stack.finish(method);
+  hide_border(map, data.hidden_border, data.focus.window_px / 2 + data.focus.distance_px);
+  return map;
+}
+
+}  // namespace
+
 BinChoice bin_choice(const Recipe& recipe) {
   if (!learns_bins(recipe)) return BinChoice::kRecipe;
   if (!recipe.learnt_width) return BinChoice::kUnknownWidth;
@@ -21,6 +31,11 @@ void note_recipe(const Recipe& recipe, ResultData& data) {
   data.peak = recipe.peak;
   data.pixel_pitch_x_um = recipe.pixel_pitch_x_um;
   data.pixel_pitch_y_um = recipe.pixel_pitch_y_um;
+  if (recipe.drift_px_per_um_x != 0.0 || recipe.drift_px_per_um_y != 0.0) {
+    data.drift_undone = DriftUndone::kRecipe;
+    data.drift_undone_x_px_per_um = recipe.drift_px_per_um_x;
+    data.drift_undone_y_px_per_um = recipe.drift_px_per_um_y;
+  }
   data.min_valid_fraction = recipe.min_valid_fraction;
   data.exports = recipe.exports;
 }
@@ -32,9 +47,19 @@ void note_light(const std::vector<SuspectSlice>& left_out, double flicker_percen
   data.flicker_percent = flicker_percent;
 }
 
+void note_drift(const DriftMeter& drift, const HiddenBorder& hidden, ResultData& data) {
+  data.drift = drift.figures();
+  data.hidden_border = hidden;
+}
+
+DriftPath recipe_drift(const Recipe& recipe, double middle_um) {
+  if (recipe.drift_px_per_um_x == 0.0 && recipe.drift_px_per_um_y == 0.0) return {};
+  return {recipe.drift_px_per_um_x, recipe.drift_px_per_um_y, middle_um};
+}
+
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
   data.state_bytes_per_pixel = stack.state_bytes_per_pixel();
-  data.map = stack.finish(recipe.peak);
+  data.map = finish(stack, recipe.peak, data);
   const int wanted = choose_bin_slices(recipe.step_um, data.map.curve_width_um, recipe.slices);
   if (data.bins_by != BinChoice::kUnknownWidth || wanted == data.focus.bin_slices) return;
   std::ostringstream text;
@@ -54,7 +79,7 @@ void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe,
   for (const PeakMethod method : recipe.extra_peaks) {
     const bool done = method == recipe.peak || std::any_of(data.extra_maps.begin(), data.extra_maps.end(),
                                                            [method](const auto& map) { return map.first == method; });
-    if (!done) data.extra_maps.emplace_back(method, stack.finish(method));
+    if (!done) data.extra_maps.emplace_back(method, finish(stack, method, data));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/focus/drift_undo.hpp"
 #include "core/focus/judge/suspect_slice.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
@@ -17,6 +18,12 @@ void note_recipe(const Recipe& recipe, ResultData& data);
 
 /// Notes what the judging of the slices found, in the order of the scan. left_out: added to those of data.
 void note_light(const std::vector<SuspectSlice>& left_out, double flicker_percent, ResultData& data);
+
+/// Notes the drift of the slices as they came, and what undoing it hid.
+void note_drift(const DriftMeter& drift, const HiddenBorder& hidden, ResultData& data);
+
+/// What the recipe undoes; empty where it does not. middle_um: z of the slice that stays where it is.
+[[nodiscard]] DriftPath recipe_drift(const Recipe& recipe, double middle_um);
 
 /// What the bins follow from. context: pure.
 [[nodiscard]] BinChoice bin_choice(const Recipe& recipe);

@@ -37,6 +37,9 @@ struct Recipe {
   int allowed_lost_slices = 0;  ///< 0..slices - 3; more fail the job
 
   CameraSettings camera;
+  double drift_px_per_um_x =
+      0.0;  ///< -10..10, the image moves right by so much per um of z, and each slice is put back
+  double drift_px_per_um_y = 0.0;  ///< and down
   FocusSettings focus;
   double curve_width_um = 0.0;              ///< full width at half maximum of the focus curve, 0 = unknown
   int bin_slices = 0;                       ///< slices summed to one sample of the curve; 0 = by the curve's width

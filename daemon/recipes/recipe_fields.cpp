@@ -79,6 +79,13 @@ void describe_camera(CameraSettings& camera, Fields& fields) {
   fields.number("gain_db", camera.gain_db, {0.0, 100.0}, "Gain");
 }
 
+void describe_drift(Recipe& recipe, Fields& fields) {
+  fields.number(
+      "drift_px_per_um_x", recipe.drift_px_per_um_x, {-10.0, 10.0},
+      "the image moves right by so many pixels while z rises by 1 um; every slice is put back by whole pixels");
+  fields.number("drift_px_per_um_y", recipe.drift_px_per_um_y, {-10.0, 10.0}, "the same downwards");
+}
+
 void describe_focus(Recipe& recipe, Fields& fields) {
   std::vector<std::string> operators;
   for (const FocusOperator op : kAllFocusOperators) operators.emplace_back(focus_operator_name(op));
@@ -145,7 +152,10 @@ void describe_description(Recipe& recipe, Fields& fields) {
 void describe_acquisition(Recipe& recipe, Fields& fields) {
   fields.group("scan", "where the slices lie", [&](Fields& in) { describe_scan(recipe, in); });
   fields.require("scan");
-  fields.group("camera", "settings of the camera", [&](Fields& in) { describe_camera(recipe.camera, in); });
+  fields.group("camera", "settings of the camera", [&](Fields& in) {
+    describe_camera(recipe.camera, in);
+    describe_drift(recipe, in);
+  });
 }
 
 void describe_heights(Recipe& recipe, Fields& fields) {

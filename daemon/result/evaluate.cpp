@@ -1,6 +1,7 @@
 #include "daemon/result/evaluate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -17,6 +18,11 @@ constexpr double kMaxFractionAtEnd = 0.05;
 /// Flicker of the light above which the result warns.
 constexpr double kMaxFlicker_percent = 2.0;
 constexpr int kListedSuspects = 4;
+/// Over the focus curve's width, above which the result warns.
+constexpr double kMaxDrift_px = 1.0;
+constexpr double kMaxScale_percent = 0.2;
+/// So many standard errors a figure lies above its limit before it is said.
+constexpr double kErrors = 2.0;
 
 FurtherHeights further_heights(PeakMethod peak, const HeightMap& map) {
   const auto height = summarize_heights(map.height_m, map.sigma_m, map.mask).height;
@@ -59,6 +65,12 @@ Result::Slices slices_of(const ResultData& data) {
   slices.suspect = data.suspects;
   slices.retaken = static_cast<int>(std::count_if(data.suspects.begin(), data.suspects.end(), was_taken_again));
   slices.flicker_percent = data.flicker_percent;
+  if (!data.drift) return slices;
+  const DriftFigures& drift = *data.drift;
+  slices.drift = Result::Drift{drift.x_px, drift.y_px, drift.x_px_per_um, drift.y_px_per_um, data.drift_undone};
+  if (drift.scale_per_um && data.map.curve_width_um > 0.0) {
+    slices.scale_percent = 100.0 * *drift.scale_per_um * data.map.curve_width_um;
+  }
   return slices;
 }
 
@@ -115,7 +127,42 @@ void warn_of_suspects(const Result::Slices& slices, std::vector<Warning>& warnin
   warnings.push_back({"light_flicker", text.str()});
 }
 
-std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warnings) {
+/// Of what is left after undoing; a figure must exceed its limit by more than its own error can make.
+void warn_of_drift(const ResultData& data, std::vector<Warning>& warnings) {
+  if (!data.drift || data.drift_undone == DriftUndone::kSlices) return;
+  const DriftFigures& drift = *data.drift;
+  const double width_um = data.map.curve_width_um;
+  const double left_px = width_um * std::hypot(drift.x_px_per_um - data.drift_undone_x_px_per_um,
+                                               drift.y_px_per_um - data.drift_undone_y_px_per_um);
+  if (left_px - kErrors * width_um * drift.error_px_per_um > kMaxDrift_px) {
+    std::ostringstream text;
+    text.precision(3);
+    text << "the image drifts by " << left_px << " px over the focus curve's width of " << width_um
+         << " um: heights are less certain, and wrong beside edges and on slopes; measured are " << drift.x_px_per_um
+         << " px/um to the right and " << drift.y_px_per_um
+         << " px/um down: put them into acquire.camera.drift_px_per_um_x and _y, or process recorded slices with "
+            "--drift auto";
+    warnings.push_back({"lateral_drift", text.str()});
+  }
+}
+
+void warn_of_scale(const ResultData& data, std::vector<Warning>& warnings) {
+  if (!data.drift || !data.drift->scale_per_um) return;
+  const double width_um = data.map.curve_width_um;
+  const double scale_percent = 100.0 * width_um * *data.drift->scale_per_um;
+  const double error_percent = 100.0 * width_um * data.drift->scale_error_per_um;
+  if (std::abs(scale_percent) - kErrors * error_percent <= kMaxScale_percent) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "the image " << (scale_percent > 0.0 ? "grows" : "shrinks") << " by " << std::abs(scale_percent)
+       << " % over the focus curve's width of " << width_um
+       << " um, which is not corrected: far from the middle of the image heights are less certain; a telecentric lens "
+          "does not do that";
+  warnings.push_back({"scale_changes", text.str()});
+}
+
+std::vector<Warning> warnings_of(const Result& result, const ResultData& data) {
+  std::vector<Warning> warnings = data.warnings;
   const int missing = result.slices.planned - result.slices.measured;
   if (missing > 0) {
     warnings.push_back({"slices_missing", std::to_string(missing) + " of " + std::to_string(result.slices.planned) +
@@ -126,6 +173,8 @@ std::vector<Warning> warnings_of(const Result& result, std::vector<Warning> warn
                                             " that were planned cover the range: the camera is faster than asked"});
   }
   warn_of_suspects(result.slices, warnings);
+  warn_of_drift(data, warnings);
+  warn_of_scale(data, warnings);
   if (result.valid_points == 0) {
     warnings.push_back(
         {"no_valid_point", "not one point is valid: is the light on, and the surface within the range?"});
@@ -154,27 +203,6 @@ std::optional<Verdict> verdict_of(const std::vector<MeasuredValue>& measurements
 
 }  // namespace
 
-std::string_view bin_choice_name(BinChoice choice) noexcept {
-  switch (choice) {
-    case BinChoice::kRecipe:
-      return "recipe";
-    case BinChoice::kEarlierScans:
-      return "earlier_scans";
-    case BinChoice::kSlices:
-      return "slices";
-    case BinChoice::kUnknownWidth:
-      return "unknown_width";
-  }
-  return "unknown_width";
-}
-
-std::optional<BinChoice> bin_choice_from_name(std::string_view name) noexcept {
-  for (const BinChoice choice : kAllBinChoices) {
-    if (name == bin_choice_name(choice)) return choice;
-  }
-  return std::nullopt;
-}
-
 Result evaluate(const ResultData& data, const HeightSummary& summary) {
   Result result;
   result.job = {data.job_id, data.seq, data.part_id};
@@ -192,7 +220,7 @@ Result evaluate(const ResultData& data, const HeightSummary& summary) {
   result.provenance = {data.software_version, data.simulated, data.created, data.source};
   result.measurements = measurements_of(data, summary);
   result.verdict = verdict_of(result.measurements);
-  result.warnings = warnings_of(result, data.warnings);
+  result.warnings = warnings_of(result, data);
   return result;
 }
 

@@ -67,6 +67,18 @@ inline constexpr std::array kAllBinChoices{BinChoice::kRecipe, BinChoice::kEarli
 [[nodiscard]] std::string_view bin_choice_name(BinChoice choice) noexcept;
 [[nodiscard]] std::optional<BinChoice> bin_choice_from_name(std::string_view name) noexcept;
 
+/// By what the drift of the slices was undone.
+enum class DriftUndone {
+  kNothing,  ///< it was not
+  kRecipe,   ///< by the recipe's pixels per um
+  kSlices,   ///< by what was measured in the slices themselves, in a first pass
+};
+inline constexpr std::array kAllDriftUndone{DriftUndone::kNothing, DriftUndone::kRecipe, DriftUndone::kSlices};
+
+/// "nothing", "recipe", "slices".
+[[nodiscard]] std::string_view drift_undone_name(DriftUndone undone) noexcept;
+[[nodiscard]] std::optional<DriftUndone> drift_undone_from_name(std::string_view name) noexcept;
+
 /// Heights of another peak method.
 struct FurtherHeights {
   PeakMethod peak = PeakMethod::kParabola;
@@ -115,17 +127,28 @@ struct Result {
     std::vector<FurtherHeights> extra_peaks;
     double state_bytes_per_pixel = 0.0;
   };
+  /// Of the slices as they came, in pixels: right and down.
+  struct Drift {
+    double x_px = 0.0;  ///< from the first slice to the last
+    double y_px = 0.0;
+    double x_px_per_um = 0.0;
+    double y_px_per_um = 0.0;
+    DriftUndone undone = DriftUndone::kNothing;
+    bool operator==(const Drift&) const = default;
+  };
   struct Slices {
     int planned = 0;
     int measured = 0;
     std::optional<double> first_um;  ///< commanded z of the first and the last slice that was taken
     std::optional<double> last_um;
     ScanMode mode = ScanMode::kStep;
-    double speed_um_per_s = 0.0;            ///< continuous
-    int ramp_frames = 0;                    ///< continuous
-    std::vector<SuspectSlice> suspect;      ///< frames that must not be believed, and what was done about them
-    int retaken = 0;                        ///< of those: another frame of the same height took their place
-    std::optional<double> flicker_percent;  ///< of the light from slice to slice, corrected; absent in older results
+    double speed_um_per_s = 0.0;               ///< continuous
+    int ramp_frames = 0;                       ///< continuous
+    std::vector<SuspectSlice> suspect;         ///< frames that must not be believed, and what was done about them
+    int retaken = 0;                           ///< of those: another frame of the same height took their place
+    std::optional<double> flicker_percent;     ///< of the light from slice to slice, corrected; absent in older results
+    std::optional<Drift> drift = {};           ///< absent where the slices do not tell
+    std::optional<double> scale_percent = {};  ///< growth of the image over the focus curve's width
     bool operator==(const Slices&) const = default;
   };
   /// What the focus curves say of the stage.

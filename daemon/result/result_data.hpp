@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/focus/drift_undo.hpp"
 #include "core/focus/fit/height_map.hpp"
 #include "core/focus/fit/smooth_heights.hpp"
 #include "core/focus/judge/suspect_slice.hpp"
@@ -56,6 +57,11 @@ struct ResultData {
   StepSummary step_summary;
   std::vector<SuspectSlice> suspects;  ///< in the order of the scan
   double flicker_percent = 0.0;        ///< see SliceJudge
+  std::optional<DriftFigures> drift;   ///< of the slices as they came
+  DriftUndone drift_undone = DriftUndone::kNothing;
+  double drift_undone_x_px_per_um = 0.0;  ///< kRecipe: what was undone
+  double drift_undone_y_px_per_um = 0.0;
+  HiddenBorder hidden_border;  ///< by undoing the drift
   PhaseTimes times;
   std::vector<Warning> warnings;  ///< noted on the way; evaluation adds its own
 };

@@ -5,8 +5,10 @@
 ///
 /// J. Immerkaer, "Fast noise variance estimation", CVIU 64(2), 1996: the mask [1 -2 1; -2 4 -2; 1 -2 1] does not see
 /// smooth images; of white noise it makes sigma = sqrt(pi / 2) / 6 * mean |response|. Here the mean is taken over tiles
-/// of about 128 x 128 pixels, every sixteenth row of each, and each tile keeps its smallest mean of all slices.
+/// of about 128 x 128 pixels, every sixteenth row of each, and each tile keeps its third smallest mean of all slices:
+/// two slices that are darker than the others do not make the noise of all seem small.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -44,6 +46,9 @@ class NoiseProbe {
   void add_tiles(PlaneView<const Pixel> slice, int tile_row) noexcept;
   [[nodiscard]] int tile_left(int column) const noexcept;  // with the neighbours that the mask needs
   [[nodiscard]] int tile_right(int column) const noexcept;
+  [[nodiscard]] int rank() const noexcept;  // of the mean that counts, 0 = the smallest
+  /// Expected value of the mean that counts over that of all.
+  [[nodiscard]] double bias() const noexcept;
   [[nodiscard]] float sigma(int column, int tile_row) const noexcept;
   [[nodiscard]] std::vector<float> sigmas() const;
 
@@ -52,8 +57,9 @@ class NoiseProbe {
   int height_;
   int columns_;  // of tiles
   int rows_;
-  std::vector<double> least_;        // [rows][columns], mean |response|
-  std::vector<std::uint64_t> sums_;  // [rows][columns], of the present slice
+  int slices_ = 0;
+  std::vector<std::array<double, 3>> least_;  // [rows][columns], mean |response|, the three smallest in order
+  std::vector<std::uint64_t> sums_;           // [rows][columns], of the present slice
 };
 
 }  // namespace fvd

@@ -53,7 +53,18 @@ Result full_result() {
   result.focus.extra_peaks = {{PeakMethod::kNearest, 1.0, 2.0, 1.5, 1.25}, {PeakMethod::kParabola, {}, {}, {}, {}}};
   result.focus.state_bytes_per_pixel = 20.5;
   result.frames = {15, 1, 2, 3, 4, 5};
-  result.slices = {21, 20, -7.0, 193.0, ScanMode::kContinuous, 120.5, 8, {}, 1, 2.125};
+  result.slices = {21,
+                   20,
+                   -7.0,
+                   193.0,
+                   ScanMode::kContinuous,
+                   120.5,
+                   8,
+                   {},
+                   1,
+                   2.125,
+                   Result::Drift{8.875, -0.5, 0.044, -0.0025, DriftUndone::kRecipe},
+                   0.125};
   result.slices.suspect = {{3, 30.25, SuspectReason::kDark, 0.125, SuspectDone::kTakenAgain},
                            {17, 170.0, SuspectReason::kVibration, -0.75, SuspectDone::kLeftOut}};
   result.steps = {20, 0.25, 0.5, 0.75, 0.125, 0.375, 12.5, 13.5};

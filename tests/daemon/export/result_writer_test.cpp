@@ -83,7 +83,8 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
                                                    {"narrow_curve", 0},
                                                    {"second_peak", 0},
                                                    {"edge_band", 0},
-                                                   {"max_sigma", 0}}));
+                                                   {"max_sigma", 0},
+                                                   {"out_of_view", 0}}));
   EXPECT_EQ(result["values"]["sigma_median_um"], 0.2);
   EXPECT_EQ(result["stage_in_curves"]["corrected"], false);
   EXPECT_EQ(result["stage_in_curves"]["offsets_rms_um"], 0.0);
@@ -101,7 +102,9 @@ TEST(ResultJson, TellsValuesFramesAndOrigin) {
                                     {"scan_mode", "step"},
                                     {"suspect", json::array()},
                                     {"retaken", 0},
-                                    {"flicker_percent", 0.0}}));
+                                    {"flicker_percent", 0.0},
+                                    {"drift_px", nullptr},
+                                    {"scale_percent", nullptr}}));
   EXPECT_EQ(result["steps"]["error_max_um"], 0.0625);
   EXPECT_EQ(result["times"], json({{"prepare_ms", 100.0}, {"scan_ms", 2000.0}, {"finish_ms", 5.0}, {"write_ms", 0.0}}));
   EXPECT_EQ(result["provenance"], json({{"recipe", "chapter"},

@@ -48,6 +48,43 @@ TEST(Evaluate, WarnsOfSlicesThatMustNotBeBelievedAndOfFlicker) {
   }
 }
 
+/// Over a focus curve of 50 um.
+ResultData drifting(double x_px_per_um, double scale_per_um) {
+  ResultData data = test::sample_result();
+  data.map.curve_width_um = 50.0;
+  data.drift = DriftFigures{4.0, 0.0, x_px_per_um, 0.0, 0.001, scale_per_um, 1e-6};
+  return data;
+}
+
+TEST(Evaluate, WarnsOfDriftAndChangeOfScaleOverTheFocusCurve) {
+  EXPECT_THAT(codes(evaluated(drifting(0.018, 3e-5))),
+              testing::AllOf(testing::Not(testing::Contains("lateral_drift")),
+                             testing::Not(testing::Contains("scale_changes"))));
+  const Result result = evaluated(drifting(-0.024, -5e-5));
+  EXPECT_THAT(codes(result), testing::IsSupersetOf({"lateral_drift", "scale_changes"}));
+  EXPECT_NEAR(result.slices.scale_percent.value(), -0.25, 1e-9);
+  EXPECT_EQ(result.slices.drift->x_px_per_um, -0.024);
+}
+
+TEST(Evaluate, WarnsOfTheDriftThatIsLeftAlone) {
+  ResultData data = drifting(0.1, 0.0);
+  data.drift_undone = DriftUndone::kRecipe;
+  data.drift_undone_x_px_per_um = 0.09;
+  EXPECT_THAT(codes(evaluated(data)), testing::Not(testing::Contains("lateral_drift")));
+  data.drift_undone_x_px_per_um = 0.0;
+  EXPECT_THAT(codes(evaluated(data)), testing::Contains("lateral_drift"));
+  data.drift_undone = DriftUndone::kSlices;
+  EXPECT_THAT(codes(evaluated(data)), testing::Not(testing::Contains("lateral_drift")));
+}
+
+TEST(Evaluate, DoesNotWarnOfADriftThatMayBeNoise) {
+  ResultData data = drifting(0.03, 1e-4);
+  data.drift->error_px_per_um = 0.01;
+  data.drift->scale_error_per_um = 1e-4;
+  EXPECT_THAT(codes(evaluated(data)), testing::AllOf(testing::Not(testing::Contains("lateral_drift")),
+                                                     testing::Not(testing::Contains("scale_changes"))));
+}
+
 TEST(Evaluate, DoesNotJudgeWhereTheRecipeDoesNot) {
   ResultData data = test::sample_result();
   data.min_valid_fraction = 0.0;
