@@ -108,6 +108,23 @@ int choose_bin_slices(double step_um, double curve_width_um, int slices) noexcep
   return static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most)));
 }
 
+namespace {
+
+void check_point_tests(const PointTests& tests) {
+  const auto check = [](const char* name, double value, double most) {
+    if (value >= 0.0 && value <= most) return;
+    throw Error(ErrorCode::kBadInput, std::string(name) + " of " + std::to_string(value) + ": must be within 0.." +
+                                          std::to_string(static_cast<int>(most)) + ", 0 for none");
+  };
+  check("limit of the broad curve", tests.broad_curve, 1.0);
+  check("limit of the narrow curve", tests.narrow_curve, 1.0);
+  check("clipped share of a window", tests.clipped_share, 1.0);
+  check("jump beside which a strip is dropped, in slices,", tests.edge_band_slices, kMaxEdgeBandSlices);
+  check("largest sigma in um", tests.max_sigma_um, kMaxSigmaLimit_um);
+}
+
+}  // namespace
+
 void check_focus_settings(const FocusSettings& settings) {
   const bool point = settings.focus_operator == FocusOperator::kIntensity && settings.window_px == 1;
   if (!point &&
