@@ -70,8 +70,8 @@ class ADriftingStack : public testing::Test {
   static constexpr int kPxPerSlice = 2;
   ADriftingStack() { write_drifting(scratch_ / "in", kPxPerSlice); }
 
-  Json processed(std::vector<std::string> more, const std::string& out) {
-    std::vector<std::string> arguments{"process", scratch_ / "in", "--out", scratch_ / out};
+  Json processed(std::vector<std::string> more, const std::string& out, const std::string& in = "in") {
+    std::vector<std::string> arguments{"process", scratch_ / in, "--out", scratch_ / out};
     arguments.insert(arguments.end(), more.begin(), more.end());
     std::ostringstream text;
     std::ostringstream err;
@@ -80,19 +80,24 @@ class ADriftingStack : public testing::Test {
     return Json::parse(test::read_text(scratch_ / out / "result.json"));
   }
 
-  /// Of the points that are valid, in the frame of the middle slice.
-  [[nodiscard]] double rms_um(const std::string& out) const {
-    const cv::Mat heights = cv::imread((scratch_ / out / "height.tiff").string(), cv::IMREAD_UNCHANGED);
+  /// RMS difference of the heights that are valid in both.
+  [[nodiscard]] double difference_um(const std::string& one, const std::string& other) const {
+    const auto heights = [this](const std::string& out) {
+      return cv::imread((scratch_ / out / "height.tiff").string(), cv::IMREAD_UNCHANGED);
+    };
+    const cv::Mat a = heights(one);
+    const cv::Mat b = heights(other);
     double squares = 0.0;
     int points = 0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        const double height = 1e6 * static_cast<double>(heights.at<float>(y, x));
-        if (std::isnan(height)) continue;
-        squares += std::pow(height - height_um(x), 2);
+        const double difference = 1e6 * static_cast<double>(a.at<float>(y, x) - b.at<float>(y, x));
+        if (std::isnan(difference)) continue;
+        squares += difference * difference;
         ++points;
       }
     }
+    EXPECT_GT(points, kWidth * kHeight / 2);
     return std::sqrt(squares / points);
   }
 
@@ -127,7 +132,10 @@ TEST_F(ADriftingStack, IsPutBackByWhatItsSlicesShow) {
   EXPECT_EQ(result["slices"]["drift_px"]["undone"], "slices");
   EXPECT_NEAR(result["slices"]["drift_px"]["x"].get<double>(), kPxPerSlice * (kSlices - 1), 0.5);
   EXPECT_THAT(codes(result), Not(Contains("lateral_drift")));
-  EXPECT_LT(rms_um("auto"), 0.6 * rms_um("off"));
+  write_drifting(scratch_ / "still", 0);
+  (void)processed({"--z-step-um", "10"}, "still_out", "still");
+  EXPECT_LT(difference_um("auto", "still_out"), 0.02) << "a drift of whole pixels leaves no trace";
+  EXPECT_GT(difference_um("off", "still_out"), 0.1);
   // What left the image on either side, and the reach of window and operator.
   const int hidden = 2 * (kMiddle * kPxPerSlice + 4 + 2) * kHeight;
   EXPECT_EQ(result["values"]["hole_points"]["out_of_view"], hidden);
@@ -144,7 +152,7 @@ TEST_F(ADriftingStack, IsPutBackByTheRecipe) {
   EXPECT_EQ(result["slices"]["drift_px"]["undone"], "recipe");
   EXPECT_NEAR(result["slices"]["drift_px"]["x_per_um"].get<double>(), 0.2, 0.005) << "of the slices as they came";
   EXPECT_THAT(codes(result), Not(Contains("lateral_drift")));
-  EXPECT_NEAR(rms_um("recipe"), rms_um("auto"), 1e-6);
+  EXPECT_LT(difference_um("recipe", "auto"), 1e-6);
   const Json off = processed({"--recipe", scratch_ / "part.json", "--drift", "off"}, "off");
   EXPECT_EQ(off["slices"]["drift_px"]["undone"], "nothing");
   EXPECT_THAT(codes(off), testing::IsSupersetOf({"lateral_drift", "recipe_overridden"}));
