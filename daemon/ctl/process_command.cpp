@@ -181,14 +181,8 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
   out << text.str() << std::flush;
 }
 
-}  // namespace
-
-void add_process_options(CLI::App& command, ProcessArguments& a) {
-  command.add_option("source", a.source, "folder of slices (PNG, TIFF, JPEG, PGM, BMP), or a multi-page TIFF")
-      ->required();
-  command.add_option("--out", a.out, "directory to make for the result; must not exist")->required();
-  command.add_option("--recipe", a.recipe, "file of a recipe: as a live job of it would; the options below change it")
-      ->check(CLI::ExistingFile);
+/// Which files and pages are the slices, and where they are.
+void add_stack_options(CLI::App& command, ProcessArguments& a) {
   command.add_option("--pattern", a.pattern,
                      "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um} or {z_mm} z with sign and "
                      "decimals, * any text; default: by the names themselves");
@@ -213,6 +207,17 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
   command.add_option("--z-unit", a.z_unit, "unit of the z file, default um")
       ->needs(file)
       ->check(CLI::IsMember({"um", "mm", "m"}));
+}
+
+}  // namespace
+
+void add_process_options(CLI::App& command, ProcessArguments& a) {
+  command.add_option("source", a.source, "folder of slices (PNG, TIFF, JPEG, PGM, BMP), or a multi-page TIFF")
+      ->required();
+  command.add_option("--out", a.out, "directory to make for the result; must not exist")->required();
+  command.add_option("--recipe", a.recipe, "file of a recipe: as a live job of it would; the options below change it")
+      ->check(CLI::ExistingFile);
+  add_stack_options(command, a);
   command.add_option("--window", a.window_px,
                      "side of the focus window in pixels, odd, 3..63, default 9; the intensity has none");
   command

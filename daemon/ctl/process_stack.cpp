@@ -209,7 +209,8 @@ class Pass {
 
 /// Whether a pass without bins told a width that wants them.
 bool wants_bins(const Recipe& recipe, const HeightMap& map) {
-  return learns_bins(recipe) && !recipe.learnt_width && choose_bin_slices(recipe.step_um, map.curve_width_um, recipe.slices) > 1;
+  return learns_bins(recipe) && !recipe.learnt_width &&
+         choose_bin_slices(recipe.step_um, map.curve_width_um, recipe.slices) > 1;
 }
 
 /// What is to be undone, after a pass over the slices where they have to show it.

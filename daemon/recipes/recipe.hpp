@@ -66,7 +66,8 @@ struct Recipe {
   FocusSettings settings = recipe.focus;
   const double learnt_um = recipe.learnt_width ? recipe.learnt_width->width_um : 0.0;
   const double width_um = recipe.curve_width_um > 0.0 ? recipe.curve_width_um : learnt_um;
-  settings.bin_slices = recipe.bin_slices > 0 ? recipe.bin_slices : choose_bin_slices(recipe.step_um, width_um, recipe.slices);
+  settings.bin_slices =
+      recipe.bin_slices > 0 ? recipe.bin_slices : choose_bin_slices(recipe.step_um, width_um, recipe.slices);
   if (settings.focus_operator == FocusOperator::kIntensity) settings.window_px = 1;
   return settings;
 }

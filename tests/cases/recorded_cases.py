@@ -45,7 +45,7 @@ RIGHT = {
         "packed_12_bit": GOOD,
     },
     "twelve_bits_in_sixteen": {
-        name: {"exit": 0, "least": {"valid": 0.9}, "most": {"wrong": 0.0001, "over4": 0.03, "region over4": 0.05}}
+        name: {"exit": 0, "least": {"valid": 0.9}, "most": {"wrong": 0.0001, "over4": 0.03, "region valid": 0.1}}
         for name in ("pgm_says_4095", "png_12_of_16")
     },
     "dark_frame_smooth_part": {

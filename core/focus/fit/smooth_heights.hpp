@@ -31,9 +31,9 @@ struct SmoothedHeights {
 };
 
 /// height_m: metres, NaN in holes; sigma_m: of one shape with it, metres. A point in whose neighbourhood a quadratic is
-/// not determined stays as it was measured. Takes about 10 * (6 * sigma_px + 1) rows of double per thread beside the result.
-/// Throws Error kBadInput for a sigma_px or correlated_px outside its range.
-/// context: one thread at a time per pool; spreads its work over the pool.
+/// not determined stays as it was measured. Takes about 10 * (6 * sigma_px + 1) rows of double per thread beside the
+/// result. Throws Error kBadInput for a sigma_px or correlated_px outside its range. context: one thread at a time per
+/// pool; spreads its work over the pool.
 [[nodiscard]] SmoothedHeights smooth_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
                                              const SmoothSettings& settings, WorkerPool& pool);
 
