@@ -137,7 +137,7 @@ GreyMapping GreySurvey::mapping() const {
                          std::to_string(told_bits_) + " significant bits hold");
   }
   if (declared_level_ != 0 && declared_level_ < static_cast<int>(kMost16Bits)) {
-    const int bits = std::bit_width(static_cast<std::uint32_t>(declared_level_));
+    const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(declared_level_)));
     const bool whole = static_cast<std::uint32_t>(declared_level_) == most_of(bits);
     return of_bits(whole ? bits : 16, 0);
   }

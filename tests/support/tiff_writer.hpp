@@ -58,7 +58,8 @@ inline void write_tiff(const std::filesystem::path& file, const std::vector<Tiff
                                                     : SAMPLEFORMAT_UINT);
     if (!page.description.empty()) TIFFSetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, page.description.c_str());
     for (int y = 0; y < page.pixels.rows; ++y) {
-      std::vector<std::uint8_t> row(page.pixels.ptr(y), page.pixels.ptr(y) + page.pixels.cols * page.pixels.elemSize());
+      std::vector<std::uint8_t> row(
+          page.pixels.ptr(y), page.pixels.ptr(y) + static_cast<std::size_t>(page.pixels.cols) * page.pixels.elemSize());
       if (page.packed_bits > 0) row = pack_row(page.pixels.ptr<std::uint16_t>(y), page.pixels.cols, page.packed_bits);
       TIFFWriteScanline(tiff.get(), row.data(), static_cast<std::uint32_t>(y));
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -60,7 +61,7 @@ TEST(GapBias, LeavesHeightsAloneFarFromAGapAndWithoutAWidth) {
   const CurveShape shape{.exponent = kExponent, .width_um = kWidth_um, .bias = {}};
   EXPECT_FLOAT_EQ(corrected_um(13.0, 1, shape), 13.0F);
   EXPECT_FLOAT_EQ(corrected_um(43.0, 4, {}), 43.0F);
-  EXPECT_TRUE(std::isnan(corrected_um(NAN, 4, shape)));
+  EXPECT_TRUE(std::isnan(corrected_um(std::numeric_limits<double>::quiet_NaN(), 4, shape)));
 }
 
 }  // namespace

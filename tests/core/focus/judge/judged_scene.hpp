@@ -76,7 +76,10 @@ void change(Image& image, const Change& of) {
 }
 
 /// Noise that a dark exposure has: a black level of 8.
-inline double dark_level(int x, int y) { return 8.0 + static_cast<double>((x * 7919U + y * 104729U) % 97U % 5U) - 2.0; }
+inline double dark_level(int x, int y) {
+  const auto mixed = static_cast<unsigned>(x) * 7919U + static_cast<unsigned>(y) * 104729U;
+  return 8.0 + static_cast<double>(mixed % 97U % 5U) - 2.0;
+}
 
 /// Exposed at two places.
 inline void shake(Image& image, int dx, int dy) {
