@@ -249,8 +249,8 @@ class MapFinish {
       for (int y = first; y < end; ++y) {
         if (y - reach < first || y + reach >= end) finish_sigma(y);
       }
-      if (!jumps_matter || first < 2) return;
-      for (int y = first; y < std::min(first + 2, end); ++y) {  // what the bands did not compare
+      if (!jumps_matter || first == 0) return;
+      for (int y = std::max(first, 2); y < std::min(first + 2, end); ++y) {  // what the bands did not compare
         const CurveRow row = curves_(band, y - 2, nullptr);
         const std::vector<std::uint16_t> upper(row.peak_index, row.peak_index + width_);
         jumps[static_cast<std::size_t>(band)].compare(y, upper.data(), curves_(band, y, nullptr).peak_index,

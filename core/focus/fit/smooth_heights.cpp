@@ -101,13 +101,11 @@ class Smoother {
  private:
   struct Band {
     explicit Band(const Smoother& s)
-        : offset_m(static_cast<std::size_t>(s.width_)),
-          row_of_slot(static_cast<std::size_t>(2 * s.radius_ + 1), -1),
+        : row_of_slot(static_cast<std::size_t>(2 * s.radius_ + 1), -1),
           rows(row_of_slot.size() * kRowSums * static_cast<std::size_t>(s.width_)),
           padded((4 + 1) * static_cast<std::size_t>(s.width_ + 2 * s.radius_)),
           points(kPointTerms.size() * static_cast<std::size_t>(s.width_)),
           heights((kUnknowns + 2) * static_cast<std::size_t>(s.width_)) {}
-    std::vector<double> offset_m;
     std::vector<int> row_of_slot;
     std::vector<double> rows;     // [slot][sum][width]
     std::vector<double> padded;   // [valid, height, square, variance][width + 2 radius]
