@@ -54,8 +54,8 @@ class PeakAccumulator {
   [[nodiscard]] static std::size_t memory_bytes(int width, int height, const StateParts& parts);
 
  private:
-  struct alignas(64) Block {
-    std::byte bytes[64];
+  struct alignas(32) Block {  // a vector of codes
+    std::byte bytes[32];
   };
   [[nodiscard]] static std::size_t blocks_per_row(int width, const StateParts& parts);
 

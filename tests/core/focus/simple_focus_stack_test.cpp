@@ -45,11 +45,11 @@ TEST_P(AStreamingStack, EqualsTheOneThatKeepsEverything) {
   const Case c = GetParam();
   const Scan scan = make_scan(c.format, c.surface, c.width, c.height, c.slices, 7);
   FocusSettings settings{.focus_operator = c.focus_operator,
-                               .window_px = c.window,
-                               .distance_px = c.distance,
-                               .min_prominence = 0.3,
-                               .min_significance = 2.0,
-                               .bin_slices = c.bin};
+                         .window_px = c.window,
+                         .distance_px = c.distance,
+                         .min_prominence = 0.3,
+                         .min_significance = 2.0,
+                         .bin_slices = c.bin};
   settings.tests.second_peak = c.second_peak;
   SimpleFocusStack simple(settings);
   for (std::size_t k = 0; k < scan.slices.size(); ++k) simple.push(scan.slice(k), scan.z_um[k]);
