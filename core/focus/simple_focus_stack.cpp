@@ -97,16 +97,17 @@ struct CondensedRow {
       return i < 0 || i >= static_cast<std::ptrdiff_t>(samples.size()) ? std::uint16_t{0}
                                                                        : samples[static_cast<std::size_t>(i)];
     };
-    const std::array<std::uint16_t, 10> values{0,
-                                               0,
-                                               at(0),
-                                               at(-1),
-                                               at(-2),
-                                               at(1),
-                                               at(2),
-                                               *std::min_element(samples.begin(), samples.end()),
-                                               static_cast<std::uint16_t>(peak_at),
-                                               second_peak_of(samples, valley_share)};
+    const std::array<std::uint16_t, 10> values{
+        0,
+        0,
+        at(0),
+        at(-1),
+        at(-2),
+        at(1),
+        at(2),
+        *std::min_element(samples.begin(), samples.end()),
+        static_cast<std::uint16_t>(peak_at),
+        valley_share > 0 ? second_peak_of(samples, valley_share) : std::uint16_t{0}};
     for (std::size_t i = 0; i < values.size(); ++i) columns[i][static_cast<std::size_t>(x)] = values[i];
     clipped[static_cast<std::size_t>(x)] = clipped_there;
   }
