@@ -65,9 +65,30 @@ std::vector<std::uint16_t> binned(const std::vector<std::uint16_t>& codes, std::
   return samples;
 }
 
+/// The highest sample far from the peak and beyond a valley, see second_peak; 0 = none.
+std::uint16_t second_peak_of(const std::vector<std::uint16_t>& samples, std::uint16_t valley_share) {
+  // Whether a valley and enough samples lie from one sample to a later one.
+  const auto parted = [&](std::size_t from, std::size_t to) {
+    const auto at = [&](std::size_t i) { return samples.begin() + static_cast<std::ptrdiff_t>(i); };
+    return to - from >= second_peak::kDistance &&
+           *std::min_element(at(from), at(to + 1)) < second_peak::valley(samples[from], valley_share);
+  };
+  std::uint16_t highest = 0;
+  std::size_t peak = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (samples[i] <= samples[peak]) continue;
+    if (parted(peak, i)) highest = samples[peak];  // of those overtaken the later is the higher
+    peak = i;
+  }
+  for (std::size_t i = peak + 1; i < samples.size(); ++i) {
+    if (parted(peak, i)) highest = std::max(highest, samples[i]);
+  }
+  return highest;
+}
+
 /// A row's curves in their condensed form.
 struct CondensedRow {
-  explicit CondensedRow(int width) : clipped(static_cast<std::size_t>(width)) {
+  CondensedRow(int width, std::uint16_t share) : clipped(static_cast<std::size_t>(width)), valley_share(share) {
     for (auto& column : columns) column.resize(static_cast<std::size_t>(width));
   }
   void set(int x, const std::vector<std::uint16_t>& samples, std::size_t peak_at, std::uint8_t clipped_there) {
@@ -76,24 +97,38 @@ struct CondensedRow {
       return i < 0 || i >= static_cast<std::ptrdiff_t>(samples.size()) ? std::uint16_t{0}
                                                                        : samples[static_cast<std::size_t>(i)];
     };
-    const std::array<std::uint16_t, 9> values{0,
-                                              0,
-                                              at(0),
-                                              at(-1),
-                                              at(-2),
-                                              at(1),
-                                              at(2),
-                                              *std::min_element(samples.begin(), samples.end()),
-                                              static_cast<std::uint16_t>(peak_at)};
+    const std::array<std::uint16_t, 10> values{
+        0,
+        0,
+        at(0),
+        at(-1),
+        at(-2),
+        at(1),
+        at(2),
+        *std::min_element(samples.begin(), samples.end()),
+        static_cast<std::uint16_t>(peak_at),
+        valley_share > 0 ? second_peak_of(samples, valley_share) : std::uint16_t{0}};
     for (std::size_t i = 0; i < values.size(); ++i) columns[i][static_cast<std::size_t>(x)] = values[i];
     clipped[static_cast<std::size_t>(x)] = clipped_there;
   }
   [[nodiscard]] CurveRow row() {
-    return {columns[0].data(), columns[1].data(), columns[2].data(), columns[3].data(), columns[4].data(),
-            columns[5].data(), columns[6].data(), columns[7].data(), columns[8].data(), clipped.data()};
+    return {columns[0].data(),
+            columns[1].data(),
+            columns[2].data(),
+            columns[3].data(),
+            columns[4].data(),
+            columns[5].data(),
+            columns[6].data(),
+            columns[7].data(),
+            columns[8].data(),
+            clipped.data(),
+            0,
+            valley_share > 0 ? columns[9].data() : nullptr,
+            valley_share};
   }
-  std::array<std::vector<std::uint16_t>, 9> columns;
+  std::array<std::vector<std::uint16_t>, 10> columns;
   std::vector<std::uint8_t> clipped;
+  std::uint16_t valley_share;
 };
 
 }  // namespace
@@ -121,7 +156,7 @@ HeightMap SimpleFocusStack::finish(PeakMethod method) const {
   WorkerPool pool(1);
   NoiseProbe noise(width, height);
   for (const auto& slice : pixels_) noise.add(image_view(slice.view(), PixelFormat::kMono16), pool);
-  CondensedRow condensed(width);
+  CondensedRow condensed(width, state_parts(settings_, format_).valley_share);
   std::vector<std::uint16_t> curve(sharpness_.size());
   const auto curves = [&](int /*thread*/, int y, std::uint16_t* texture) {
     for (int x = 0; x < width; ++x) {

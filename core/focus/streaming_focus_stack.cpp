@@ -30,7 +30,8 @@ class TypedStack {
   TypedStack(int width, int height, PixelFormat format, const FocusSettings& settings, WorkerPool& pool, bool colour,
              const KeptPagesPtr& pages)
       : height_(height),
-        peaks_(width, height, settings.bin_slices > 1, pages),
+        parts_(state_parts(settings, format)),
+        peaks_(width, height, parts_, pages),
         colour_(colour ? width : 0, colour ? height : 0, settings.bin_slices),
         settings_(settings) {
     const int bands = pool.threads();
@@ -77,7 +78,7 @@ class TypedStack {
     };
     std::vector<Lane> lanes;
     if (heights.pending() > 0) {
-      for (int i = 0; i < pool.threads(); ++i) lanes.push_back({{width, 1, true}, {width, settings_.bin_slices}});
+      for (int i = 0; i < pool.threads(); ++i) lanes.push_back({{width, 1, parts_}, {width, settings_.bin_slices}});
     }
     const auto curves = [&](int thread, int y, std::uint16_t* texture) {
       StateRow<Pixel> row = peaks_.row(y);
@@ -105,8 +106,9 @@ class TypedStack {
   [[nodiscard]] std::size_t state_bytes() const { return peaks_.memory_bytes() + colour_.memory_bytes(); }
   [[nodiscard]] bool colour() const { return !colour_.empty(); }
 
-  [[nodiscard]] static std::size_t memory_bytes(int width, int height, const FocusSettings& settings, int bands) {
-    return PeakAccumulator<Pixel>::memory_bytes(width, height, settings.bin_slices > 1) +
+  [[nodiscard]] static std::size_t memory_bytes(int width, int height, PixelFormat format,
+                                                const FocusSettings& settings, int bands) {
+    return PeakAccumulator<Pixel>::memory_bytes(width, height, state_parts(settings, format)) +
            static_cast<std::size_t>(bands) * StreamingFocusStack::kMaxBatch *
                SharpnessRows<Pixel>::memory_bytes(width, settings);
   }
@@ -119,6 +121,7 @@ class TypedStack {
   };
 
   int height_;
+  StateParts parts_;
   PeakAccumulator<Pixel> peaks_;
   ColourTexture colour_;
   FocusSettings settings_;
@@ -231,8 +234,8 @@ double StreamingFocusStack::state_bytes_per_pixel() const noexcept {
 std::size_t StreamingFocusStack::memory_bytes(int width, int height, PixelFormat format, const FocusSettings& settings,
                                               int threads) {
   const std::size_t typed = format == PixelFormat::kMono8
-                                ? TypedStack<std::uint8_t>::memory_bytes(width, height, settings, threads)
-                                : TypedStack<std::uint16_t>::memory_bytes(width, height, settings, threads);
+                                ? TypedStack<std::uint8_t>::memory_bytes(width, height, format, settings, threads)
+                                : TypedStack<std::uint16_t>::memory_bytes(width, height, format, settings, threads);
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   return typed + pixels * kMapBytesPerPixel + kMaxSlices * sizeof(double);
 }

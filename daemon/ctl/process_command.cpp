@@ -87,6 +87,7 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   overrides.set("--min-significance", arguments.min_significance, recipe.focus.min_significance);
   overrides.set("--broad-curve", arguments.broad_curve, recipe.focus.tests.broad_curve);
   overrides.set("--narrow-curve", arguments.narrow_curve, recipe.focus.tests.narrow_curve);
+  overrides.set("--second-peak", arguments.second_peak, recipe.focus.tests.second_peak);
   overrides.set("--clipped-share", arguments.clipped_share, recipe.focus.tests.clipped_share);
   overrides.set("--edge-band", arguments.edge_band_slices, recipe.focus.tests.edge_band_slices);
   overrides.set("--max-sigma", arguments.max_sigma_um, recipe.focus.tests.max_sigma_um);
@@ -244,6 +245,9 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                      "points whose focus curve bends less than so many medians become holes, 0 = off, default 0.2");
   command.add_option("--narrow-curve", a.narrow_curve,
                      "points whose focus curve is less than so many medians wide become holes, 0 = off, default 0.55");
+  command.add_option("--second-peak", a.second_peak,
+                     "points whose focus curve has a second peak higher than so much of the first become holes, 0.8 is "
+                     "usual; takes 2 bytes more per pixel; 0 = off, the default");
   command.add_option("--clipped-share", a.clipped_share,
                      "points with more of their window at full scale become holes, 0 = off, default 0.7");
   command.add_option("--edge-band", a.edge_band_slices,

@@ -46,6 +46,7 @@ struct ProcessArguments {
   std::optional<double> min_prominence;
   std::optional<double> broad_curve;
   std::optional<double> narrow_curve;
+  std::optional<double> second_peak;
   std::optional<double> clipped_share;
   std::optional<int> edge_band_slices;
   std::optional<double> max_sigma_um;

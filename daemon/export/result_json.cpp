@@ -84,11 +84,9 @@ Json values(const Result& result) {
 }
 
 Json point_tests(const PointTests& tests) {
-  return {{"broad_curve", tests.broad_curve},
-          {"narrow_curve", tests.narrow_curve},
-          {"clipped_share", tests.clipped_share},
-          {"edge_band_slices", tests.edge_band_slices},
-          {"max_sigma_um", tests.max_sigma_um}};
+  return {{"broad_curve", tests.broad_curve},           {"narrow_curve", tests.narrow_curve},
+          {"second_peak", tests.second_peak},           {"clipped_share", tests.clipped_share},
+          {"edge_band_slices", tests.edge_band_slices}, {"max_sigma_um", tests.max_sigma_um}};
 }
 
 Json focus(const Result::Focus& focus) {

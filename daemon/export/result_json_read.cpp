@@ -141,6 +141,7 @@ PointTests point_tests(const Node& node) {
   PointTests tests;
   tests.broad_curve = limit("broad_curve");
   tests.narrow_curve = limit("narrow_curve");
+  tests.second_peak = limit("second_peak");
   tests.clipped_share = limit("clipped_share");
   tests.edge_band_slices = node.has("edge_band_slices") ? node.at("edge_band_slices").integer<int>() : 0;
   tests.max_sigma_um = limit("max_sigma_um");

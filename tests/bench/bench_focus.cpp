@@ -74,15 +74,16 @@ PixelFormat format_of(int bits) {
 
 /// Arguments: bits per pixel, window in pixels, threads, slices pushed together, slices per bin, 1 for the chapter's
 /// modified Laplacian over a box and 0 for the defaults. One iteration is one
-/// scan; the stack is made beforehand, as in a daemon.
+/// scan; the stack is made beforehand, as in a daemon. second_peak: see PointTests.
 template <typename Pixel>
-void streaming(benchmark::State& state) {
+void streaming_with(benchmark::State& state, double second_peak) {
   const int bits = static_cast<int>(state.range(0));
   const auto& slices = scan<Pixel>(bits);
   WorkerPool pool(static_cast<int>(state.range(2)));
   FocusSettings settings;
   settings.window_px = static_cast<int>(state.range(1));
   settings.bin_slices = static_cast<int>(state.range(4));
+  settings.tests.second_peak = second_peak;
   if (state.range(5) != 0) {
     settings.focus_operator = FocusOperator::kModifiedLaplacian;
     settings.window = FocusWindow::kBox;
@@ -103,6 +104,13 @@ void streaming(benchmark::State& state) {
   state.counters["Mpx/s"] = benchmark::Counter(kMegapixels * kSlices, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["state_bytes_per_pixel"] = bytes;
 }
+
+template <typename Pixel>
+void streaming(benchmark::State& state) {
+  streaming_with<Pixel>(state, 0.0);
+}
+
+void streaming_second_peak(benchmark::State& state) { streaming_with<std::uint8_t>(state, 0.8); }
 
 /// Arguments: peak method, threads. Into memory that has been used before, as after the first scan.
 void finish(benchmark::State& state) {
@@ -186,6 +194,13 @@ BENCHMARK(streaming<std::uint8_t>)
     ->Args({8, 9, 2, 1, 1, 0})
     ->Args({8, 9, 2, 8, 4, 0})
     ->Args({8, 9, 2, 8, 1, 1})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(streaming_second_peak)
+    ->Name("streaming/Mono8_second_peak")
+    ->ArgNames({"bits", "window", "threads", "batch", "bin", "sml"})
+    ->Args({8, 9, 2, 8, 1, 0})
+    ->Args({8, 9, 2, 8, 4, 0})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(streaming<std::uint16_t>)

@@ -81,7 +81,7 @@ BoundRatio rms_over_bound(const ModelCurve& curve, double step) {
   for (double& z : truth) z = kRange + step * result.bin_slices * uniform(random);
   const int slices = static_cast<int>(2 * kRange / step);
 
-  PeakAccumulator<std::uint8_t> accumulator(kCurves, 1, result.bin_slices > 1);
+  PeakAccumulator<std::uint8_t> accumulator(kCurves, 1, {.bins = result.bin_slices > 1});
   SliceBinner<std::uint8_t> binner(kCurves, result.bin_slices);
   SampleHeights heights(result.bin_slices, slices);
   const auto row = accumulator.row(0);

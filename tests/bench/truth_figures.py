@@ -34,6 +34,7 @@ ELSEWHERE = (
     "sml9_over_opencv",
     "finish_over_slice",
     "state_bytes_mono8",
+    "state_bytes_mono8_second_peak",
     "process_over_python_raw",
     "process_over_python_png",
     "process_over_python_jpeg",

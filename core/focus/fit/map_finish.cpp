@@ -135,21 +135,33 @@ class SpotRow {
   [[nodiscard]] int width() const noexcept { return width_; }
 
   /// noise_grey: of every pixel of the row.
-  void gather(const CurveRow& row, const float* noise_grey_row) noexcept {
+  void gather(const CurveRow& row, const float* noise_grey_row) {
+    if (row.second != nullptr) second_.resize(static_cast<std::size_t>(width_));
     const std::array from{row.peak, row.left, row.left2, row.right, row.right2, row.minimum, row.peak_index};
     for (int i = 0; i < width_; ++i) {
       const int x = every_ / 2 + i * every_;
       for (std::size_t field = 0; field < from.size(); ++field) {
         fields_[field][static_cast<std::size_t>(i)] = from[field][x];
       }
+      if (row.second != nullptr) second_[static_cast<std::size_t>(i)] = row.second[x];
       clipped_[static_cast<std::size_t>(i)] = row.clipped[x];
       noise_grey_[static_cast<std::size_t>(i)] = noise_grey_row[x];
     }
   }
   [[nodiscard]] CurveRow curves() noexcept {
     auto& [peak, left, left2, right, right2, minimum, peak_index] = fields_;
-    return {nullptr,      nullptr,       peak.data(),    left.data(),       left2.data(),
-            right.data(), right2.data(), minimum.data(), peak_index.data(), clipped_.data()};
+    return {nullptr,
+            nullptr,
+            peak.data(),
+            left.data(),
+            left2.data(),
+            right.data(),
+            right2.data(),
+            minimum.data(),
+            peak_index.data(),
+            clipped_.data(),
+            0,
+            second_.empty() ? nullptr : second_.data()};
   }
   [[nodiscard]] const float* noise_grey() const noexcept { return noise_grey_.data(); }
 
@@ -157,6 +169,7 @@ class SpotRow {
   int every_;
   int width_;
   std::array<std::vector<std::uint16_t>, 7> fields_;
+  std::vector<std::uint16_t> second_;  // empty where no second peak is looked for
   std::vector<std::uint8_t> clipped_;
   std::vector<float> noise_grey_;
 };

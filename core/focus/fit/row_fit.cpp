@@ -86,6 +86,20 @@ void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amp
   } else {
     fit_triples(row, noise, least_amplitude, width, out);
   }
+  if (row.second != nullptr) mark_second_peaks(row, width, out);
+}
+
+void RowFit::mark_second_peaks(const CurveRow& row, int width, const FitRow& out) const noexcept {
+  constexpr MaskReasons kNoPeak = mask_reason::kLowProminence | mask_reason::kInsignificant;
+  for (int x = 0; x < width; ++x) {
+    if ((out.mask[x] & kNoPeak) != 0) continue;
+    const double minimum = share(row.minimum[x]);
+    const double rise = share(second_peak::sharpness(row.second[x])) - minimum;
+    if (rise <= settings_.tests.second_peak * (share(row.peak[x]) - minimum)) continue;
+    out.mask[x] |= mask_reason::kSecondPeak;
+    out.height_m[x] = NAN;
+    out.variance_m2[x] = NAN;
+  }
 }
 
 unsigned RowFit::shape_reasons(const CurveRow& row, int x) const noexcept {

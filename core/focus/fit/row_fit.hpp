@@ -56,6 +56,8 @@ class RowFit {
  private:
   void fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
                    const FitRow& out) const noexcept;
+  /// Points whose second peak is too high become holes, but those that have no peak at all.
+  void mark_second_peaks(const CurveRow& row, int width, const FitRow& out) const noexcept;
   /// Broad or narrow, by the samples and their distances.
   [[nodiscard]] unsigned shape_reasons(const CurveRow& row, int x) const noexcept;
 

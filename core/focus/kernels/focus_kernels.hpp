@@ -42,20 +42,42 @@ inline constexpr float kSomeVariance = 1.1F;  ///< what the variance is multipli
 inline constexpr float kManyVariance = 1.4F;
 }  // namespace clipping
 
+/// What is known of a curve's second peak, one 16-bit code.
+///
+/// The second peak is the highest sample that lies at least four samples from the peak and is parted from it by a
+/// valley, a sample between them below a share of the peak: without one it is the peak's own flank. While the curve
+/// grows, a peak that is overtaken becomes the second peak if the valley and the four samples lie before the sample
+/// that overtakes it. The lowest bit of the code says whether the valley has been seen since the peak; it is no part of
+/// the sharpness.
+namespace second_peak {
+inline constexpr std::uint16_t kDistance = 4;  ///< samples
+inline constexpr std::uint16_t kValleyBit = 1;
+/// Sample below which a curve with this peak is in a valley. share: in 65536ths.
+[[nodiscard]] constexpr std::uint16_t valley(std::uint16_t peak, std::uint16_t share) noexcept {
+  return static_cast<std::uint16_t>((static_cast<std::uint32_t>(peak) * share) >> 16U);
+}
+/// The sharpness of a code.
+[[nodiscard]] constexpr std::uint16_t sharpness(std::uint16_t code) noexcept {
+  return static_cast<std::uint16_t>(code & ~std::uint32_t{kValleyBit});
+}
+}  // namespace second_peak
+
 /// The state of one row of focus curves, one array per field, shape [width]. Sharpness is in codes, see
 /// sharpness_code.hpp.
 struct CurveRow {
-  std::uint16_t* previous;         ///< the sample before
-  std::uint16_t* previous2;        ///< the sample before `previous`
-  std::uint16_t* peak;             ///< largest so far; of equal ones the first
-  std::uint16_t* left;             ///< the sample before the peak, 0 where there is none
-  std::uint16_t* left2;            ///< the sample before `left`
-  std::uint16_t* right;            ///< the sample after the peak, 0 while there is none
-  std::uint16_t* right2;           ///< the sample after `right`
-  std::uint16_t* minimum;          ///< smallest so far
-  std::uint16_t* peak_index;       ///< number of the peak's sample, 0-based
-  std::uint8_t* clipped;           ///< see clipping
-  std::ptrdiff_t pitch_bytes = 0;  ///< from each field to the same field of the next row; 0 = unknown
+  std::uint16_t* previous;          ///< the sample before
+  std::uint16_t* previous2;         ///< the sample before `previous`
+  std::uint16_t* peak;              ///< largest so far; of equal ones the first
+  std::uint16_t* left;              ///< the sample before the peak, 0 where there is none
+  std::uint16_t* left2;             ///< the sample before `left`
+  std::uint16_t* right;             ///< the sample after the peak, 0 while there is none
+  std::uint16_t* right2;            ///< the sample after `right`
+  std::uint16_t* minimum;           ///< smallest so far
+  std::uint16_t* peak_index;        ///< number of the peak's sample, 0-based
+  std::uint8_t* clipped;            ///< see clipping
+  std::ptrdiff_t pitch_bytes = 0;   ///< from each field to the same field of the next row; 0 = unknown
+  std::uint16_t* second = nullptr;  ///< see second_peak; nullptr = not looked for
+  std::uint16_t valley_share = 0;   ///< of the codes, in 65536ths, see second_peak
 };
 
 /// A row of one sample. Texture: std::uint8_t or std::uint16_t.

@@ -7,6 +7,7 @@
 // memory traffic limits the speed. If no lane has a new peak, the only branch skips half of the work.
 
 #include "core/focus/kernels/focus_kernels_common.hpp"
+#include "core/focus/kernels/kernel_second_peak-inl.hpp"
 #include "core/focus/kernels/kernel_vectors-inl.hpp"
 
 namespace fvd::FVD_KERNEL_NAMESPACE {
@@ -116,7 +117,7 @@ inline __attribute__((always_inline)) void take_clipped(const Level* shares, int
 
 /// 16 columns at x. The state stays in registers while several samples are taken in. there: columns from x on that the
 /// image has, 16 if more.
-template <typename Texture, typename TextureVector, bool kClipped>
+template <typename Texture, typename TextureVector, bool kClipped, bool kSecond>
 inline __attribute__((always_inline)) void update_at(const CurveRow& row, const Sample<Texture>* samples, int count,
                                                      Texture* texture_row, int x, int there, int first_index) {
   Codes previous;
@@ -142,6 +143,8 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
   load(texture_row + x, texture);
   Flags clipped{};
   if constexpr (kClipped) load(row.clipped + x, clipped);
+  SecondPeaks second{};
+  if constexpr (kSecond) load_second(row, x, peak, second);
   for (int k = 0; k < count; ++k) {
     const Sample<Texture>& sample = samples[k];
     Codes value;
@@ -156,6 +159,7 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
     if constexpr (kClipped) {
       take_clipped(sample.clipped == nullptr ? nullptr : sample.clipped + x, there, stays, follows, clipped);
     }
+    if constexpr (kSecond) take_second(value, peak, age, second);
     // In most slices of a scan 16 neighbours are all past their peak, or before it in the noise.
     if (!all(stays)) {
       TextureVector pixels;
@@ -167,6 +171,7 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
       right2 &= keep;
       peak = higher;
       age &= keep;
+      if constexpr (kSecond) restart_second(peak, keep, row.valley_share, second);
       if constexpr (sizeof(Texture) == 1) {
         FlagMask narrow;
         narrow_mask(stays, narrow);
@@ -191,21 +196,22 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
   store(peak_index, row.peak_index + x);
   store(texture, texture_row + x);
   if constexpr (kClipped) store(clipped, row.clipped + x);
+  if constexpr (kSecond) store(second.code, row.second + x);
 }
 
-template <typename Texture, typename TextureVector>
+template <typename Texture, typename TextureVector, bool kSecond>
 inline __attribute__((always_inline)) void update_columns(const CurveRow& row, const Sample<Texture>* samples,
                                                           int count, Texture* texture, int x, int there,
                                                           int first_index) {
   if (any_clipped(row, samples, count, x, there)) {
-    update_at<Texture, TextureVector, true>(row, samples, count, texture, x, there, first_index);
+    update_at<Texture, TextureVector, true, kSecond>(row, samples, count, texture, x, there, first_index);
   } else {
-    update_at<Texture, TextureVector, false>(row, samples, count, texture, x, there, first_index);
+    update_at<Texture, TextureVector, false, kSecond>(row, samples, count, texture, x, there, first_index);
   }
 }
 
 /// The next row's state below the 32 pixels from x on, which is written as well as read.
-template <typename Texture>
+template <typename Texture, bool kSecond>
 inline __attribute__((always_inline)) void fetch_below(const CurveRow& row, const Texture* texture, int x) {
   for (const std::uint16_t* field : {row.previous, row.previous2, row.peak, row.left, row.left2, row.right, row.right2,
                                      row.minimum, row.peak_index}) {
@@ -213,25 +219,35 @@ inline __attribute__((always_inline)) void fetch_below(const CurveRow& row, cons
   }
   fetch<32 * sizeof(Texture)>(texture + x, row.pitch_bytes, true);
   fetch<32>(row.clipped + x, row.pitch_bytes, true);
+  if constexpr (kSecond) fetch<64>(row.second + x, row.pitch_bytes, true);
 }
 
-template <typename Texture, typename TextureVector>
+template <typename Texture, typename TextureVector, bool kSecond>
 inline __attribute__((always_inline)) void update(const CurveRow& row, const Sample<Texture>* samples, int count,
                                                   Texture* texture, int width, int first_index) {
   int x = 0;
   for (; x + 16 <= width; x += 16) {
-    if (x % 32 == 0) fetch_below(row, texture, x);
-    update_columns<Texture, TextureVector>(row, samples, count, texture, x, 16, first_index);
+    if (x % 32 == 0) fetch_below<Texture, kSecond>(row, texture, x);
+    update_columns<Texture, TextureVector, kSecond>(row, samples, count, texture, x, 16, first_index);
   }
-  if (x < width) update_columns<Texture, TextureVector>(row, samples, count, texture, x, width - x, first_index);
+  if (x < width)
+    update_columns<Texture, TextureVector, kSecond>(row, samples, count, texture, x, width - x, first_index);
 }
 void update_u8(const CurveRow& row, const Sample<std::uint8_t>* samples, int count, std::uint8_t* texture, int width,
                int first_index) noexcept {
-  update<std::uint8_t, Flags>(row, samples, count, texture, width, first_index);
+  if (row.second == nullptr) {
+    update<std::uint8_t, Flags, false>(row, samples, count, texture, width, first_index);
+  } else {
+    update<std::uint8_t, Flags, true>(row, samples, count, texture, width, first_index);
+  }
 }
 void update_u16(const CurveRow& row, const Sample<std::uint16_t>* samples, int count, std::uint16_t* texture, int width,
                 int first_index) noexcept {
-  update<std::uint16_t, Codes>(row, samples, count, texture, width, first_index);
+  if (row.second == nullptr) {
+    update<std::uint16_t, Codes, false>(row, samples, count, texture, width, first_index);
+  } else {
+    update<std::uint16_t, Codes, true>(row, samples, count, texture, width, first_index);
+  }
 }
 
 }  // namespace fvd::FVD_KERNEL_NAMESPACE

@@ -118,6 +118,7 @@ void check_point_tests(const PointTests& tests) {
   };
   check("limit of the broad curve", tests.broad_curve, 1.0);
   check("limit of the narrow curve", tests.narrow_curve, 1.0);
+  check("limit of the second peak", tests.second_peak, 1.0);
   check("clipped share of a window", tests.clipped_share, 1.0);
   check("jump beside which a strip is dropped, in slices,", tests.edge_band_slices, kMaxEdgeBandSlices);
   check("largest sigma in um", tests.max_sigma_um, kMaxSigmaLimit_um);

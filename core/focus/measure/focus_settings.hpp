@@ -67,6 +67,8 @@ struct PointTests {
                                ///< more beside the peak than at it, a point is a hole
   int edge_band_slices = 3;    ///< neighbours' heights that are further apart, and further than a curve is wide, make
                                ///< holes of the strip beside them, see edge_band.hpp; >= 0
+  double second_peak = 0.0;    ///< height over the curve's minimum of a second peak over that of the first, 0..1; above
+                               ///< it a point is a hole; takes 2 bytes more per pixel, see second_peak
   double max_sigma_um = 0.0;   ///< standard error of a height above which a point is a hole, >= 0
   bool operator==(const PointTests&) const = default;
 };

@@ -1,8 +1,11 @@
 #include "core/focus/measure/peak_accumulator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
+
+#include "core/focus/measure/sharpness_code.hpp"
 
 namespace fvd {
 
@@ -10,27 +13,37 @@ namespace {
 
 constexpr std::size_t kCurveFields = 9;
 
+/// A valley lies below this share of what makes a second peak.
+constexpr double kValley = 0.75;
+
 std::size_t padded(int width) { return (static_cast<std::size_t>(width) + 15) / 16 * 16; }
 
 }  // namespace
 
+StateParts state_parts(const FocusSettings& settings, PixelFormat format) noexcept {
+  const double share = kValley * settings.tests.second_peak;
+  const double of_code = sharpness_code(settings, format).root ? std::sqrt(share) : share;
+  return {settings.bin_slices > 1, static_cast<std::uint16_t>(std::lround(of_code * 65536.0))};
+}
+
 template <typename Texture>
-std::size_t PeakAccumulator<Texture>::blocks_per_row(int width, bool binned) {
-  const std::size_t plain = kCurveFields * sizeof(std::uint16_t) + sizeof(Texture) + 1;
-  const std::size_t bin = binned ? sizeof(std::uint16_t) + sizeof(Texture) + 1 : 0;
+std::size_t PeakAccumulator<Texture>::blocks_per_row(int width, const StateParts& parts) {
+  const std::size_t fields = kCurveFields + (parts.valley_share > 0 ? 1 : 0);
+  const std::size_t plain = fields * sizeof(std::uint16_t) + sizeof(Texture) + 1;
+  const std::size_t bin = parts.bins ? sizeof(std::uint16_t) + sizeof(Texture) + 1 : 0;
   return (padded(width) * (plain + bin) + sizeof(Block) - 1) / sizeof(Block);
 }
 
 template <typename Texture>
-PeakAccumulator<Texture>::PeakAccumulator(int width, int height, bool binned, KeptPagesPtr pages)
+PeakAccumulator<Texture>::PeakAccumulator(int width, int height, const StateParts& parts, KeptPagesPtr pages)
     : padded_width_(padded(width)),
-      blocks_per_row_(blocks_per_row(width, binned)),
-      binned_(binned),
+      blocks_per_row_(blocks_per_row(width, parts)),
+      parts_(parts),
       storage_(blocks_per_row_ * static_cast<std::size_t>(height), std::move(pages)) {}
 
 template <typename Texture>
-std::size_t PeakAccumulator<Texture>::memory_bytes(int width, int height, bool binned) {
-  return blocks_per_row(width, binned) * sizeof(Block) * static_cast<std::size_t>(height);
+std::size_t PeakAccumulator<Texture>::memory_bytes(int width, int height, const StateParts& parts) {
+  return blocks_per_row(width, parts) * sizeof(Block) * static_cast<std::size_t>(height);
 }
 
 template <typename Texture>
@@ -58,11 +71,15 @@ StateRow<Texture> PeakAccumulator<Texture>::row(int y) noexcept {
         &row.curve.right2, &row.curve.minimum, &row.curve.peak_index}) {
     take(*field);
   }
-  if (binned_) take(row.bin.sums);
+  if (parts_.valley_share > 0) {
+    take(row.curve.second);
+    row.curve.valley_share = parts_.valley_share;
+  }
+  if (parts_.bins) take(row.bin.sums);
   take(row.texture);
-  if (binned_) take(row.bin.texture);
+  if (parts_.bins) take(row.bin.texture);
   take(row.curve.clipped);
-  if (binned_) take(row.bin.clipped);
+  if (parts_.bins) take(row.bin.clipped);
   if (storage_.size() > blocks_per_row_) {
     row.curve.pitch_bytes = static_cast<std::ptrdiff_t>(blocks_per_row_ * sizeof(Block));
   }
@@ -84,6 +101,7 @@ void start_peaks(const StateRow<Texture>& row, const Sample<Texture>& sample, in
   for (std::uint16_t* field : {curve.previous2, curve.left, curve.left2, curve.right, curve.right2, curve.peak_index}) {
     std::fill_n(field, width, std::uint16_t{0});
   }
+  if (curve.second != nullptr) std::fill_n(curve.second, width, std::uint16_t{0});
   std::copy_n(sample.pixels, width, row.texture);
   for (int x = 0; x < width; ++x) {
     const std::uint8_t level = sample.clipped == nullptr ? std::uint8_t{0} : sample.clipped[x];

@@ -9,6 +9,8 @@
 
 #include "core/base/large_array.hpp"
 #include "core/focus/kernels/focus_kernels.hpp"
+#include "core/focus/measure/focus_settings.hpp"
+#include "core/image/image.hpp"
 
 namespace fvd {
 
@@ -27,12 +29,21 @@ struct StateRow {
   BinRow<Texture> bin;
 };
 
-/// 20 bytes per pixel for Mono8, 21 for 16 bit, with bins 24 and 26; rows padded to 16 pixels; never grows.
+/// What a state keeps beside the peak and its neighbours.
+struct StateParts {
+  bool bins = false;
+  /// Of the peak's code, in 65536ths, see second_peak; 0 = no second peak.
+  std::uint16_t valley_share = 0;
+};
+[[nodiscard]] StateParts state_parts(const FocusSettings& settings, PixelFormat format) noexcept;
+
+/// 20 bytes per pixel for Mono8, 21 for 16 bit, with bins 24 and 26, 2 more with the second peak; rows padded to 16
+/// pixels; never grows.
 /// Texture: std::uint8_t for Mono8, else std::uint16_t. context: several threads may use different rows.
 template <typename Texture>
 class PeakAccumulator {
  public:
-  PeakAccumulator(int width, int height, bool binned, KeptPagesPtr pages = nullptr);
+  PeakAccumulator(int width, int height, const StateParts& parts, KeptPagesPtr pages = nullptr);
 
   [[nodiscard]] StateRow<Texture> row(int y) noexcept;
   /// Writes rows first to end - 1, so that their pages exist before the first slice, near the thread that calls.
@@ -40,17 +51,17 @@ class PeakAccumulator {
   /// Row 0 becomes a copy of row y of another accumulator of the same width and kind.
   void copy_row(const PeakAccumulator& from, int y) noexcept;
   [[nodiscard]] std::size_t memory_bytes() const noexcept { return storage_.size() * sizeof(Block); }
-  [[nodiscard]] static std::size_t memory_bytes(int width, int height, bool binned);
+  [[nodiscard]] static std::size_t memory_bytes(int width, int height, const StateParts& parts);
 
  private:
-  struct alignas(64) Block {
-    std::byte bytes[64];
+  struct alignas(32) Block {  // a vector of codes
+    std::byte bytes[32];
   };
-  [[nodiscard]] static std::size_t blocks_per_row(int width, bool binned);
+  [[nodiscard]] static std::size_t blocks_per_row(int width, const StateParts& parts);
 
   std::size_t padded_width_;
   std::size_t blocks_per_row_;
-  bool binned_;
+  StateParts parts_;
   LargeArray<Block> storage_;
 };
 

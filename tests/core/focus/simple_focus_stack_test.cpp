@@ -36,6 +36,7 @@ struct Case {
   int distance = 1;
   FocusOperator focus_operator = FocusOperator::kModifiedLaplacian;
   int bin = 1;
+  double second_peak = 0.0;
 };
 
 class AStreamingStack : public testing::TestWithParam<Case> {};
@@ -43,12 +44,13 @@ class AStreamingStack : public testing::TestWithParam<Case> {};
 TEST_P(AStreamingStack, EqualsTheOneThatKeepsEverything) {
   const Case c = GetParam();
   const Scan scan = make_scan(c.format, c.surface, c.width, c.height, c.slices, 7);
-  const FocusSettings settings{.focus_operator = c.focus_operator,
-                               .window_px = c.window,
-                               .distance_px = c.distance,
-                               .min_prominence = 0.3,
-                               .min_significance = 2.0,
-                               .bin_slices = c.bin};
+  FocusSettings settings{.focus_operator = c.focus_operator,
+                         .window_px = c.window,
+                         .distance_px = c.distance,
+                         .min_prominence = 0.3,
+                         .min_significance = 2.0,
+                         .bin_slices = c.bin};
+  settings.tests.second_peak = c.second_peak;
   SimpleFocusStack simple(settings);
   for (std::size_t k = 0; k < scan.slices.size(); ++k) simple.push(scan.slice(k), scan.z_um[k]);
   for (const PeakMethod method : kAllPeakMethods) {
@@ -82,6 +84,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{PixelFormat::kMono8, Surface::kRandom, 33, 21, 3, 5, 1, FocusOperator::kModifiedLaplacian, 4},
         Case{PixelFormat::kMono8, Surface::kBright, 45, 33, 15, 9, 2},
         Case{PixelFormat::kMono12, Surface::kBright, 45, 21, 29, 5, 1, FocusOperator::kDiagonalLaplacian, 3},
+        Case{PixelFormat::kMono8, Surface::kRandom, 49, 23, 25, 3, 1, FocusOperator::kModifiedLaplacian, 1, 0.6},
+        Case{PixelFormat::kMono16, Surface::kRandom, 35, 20, 30, 3, 1, FocusOperator::kDiagonalLaplacian, 1, 0.8},
+        Case{PixelFormat::kMono8, Surface::kRandom, 21, 20, 31, 3, 1, FocusOperator::kTenengrad, 3, 0.5},
+        Case{PixelFormat::kMono12, Surface::kTilted, 53, 31, 25, 3, 1, FocusOperator::kIntensity, 1, 0.4},
+        Case{PixelFormat::kMono8, Surface::kRandom, 8, 8, 1, 3, 1, FocusOperator::kModifiedLaplacian, 1, 0.8},
         Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 1, 3},
         Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 2, 3}));
 

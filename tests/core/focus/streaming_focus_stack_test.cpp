@@ -97,6 +97,9 @@ TEST(StreamingFocusStack, NeedsTheSameMemoryForFewAndForManySlices) {
   EXPECT_EQ(stack.state_bytes_per_pixel(), after_21);
   EXPECT_EQ(stack.slices(), 2000);
   EXPECT_EQ(after_21, 20.0);
+  FocusSettings settings;
+  settings.tests.second_peak = 0.8;
+  EXPECT_EQ(StreamingFocusStack(scan.width, scan.height, scan.format, settings, pool).state_bytes_per_pixel(), 22.0);
 }
 
 TEST(StreamingFocusStack, TakesNoMoreThanItsIndexCanCount) {

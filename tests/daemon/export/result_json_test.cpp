@@ -45,7 +45,7 @@ Result full_result() {
   result.focus.settings.distance_px = 3;
   result.focus.settings.min_prominence = 0.25;
   result.focus.settings.min_significance = 5.5;
-  result.focus.settings.tests = {0.25, 0.4, 0.6, 5, 1.5};
+  result.focus.settings.tests = {0.25, 0.4, 0.6, 5, 0.75, 1.5};
   result.focus.settings.bin_slices = 4;
   result.focus.noise_grey = 1.5;
   result.focus.curve_width_um = 30.25;

@@ -41,6 +41,13 @@ TEST(JobMemory, ASecondMethodTakesAnotherMapAndNoOtherState) {
   EXPECT_EQ(two.state_bytes, one.state_bytes);
 }
 
+TEST(JobMemory, CountsTheSecondPeak) {
+  Recipe recipe;
+  const JobMemory without = job_memory(recipe, kWidth, kHeight, 2);
+  recipe.focus.tests.second_peak = 0.8;
+  EXPECT_EQ(job_memory(recipe, kWidth, kHeight, 2).state_bytes, without.state_bytes + 2 * kPixels);
+}
+
 TEST(JobMemory, RefusesWhatOnlyItsFilesTakeOverTheBudget) {
   const JobMemory needed = job_memory({}, kWidth, kHeight, 2);
   require_memory(needed, kWidth, kHeight, needed.total_bytes(), nullptr);

@@ -48,6 +48,7 @@ TEST(Recipe, TakesDefaultsBeyondTheScan) {
   EXPECT_EQ(recipe.peak, PeakMethod::kFiveSample);
   EXPECT_THAT(recipe.extra_peaks, IsEmpty());
   EXPECT_EQ(recipe.camera, CameraSettings{});
+  EXPECT_EQ(recipe.focus.tests.second_peak, 0.0) << "takes memory";
 }
 
 constexpr const char* kOldWithEveryGroup = R"({
@@ -71,6 +72,7 @@ TEST(Recipe, ReadsEveryKey) {
                  "exposure_us": 100.5, "gain_db": 3}},
     "reconstruct": {
       "focus": {"window_px": 5, "peak": "nearest", "extra_peaks": ["parabola", "log_parabola"], "min_prominence": 0.25},
+      "holes": {"narrow_curve": 0.5, "second_peak": 0.75},
       "lateral": {"pixel_pitch_x_um": 0.5, "pixel_pitch_y_um": 0.6},
       "min_valid_fraction": 0.75},
     "export": ["mask.png", "height.tiff"],
@@ -99,6 +101,8 @@ TEST(Recipe, ReadsEveryKey) {
   EXPECT_EQ(recipe.peak, PeakMethod::kNearest);
   EXPECT_THAT(recipe.extra_peaks, ElementsAre(PeakMethod::kParabola, PeakMethod::kLogParabola));
   EXPECT_EQ(recipe.focus.min_prominence, 0.25);
+  EXPECT_EQ(recipe.focus.tests.narrow_curve, 0.5);
+  EXPECT_EQ(recipe.focus.tests.second_peak, 0.75);
   EXPECT_EQ(recipe.pixel_pitch_x_um, 0.5);
   EXPECT_EQ(recipe.pixel_pitch_y_um, 0.6);
   EXPECT_EQ(recipe.min_valid_fraction, 0.75);
@@ -107,8 +111,9 @@ TEST(Recipe, ReadsEveryKey) {
 }
 
 TEST(Recipe, WritesBackWhatItRead) {
-  for (const std::string& text : {std::string(kOldWithEveryGroup), with_focus(R"({"extra_peaks": ["nearest"]})"),
-                                  with("", R"(, "export": [])")}) {
+  for (const std::string& text :
+       {std::string(kOldWithEveryGroup), with_focus(R"({"extra_peaks": ["nearest"]})"),
+        with_reconstruct(R"({"holes": {"second_peak": 0.8}})"), with("", R"(, "export": [])")}) {
     const std::string written = values(parse_recipe(text, "r"));
     EXPECT_EQ(values(parse_recipe(written, "r")), written);
   }

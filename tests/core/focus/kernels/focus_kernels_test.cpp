@@ -194,16 +194,22 @@ struct Curves {
     return {columns[0].data(), columns[1].data(), columns[2].data(), columns[3].data(), columns[4].data(),
             columns[5].data(), columns[6].data(), columns[7].data(), columns[8].data(), clipped.data()};
   }
-  std::array<std::vector<std::uint16_t>, 9> columns;
+  [[nodiscard]] CurveRow row_with_second_peak() {
+    CurveRow with = row();
+    with.second = columns[9].data();
+    with.valley_share = 39322;
+    return with;
+  }
+  std::array<std::vector<std::uint16_t>, 10> columns;
   std::vector<std::uint8_t> clipped;
 };
 
 TEST(FocusKernels, TakeASampleInAlike) {
-  const auto body = [](auto pixel, auto update) {
+  const auto body = [](auto pixel, bool second, auto update) {
     using Texture = decltype(pixel);
-    return [update](const FocusKernels& kernels, int width, std::mt19937& random) {
+    return [second, update](const FocusKernels& kernels, int width, std::mt19937& random) {
       Curves curves(width, random);
-      for (auto& index : curves.columns[8]) index = static_cast<std::uint16_t>(random() % 4);
+      for (auto& index : curves.columns[8]) index = static_cast<std::uint16_t>(random() % 7);
       auto texture = random_row<Texture>(width, random);
       std::vector<std::vector<Texture>> pixels;
       std::vector<std::vector<std::uint8_t>> clipped;
@@ -219,18 +225,21 @@ TEST(FocusKernels, TakeASampleInAlike) {
       for (std::size_t k = 0; k < codes.size(); ++k) {
         samples.push_back({codes[k].data(), k == 2 ? nullptr : clipped[k].data(), pixels[k].data()});
       }
-      update(kernels, curves.row(), samples.data(), 1, texture.data(), width, 1);
-      update(kernels, curves.row(), samples.data() + 1, 4, texture.data(), width, 2);
+      const CurveRow row = second ? curves.row_with_second_peak() : curves.row();
+      update(kernels, row, samples.data(), 1, texture.data(), width, 7);
+      update(kernels, row, samples.data() + 1, 4, texture.data(), width, 8);
       std::vector<unsigned> all(texture.begin(), texture.end());
       for (const auto& column : curves.columns) all.insert(all.end(), column.begin(), column.end());
       all.insert(all.end(), curves.clipped.begin(), curves.clipped.end());
       return all;
     };
   };
-  expect_same("update_u8",
-              body(std::uint8_t{}, [](const FocusKernels& k, auto... arguments) { k.update_u8(arguments...); }));
-  expect_same("update_u16",
-              body(std::uint16_t{}, [](const FocusKernels& k, auto... arguments) { k.update_u16(arguments...); }));
+  for (const bool second : {false, true}) {
+    expect_same("update_u8", body(std::uint8_t{}, second,
+                                  [](const FocusKernels& k, auto... arguments) { k.update_u8(arguments...); }));
+    expect_same("update_u16", body(std::uint16_t{}, second,
+                                   [](const FocusKernels& k, auto... arguments) { k.update_u16(arguments...); }));
+  }
 }
 
 TEST(FocusKernels, FitAlike) {

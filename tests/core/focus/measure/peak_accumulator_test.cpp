@@ -35,7 +35,7 @@ TYPED_TEST_SUITE(APeakAccumulator, Textures);
 TYPED_TEST(APeakAccumulator, KeepsWhatTheWholeCurveSays) {
   std::mt19937 random(4);
   for (int width = 1; width <= 100; ++width) {
-    PeakAccumulator<TypeParam> accumulator(width, 2, false);
+    PeakAccumulator<TypeParam> accumulator(width, 2, {});
     SliceBinner<TypeParam> binner(width, 1);
     for (int y = 0; y < 2; ++y) {
       const auto row = accumulator.row(y);
@@ -73,11 +73,41 @@ TYPED_TEST(APeakAccumulator, KeepsWhatTheWholeCurveSays) {
   }
 }
 
+/// The second peak of a curve whose valleys lie below half of its peak.
+int second_peak_of(const std::vector<std::uint16_t>& curve) {
+  PeakAccumulator<std::uint8_t> accumulator(1, 1, {.valley_share = 32768});
+  SliceBinner<std::uint8_t> binner(1, 1);
+  const auto row = accumulator.row(0);
+  const std::uint8_t pixel = 0;
+  for (std::size_t k = 0; k < curve.size(); ++k) {
+    const Sample<std::uint8_t> sample{&curve[k], nullptr, &pixel};
+    binner.add(row, std::span(&sample, 1), static_cast<int>(k));
+  }
+  return second_peak::sharpness(*row.curve.second);
+}
+
+TEST(PeakAccumulator, KeepsTheHighestSampleBeyondAValley) {
+  EXPECT_EQ(second_peak_of({10, 1000, 10, 10, 10, 900, 10}), 900);
+  EXPECT_EQ(second_peak_of({10, 900, 10, 10, 10, 1000, 10}), 900);
+  EXPECT_EQ(second_peak_of({10, 1000, 10, 10, 10, 1000, 10}), 1000) << "of equal ones the first is the peak";
+  EXPECT_EQ(second_peak_of({10, 1000, 499, 600, 700, 900, 10}), 900) << "a valley of one sample";
+  EXPECT_EQ(second_peak_of({10, 1000, 500, 600, 700, 900}), 0) << "not below half";
+  EXPECT_EQ(second_peak_of({10, 1000, 980, 960, 940, 930, 920, 910, 900}), 0) << "a slow flank";
+  EXPECT_EQ(second_peak_of({900, 910, 920, 930, 940, 960, 980, 1000}), 0);
+  EXPECT_EQ(second_peak_of({10, 1000, 10, 10, 900, 10, 800, 10}), 800) << "three samples away is too near";
+  EXPECT_EQ(second_peak_of({10, 900, 10, 10, 1000, 10}), 0);
+  EXPECT_EQ(second_peak_of({900, 10, 10, 10, 950, 10, 10, 10, 1000}), 950) << "the higher of two";
+  EXPECT_EQ(second_peak_of({900, 10, 10, 10, 1000, 10, 10, 10, 950}), 950);
+  EXPECT_EQ(second_peak_of({950, 10, 10, 10, 1000, 10, 10, 10, 900}), 950);
+  EXPECT_EQ(second_peak_of({900, 10, 10, 10, 500, 800, 950, 1000}), 900) << "a flank that overtakes is the peak's own";
+  EXPECT_EQ(second_peak_of({10, 65000, 10, 10, 10, 65535, 10}), 65000);
+}
+
 TYPED_TEST(APeakAccumulator, SumsTheSlicesOfABin) {
   constexpr int kWidth = 37;
   std::mt19937 random(5);
   for (const int bin : {2, 3, 4, 7}) {
-    PeakAccumulator<TypeParam> accumulator(kWidth, 1, true);
+    PeakAccumulator<TypeParam> accumulator(kWidth, 1, {.bins = true});
     SliceBinner<TypeParam> binner(kWidth, bin);
     const auto row = accumulator.row(0);
     std::vector<SliceRow<TypeParam>> slices;
@@ -104,10 +134,12 @@ TYPED_TEST(APeakAccumulator, SumsTheSlicesOfABin) {
 }
 
 TEST(PeakAccumulator, TakesTheStatedBytesPerPixelWhereRowsFillTheirBlocks) {
-  EXPECT_EQ(PeakAccumulator<std::uint8_t>::memory_bytes(2448, 2048, false), 20U * 2448 * 2048);
-  EXPECT_EQ(PeakAccumulator<std::uint8_t>::memory_bytes(2448, 2048, true), 24U * 2448 * 2048);
-  EXPECT_EQ(PeakAccumulator<std::uint16_t>::memory_bytes(2048, 2048, false), 21U * 2048 * 2048);
-  EXPECT_EQ(PeakAccumulator<std::uint16_t>::memory_bytes(2048, 2048, true), 26U * 2048 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint8_t>::memory_bytes(2448, 2048, {}), 20U * 2448 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint8_t>::memory_bytes(2448, 2048, {.bins = true}), 24U * 2448 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint8_t>::memory_bytes(2448, 2048, {.bins = true, .valley_share = 1}),
+            26U * 2448 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint16_t>::memory_bytes(2048, 2048, {}), 21U * 2048 * 2048);
+  EXPECT_EQ(PeakAccumulator<std::uint16_t>::memory_bytes(2048, 2048, {.bins = true}), 26U * 2048 * 2048);
 }
 
 }  // namespace
