@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 
@@ -76,12 +78,10 @@ GapFit::Three GapFit::shares_in_place(const CurveTuple& curve, int towards, int 
           moved(beyond == 2 ? towards : 2 * towards, 2 * towards)};
 }
 
-Eigen::Matrix<double, GapFit::kTerms, 1> GapFit::terms(const Three& x) noexcept {
+GapFit::Terms GapFit::terms(const Three& x) noexcept {
   const auto [a, b, c] = x;
-  Eigen::Matrix<double, kTerms, 1> all;
-  all << 1.0, a, b, c, a * a, a * b, a * c, b * b, b * c, c * c, a * a * a, a * a * b, a * a * c, a * b * b, a * b * c,
-      a * c * c, b * b * b, b * b * c, b * c * c, c * c * c;
-  return all;
+  return {1.0,       a,         b,         c,         a * a,     a * b,     a * c,     b * b,     b * c,     c * c,
+          a * a * a, a * a * b, a * a * c, a * b * b, a * b * c, a * c * c, b * b * b, b * b * c, b * c * c, c * c * c};
 }
 
 std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tuples, const CurveShape& shape,
@@ -103,6 +103,7 @@ std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tupl
     vertices_steps.push_back((peak->z_um - at(0).z_um) / step_um_ * towards);
   }
   if (shares.size() < kLeastCurves) return std::nullopt;
+  using Column = Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>;
   Polynomial result;
   const auto n = static_cast<double>(shares.size());
   for (std::size_t j = 0; j < result.mean.size(); ++j) {
@@ -120,13 +121,14 @@ std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tupl
     Three x = shares[i];
     for (std::size_t j = 0; j < x.size(); ++j) x[j] = (x[j] - result.mean[j]) / result.sd[j];
     if (std::any_of(x.begin(), x.end(), [](double value) { return std::abs(value) > kMostDeviations; })) continue;
-    const auto row = terms(x);
+    const Terms all = terms(x);
+    const Column row(all.data());
     normal += row * row.transpose();
     sums += row * vertices_steps[i];
   }
   const Eigen::LLT<Eigen::Matrix<double, kTerms, kTerms>> factor(normal);
   if (factor.info() != Eigen::Success) return std::nullopt;
-  result.factors = factor.solve(sums);
+  Eigen::Map<Eigen::Matrix<double, kTerms, 1>>(result.factors.data()) = factor.solve(sums);
   return result;
 }
 
@@ -144,7 +146,9 @@ double GapFit::height_um(const CurveTuple& curve) const noexcept {
     x[j] = (x[j] - polynomial->mean[j]) / polynomial->sd[j];
     if (!(std::abs(x[j]) <= kMostDeviations)) return fitted_um;
   }
-  const double change = terms(x).dot(polynomial->factors) - fitted_steps;
+  const Terms all = terms(x);
+  const double vertex_steps = std::inner_product(all.begin(), all.end(), polynomial->factors.begin(), 0.0);
+  const double change = vertex_steps - fitted_steps;
   const double share = std::min(1.0, (kFitAlone_steps - fitted_steps) / (kFitAlone_steps - kFitBegins_steps));
   return fitted_um + share * std::clamp(change, -kMostChange_steps, kMostChange_steps) * step_um_ * towards;
 }

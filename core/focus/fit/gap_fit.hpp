@@ -15,8 +15,6 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "core/focus/fit/curve_shape.hpp"
 #include "core/focus/fit/curve_tuple.hpp"
 #include "core/focus/fit/row_fit.hpp"
@@ -39,15 +37,16 @@ class GapFit {
 
  private:
   static constexpr int kTerms = 20;  // of a cubic of three variables
+  using Terms = std::array<double, kTerms>;
   using Three = std::array<double, 3>;
   /// The vertex in steps from the peak's sample towards the gap.
   struct Polynomial {
     Three mean{};  // of the shares
     Three sd{};
-    Eigen::Matrix<double, kTerms, 1> factors;
+    Terms factors{};
   };
 
-  [[nodiscard]] static Eigen::Matrix<double, kTerms, 1> terms(const Three& x) noexcept;
+  [[nodiscard]] static Terms terms(const Three& x) noexcept;
   /// The samples two steps and one step away from the gap, and the one beyond it, as if they were exactly in their
   /// places for a curve with its vertex at height_um. towards: +1 for a gap after the peak's sample, -1 before.
   /// beyond: number of the sample beyond it, from the peak's.
