@@ -10,6 +10,7 @@
 /// the mean over some thousand curves. The fit's error for a curve of that p is computed and subtracted from every
 /// vertex.
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,21 @@ struct CurveShape {
   double exponent = 2.0;  ///< p; 2 if there are too few curves to estimate it
   double width_um = 0.0;  ///< full width at half maximum, median; 0 unknown
   VertexBias bias;        ///< of the five-sample fit
+};
+
+/// F of a scan's curves, 1 at the vertex. The shape has a width.
+class ScanCurve {
+ public:
+  explicit ScanCurve(const CurveShape& shape) noexcept
+      : exponent_(shape.exponent),
+        bend_per_um2_((std::exp2(1.0 / shape.exponent) - 1.0) * 4.0 / (shape.width_um * shape.width_um)) {}
+  [[nodiscard]] double at(double away_um) const noexcept {
+    return std::pow(1.0 + bend_per_um2_ * away_um * away_um, -exponent_);
+  }
+
+ private:
+  double exponent_;
+  double bend_per_um2_;
 };
 
 /// tuples: spread over the image, their indices within z_um. z_um: measured z of each sample. context: computes on the

@@ -6,6 +6,7 @@
 
 #include "core/base/units.hpp"
 #include "core/focus/fit/fit_reference.hpp"
+#include "core/focus/fit/sample_heights.hpp"
 
 namespace fvd {
 
@@ -14,25 +15,6 @@ namespace {
 /// A longer step, over the scan's median, is that over a missing slice.
 constexpr double kGap = 1.7;
 constexpr int kVertices = 33;
-
-/// F of the scan's curves, 1 at the vertex.
-struct ModelCurve {
-  explicit ModelCurve(const CurveShape& shape)
-      : exponent(shape.exponent),
-        bend_per_um2((std::exp2(1.0 / shape.exponent) - 1.0) * 4.0 / (shape.width_um * shape.width_um)) {}
-  [[nodiscard]] double at(double away_um) const { return std::pow(1.0 + bend_per_um2 * away_um * away_um, -exponent); }
-  double exponent;
-  double bend_per_um2;
-};
-
-double median_step(const std::vector<double>& z_um) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < z_um.size(); ++k) steps.push_back(std::abs(z_um[k] - z_um[k - 1]));
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
 
 /// One of the four steps about sample i is that over a missing slice.
 bool gap_beside(const std::vector<double>& z_um, std::size_t i, double step_um) {
@@ -47,8 +29,8 @@ bool gap_beside(const std::vector<double>& z_um, std::size_t i, double step_um) 
 
 GapBias::GapBias(const std::vector<double>& z_um, const CurveShape& shape) : table_of_(z_um.size(), -1) {
   if (!(shape.width_um > 0.0)) return;
-  const ModelCurve model(shape);
-  const double step_um = median_step(z_um);
+  const ScanCurve model(shape);
+  const double step_um = median_step_um(z_um);
   for (std::size_t i = 1; i + 1 < z_um.size(); ++i) {
     if ((z_um[i - 1] - z_um[i]) * (z_um[i + 1] - z_um[i]) >= 0.0 || !gap_beside(z_um, i, step_um)) continue;
     Beside table;

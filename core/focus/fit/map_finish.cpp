@@ -18,6 +18,7 @@
 #include "core/focus/fit/curve_tuple.hpp"
 #include "core/focus/fit/edge_band.hpp"
 #include "core/focus/fit/gap_bias.hpp"
+#include "core/focus/fit/gap_fit.hpp"
 #include "core/focus/kernels/five_sample_fit.hpp"
 #include "core/focus/measure/peak_tiles.hpp"
 #include "core/focus/measure/sharpness_rows.hpp"
@@ -112,12 +113,9 @@ class Limits {
 CurveTuple tuple_of(const RowFit& fit, const CurveRow& row, int x, float noise, float height_m) {
   const double floor = static_cast<double>(kFloorShare) * fit.share(row.minimum[x]);
   const double amplitude = fit.share(row.peak[x]) - floor;
-  const auto share = [&](std::uint16_t code) {
-    return static_cast<float>(std::max(0.0, (fit.share(code) - floor) / amplitude));
-  };
   CurveTuple tuple;
   tuple.index = row.peak_index[x];
-  tuple.share = {share(row.left2[x]), share(row.left[x]), 1.0F, share(row.right[x]), share(row.right2[x])};
+  tuple.share = fit.shares(row, x);
   tuple.noise = static_cast<float>(static_cast<double>(noise) / amplitude);
   tuple.height_um = height_m * 1e6F;
   return tuple;
@@ -228,7 +226,7 @@ class MapFinish {
   }
 
   /// All planes. most_samples: see edge_band.hpp, 0 for no such test.
-  void fit(const RowFit& fit, const GapBias& gaps, int most_samples) {
+  void fit(const RowFit& fit, const GapBias& gaps, const GapFit& beside_gaps, int most_samples) {
     const int bands = pool_.threads();
     const bool jumps_matter = most_samples > 0;
     const EdgeBandLimits strips{edge_spill(settings_), most_samples,
@@ -250,6 +248,7 @@ class MapFinish {
         fit.fit(row, noise_row.data(), limits.least(), width_,
                 {map_.height_m.row(y), map_.sigma_m.row(y), map_.prominence.row(y), map_.mask.row(y)});
         gaps.correct(row, width_, map_.height_m.row(y));
+        beside_gaps.correct(fit, row, width_, map_.height_m.row(y));
         if (jumps_matter)
           jumps[static_cast<std::size_t>(band)].look_at(y, row.peak_index, map_.mask.row(y),
                                                         map_.mask.row(std::max(0, y - 2)));
@@ -345,8 +344,9 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
   ScanCurves curves_in_common{shape.bias, kVertexShare * curve_misfit(spots.tuples, corrected, shape.exponent), {}};
   if (settings.bin_slices > 1) curves_in_common.misfit *= kBinsShare;
   curves_in_common.limits = curve_limits(spots.tuples, spots.looked_at, corrected, settings.tests);
-  finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common),
-             GapBias(corrected, method == PeakMethod::kFiveSample ? shape : CurveShape{}),
+  const CurveShape of_fit = method == PeakMethod::kFiveSample ? shape : CurveShape{};
+  finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common), GapBias(corrected, of_fit),
+             GapFit(spots.tuples, corrected, of_fit, curves_in_common.limits),
              jump_samples(settings, corrected, shape.width_um));
   if (settings.tests.max_sigma_um > 0.0) finish.drop_uncertain(settings.tests.max_sigma_um);
   map.noise_grey = noise.median();

@@ -69,6 +69,15 @@ void RowFit::find_noise(const CurveRow& row, const float* noise_grey, int width,
   }
 }
 
+std::array<float, 5> RowFit::shares(const CurveRow& row, int x) const noexcept {
+  const double floor = static_cast<double>(kFloorShare) * share(row.minimum[x]);
+  const double amplitude = share(row.peak[x]) - floor;
+  const auto over_floor = [&](std::uint16_t code) {
+    return static_cast<float>(std::max(0.0, (share(code) - floor) / amplitude));
+  };
+  return {over_floor(row.left2[x]), over_floor(row.left[x]), 1.0F, over_floor(row.right[x]), over_floor(row.right2[x])};
+}
+
 void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amplitude, int width,
                  const FitRow& out) const noexcept {
   if (method_ == PeakMethod::kFiveSample) {

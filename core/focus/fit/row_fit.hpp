@@ -2,6 +2,7 @@
 
 /// From one row's condensed focus curves to heights, their variances, prominence and reasons to be a hole.
 
+#include <array>
 #include <vector>
 
 #include "core/focus/fit/curve_limits.hpp"
@@ -52,6 +53,8 @@ class RowFit {
     const double value = code * SharpnessCode::kUnit;
     return code_.root ? value * value : value;
   }
+  /// Of the five samples about a peak, over the floor and as shares of the peak's; see CurveTuple.
+  [[nodiscard]] std::array<float, 5> shares(const CurveRow& row, int x) const noexcept;
 
  private:
   void fit_triples(const CurveRow& row, const float* noise, const float* least_amplitude, int width,

@@ -1,6 +1,8 @@
 #include "core/focus/fit/sample_heights.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "core/focus/fit/height_map.hpp"
@@ -51,6 +53,15 @@ std::vector<HeightEntry> height_table(const std::vector<double>& z_um) {
     }
   }
   return table;
+}
+
+double median_step_um(const std::vector<double>& z_um) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < z_um.size(); ++k) steps.push_back(std::abs(z_um[k] - z_um[k - 1]));
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
 }
 
 }  // namespace fvd

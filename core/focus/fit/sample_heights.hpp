@@ -33,4 +33,7 @@ class SampleHeights {
 /// One entry per sample. z_um: at least one.
 [[nodiscard]] std::vector<HeightEntry> height_table(const std::vector<double>& z_um);
 
+/// Median distance of successive samples, 0 for fewer than two.
+[[nodiscard]] double median_step_um(const std::vector<double>& z_um);
+
 }  // namespace fvd

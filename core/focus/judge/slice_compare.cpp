@@ -39,6 +39,12 @@ constexpr double kMinMotionSignificance = 8.0;
 constexpr double kMinAgreement = 0.3;
 constexpr double kLeastLoss = -0.15;  // a slice that was smeared is less sharp than its neighbours in any case
 constexpr double kMaxLoss = -0.7;     // logarithm: half the squared second difference
+/// Two exposures a few pixels apart may lose less than that: -0.46 and -0.63, with an agreement of 0.78 and 0.84. Clean
+/// slices that agree by more than 0.4 lose nothing. Where jitter of some pixels adds its part, a slice in which hardly
+/// any tile shows texture had -0.47 and 0.77.
+constexpr double kFirmAgreement = 0.6;
+constexpr double kFirmLoss = -0.35;
+constexpr double kFirmShare = 0.3;
 
 double median(std::vector<double>& values) {
   if (values.empty()) return 0.0;
@@ -237,7 +243,9 @@ bool MotionFigure::turned() const noexcept {
 }
 
 bool MotionFigure::moved() const noexcept {
-  return turned() || (agreement > kMinAgreement && tiles >= kMinTiles && sharpness < kMaxLoss);
+  const bool blurred = agreement > kMinAgreement && sharpness < kMaxLoss;
+  const bool agreed = agreement > kFirmAgreement && sharpness < kFirmLoss && share > kFirmShare;
+  return turned() || (tiles >= kMinTiles && (blurred || agreed));
 }
 
 double MotionFigure::strength() const noexcept { return std::max(direction, -sharpness); }
@@ -277,6 +285,7 @@ MotionFigure motion_of(const SliceFigures& before, const SliceFigures& slice, co
   }
   MotionFigure figure;
   figure.tiles = static_cast<int>(losses.size());
+  figure.share = static_cast<double>(figure.tiles) / std::max(1, slice.tiles());
   if (losses.empty()) return figure;
   figure.sharpness = median(losses);
   figure.agreement = median(agreements);

@@ -61,6 +61,7 @@ struct OrderFigure {
 /// Whether a slice is as sharp, in every direction, as its neighbours let expect.
 struct MotionFigure {
   int tiles = 0;              ///< those in which both neighbours show texture well above the noise
+  double share = 0.0;         ///< of all tiles
   double direction = 0.0;     ///< |logarithm| by which the ratio of two crossed directions differs from the neighbours'
   double significance = 0.0;  ///< that over its standard error
   double sharpness = 0.0;     ///< logarithm of the sharpness over the neighbours' geometric mean

@@ -168,6 +168,20 @@ INSTANTIATE_TEST_SUITE_P(Planted, AFault, testing::ValuesIn(kFaults),
 
 /// Stripes of 16 px at two heights, so that every tile has both: between them a slice is less sharp than its
 /// neighbours.
+TEST(SliceGate, FindsTwoExposuresThatLoseLessThanHalfOfTheSharpness) {
+  for (const std::size_t at : {std::size_t{8}, std::size_t{10}, std::size_t{13}}) {
+    SCOPED_TRACE(at);
+    Scene scene({.noise = 1.0});
+    test::shake(scene.slices[at], 8, 5);
+    const std::vector<double> noise(static_cast<std::size_t>(slice_figures(scene.view(at)).tiles()), 9.0);
+    const MotionFigure motion = motion_of(slice_figures(scene.view(at - 1)), slice_figures(scene.view(at)),
+                                          slice_figures(scene.view(at + 1)), noise);
+    EXPECT_FALSE(motion.turned());
+    EXPECT_GT(motion.sharpness, -0.7);
+    EXPECT_EQ(judge_scene(scene).suspect_indices(), std::vector<int>{static_cast<int>(at)});
+  }
+}
+
 TEST(SliceGate, BelievesTheSlicesBetweenTwoLevels) {
   for (const double apart_um : {20.0, 30.0, 40.0}) {
     SceneSettings level;
