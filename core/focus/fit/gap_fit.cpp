@@ -19,6 +19,9 @@ namespace {
 constexpr double kMostOutOfPlace_steps = 0.15;
 constexpr std::size_t kMostCurves = 4000;
 constexpr std::size_t kLeastCurves = 500;
+/// Each fifth of a step must have this share of their vertices: curves that all peak at the same place between two
+/// samples, as those of a plateau, would teach that every curve does.
+constexpr double kLeastShareOfFifth = 0.05;
 /// Shares further from their mean, in standard deviations, are not those of the scan's curves.
 constexpr double kMostDeviations = 4.0;
 /// From the first to the second, in steps towards the gap, the five-sample fit takes over: nearer to the gap's middle
@@ -31,6 +34,14 @@ constexpr double kRidge = 1e-6;  // keeps terms that a scan's curves do not tell
 ReferenceSample sample(const CurveTuple& curve, const std::vector<double>& z_um, int from_peak) {
   return {z_um[static_cast<std::size_t>(curve.index + from_peak)],
           static_cast<double>(curve.share[static_cast<std::size_t>(2 + from_peak)])};
+}
+
+bool cover_a_step(const std::vector<double>& vertices_steps) {
+  std::array<std::size_t, 5> fifths{};
+  for (const double vertex : vertices_steps)
+    ++fifths[static_cast<std::size_t>(std::clamp(5.0 * (vertex + 0.5), 0.0, 4.9))];
+  const double least = kLeastShareOfFifth * static_cast<double>(vertices_steps.size());
+  return static_cast<double>(*std::min_element(fifths.begin(), fifths.end())) >= least;
 }
 
 }  // namespace
@@ -102,7 +113,7 @@ std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tupl
     shares.push_back(shares_in_place(curve, towards, 1, peak->z_um));
     vertices_steps.push_back((peak->z_um - at(0).z_um) / step_um_ * towards);
   }
-  if (shares.size() < kLeastCurves) return std::nullopt;
+  if (shares.size() < kLeastCurves || !cover_a_step(vertices_steps)) return std::nullopt;
   using Column = Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>;
   Polynomial result;
   const auto n = static_cast<double>(shares.size());

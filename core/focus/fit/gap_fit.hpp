@@ -25,8 +25,8 @@ namespace fvd {
 class GapFit {
  public:
   /// tuples: spread over the image, their indices within z_um; those with lower neighbours than `limits` asks for tell
-  /// nothing. z_um: of each sample. Without gaps, without a width in `shape` or with fewer than 500 such curves nothing
-  /// is corrected.
+  /// nothing. z_um: of each sample. Without gaps, without a width in `shape` or with fewer than 500 such curves, or
+  /// with vertices that do not lie all over a step, nothing is corrected.
   GapFit(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, const CurveShape& shape,
          const CurveLimits& limits);
 

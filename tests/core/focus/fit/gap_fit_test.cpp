@@ -112,6 +112,13 @@ TEST(GapFit, LearnsNothingFromFewCurvesOrWithoutAWidth) {
   }
 }
 
+TEST(GapFit, LearnsNothingFromAPlateau) {
+  const auto z_um = heights_um(1.0);
+  const Curves plateau(z_um, 139.5, 140.5, 3000);
+  const GapFit gap(plateau.tuples, z_um, kShape, {});
+  for (const CurveTuple& tuple : Curves(z_um, 92.0, 94.0, 50).tuples) EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
+}
+
 TEST(GapFit, TrustsNoCurveThatIsUnlikeTheScans) {
   const auto z_um = heights_um(1.0);
   const Curves learnt_from(z_um, 40.0, 160.0, 3000);
