@@ -79,7 +79,8 @@ void tenengrad_u16(const std::uint16_t* above, const std::uint16_t* row, const s
   tenengrad(above, row, below, width, distance, 3, shift, out);
 }
 
-/// A row's new values enter the column sums, those in the slot leave them; 16 pixels.
+/// A row's new values enter the column sums, those in the slot leave them; 16 pixels. Done again it changes nothing:
+/// the slot holds the new values then.
 inline __attribute__((always_inline)) void enter_values(const Codes& value, int shift, std::uint16_t* columns,
                                                         std::uint16_t* slot, std::uint16_t* scaled) {
   Codes sum;
@@ -113,9 +114,8 @@ inline __attribute__((always_inline)) void add_difference(const Codes& centre, c
 void enter_laplacian_u8(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
                         int distance, int shift, std::uint16_t* columns, std::uint16_t* slot,
                         std::uint16_t* scaled) noexcept {
-  int x = distance;
   const int end = width - distance;
-  for (; x + 16 <= end; x += 16) {
+  const auto at = [=](int x) __attribute__((always_inline)) {
     Codes centre;
     Codes left;
     Codes right;
@@ -131,8 +131,9 @@ void enter_laplacian_u8(const std::uint8_t* above, const std::uint8_t* row, cons
     add_size(centre - left - right, value);
     add_size(centre - upper - lower, value);
     enter_values(value, shift, columns + x, slot + x, scaled + x);
-  }
-  for (; x < end; ++x) {
+  };
+  if (end - distance >= 16) return cover(distance, end, at);
+  for (int x = distance; x < end; ++x) {
     const int horizontal = 2 * row[x] - row[x - distance] - row[x + distance];
     const int vertical = 2 * row[x] - above[x] - below[x];
     enter_value(size_of(horizontal) + size_of(vertical), shift, columns[x], slot[x], scaled[x]);
@@ -144,9 +145,8 @@ void enter_diagonal_u8(const DiagonalRows<std::uint8_t>& given, int width, int s
   const DiagonalRows<std::uint8_t> rows = given;
   const int d = rows.distance;
   const int s = rows.inner;
-  int x = d;
   const int end = width - d;
-  for (; x + 16 <= end; x += 16) {
+  const auto at = [=](int x) __attribute__((always_inline)) {
     Codes centre;
     load_wide(rows.row + x, centre);
     centre += centre;
@@ -159,8 +159,9 @@ void enter_diagonal_u8(const DiagonalRows<std::uint8_t>& given, int width, int s
     add_difference(centre, rows.upper + x - s, rows.lower + x + s, value);
     add_difference(centre, rows.upper + x + s, rows.lower + x - s, value);
     enter_values(value, shift, columns + x, slot + x, scaled + x);
-  }
-  for (; x < end; ++x) {
+  };
+  if (end - d >= 16) return cover(d, end, at);
+  for (int x = d; x < end; ++x) {
     enter_value(static_cast<int>(diagonal_value(rows, x)), shift, columns[x], slot[x], scaled[x]);
   }
 }

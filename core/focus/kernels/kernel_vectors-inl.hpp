@@ -76,6 +76,15 @@ inline std::uint16_t rounded_shift(std::uint16_t value, int shift) {
   return static_cast<std::uint16_t>((value >> shift) + ((value >> (shift - 1)) & 1));
 }
 
+/// Calls at(x) for vectors of 16 that cover first .. end - 1, at least 16 columns. Those between the ends are aligned
+/// as column 0 is; those at the ends overlap them, so at(x) must give the same where it has been called before.
+template <typename At>
+inline __attribute__((always_inline)) void cover(int first, int end, At at) {
+  at(first);
+  for (int x = (first + 16) / 16 * 16; x + 16 <= end; x += 16) at(x);
+  at(end - 16);
+}
+
 using Four = float __attribute__((vector_size(16), may_alias));
 
 /// Number n of each of four rows goes to columns[n].

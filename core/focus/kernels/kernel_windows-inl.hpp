@@ -21,8 +21,7 @@ void slide_u32(std::uint32_t* columns, const std::uint32_t* entering, std::uint3
 
 void slide_u16(std::uint16_t* columns, const std::uint16_t* entering, std::uint16_t* leaving, int width, int shift,
                std::uint16_t* scaled) noexcept {
-  int x = 0;
-  for (; x + 16 <= width; x += 16) {
+  const auto at = [=](int x) __attribute__((always_inline)) {
     Codes sum;
     Codes in;
     Codes out;
@@ -34,8 +33,9 @@ void slide_u16(std::uint16_t* columns, const std::uint16_t* entering, std::uint1
     store(in, leaving + x);
     if (shift > 0) scale_codes(shift, sum);
     store(sum, scaled + x);
-  }
-  for (; x < width; ++x) {
+  };
+  if (width >= 16) return cover(0, width, at);
+  for (int x = 0; x < width; ++x) {
     columns[x] = static_cast<std::uint16_t>(columns[x] + entering[x] - leaving[x]);
     leaving[x] = entering[x];
     scaled[x] = shift > 0 ? rounded_shift(columns[x], shift) : columns[x];

@@ -8,6 +8,14 @@ namespace fvd {
 
 namespace {
 
+/// Elements of 16 or 32 bits: whole cache lines, so that a vector of the kernels never lies in two of them.
+std::size_t row_pitch(int width) { return (static_cast<std::size_t>(width) + 31) / 32 * 32; }
+
+template <typename T>
+void set_zero(LargeArray<T>& values) noexcept {
+  std::fill_n(values.data(), values.size(), T{0});
+}
+
 std::uint16_t linear_code(std::uint32_t sum, int shift) {
   return static_cast<std::uint16_t>(shift == 0 ? sum : (sum + (1U << (shift - 1))) >> shift);
 }
@@ -40,6 +48,7 @@ template <typename Pixel>
 SharpnessRows<Pixel>::SharpnessRows(int width, const FocusSettings& settings, PixelFormat format)
     : kernels_(focus_kernels()),
       width_(width),
+      pitch_(row_pitch(width)),
       window_(settings.window_px),
       sides_(window_sides(settings)),
       distance_(settings.distance_px),
@@ -48,10 +57,10 @@ SharpnessRows<Pixel>::SharpnessRows(int width, const FocusSettings& settings, Pi
       saturation_(max_grey_level(format)),
       levels_(settings),
       narrow_(!code_.root),
-      codes_(static_cast<std::size_t>(width)),
-      saturated_columns_(static_cast<std::size_t>(width)),
-      saturated_counts_(static_cast<std::size_t>(width)),
-      clipped_(static_cast<std::size_t>(width)) {
+      codes_(pitch_),
+      saturated_columns_(pitch_),
+      saturated_counts_(pitch_),
+      clipped_(pitch_) {
   if (narrow_) {
     resize(narrow_columns_);
   } else {
@@ -62,20 +71,18 @@ SharpnessRows<Pixel>::SharpnessRows(int width, const FocusSettings& settings, Pi
 template <typename Pixel>
 template <typename Sum>
 void SharpnessRows<Pixel>::resize(Columns<Sum>& columns) {
-  const auto width = static_cast<std::size_t>(width_);
-  columns.ring.resize(width * static_cast<std::size_t>(sides_.first));
-  for (auto* row : {&columns.fresh, &columns.sums, &columns.scaled, &columns.windows}) row->resize(width);
+  columns.ring = LargeArray<Sum>(pitch_ * static_cast<std::size_t>(sides_.first));
+  for (auto* row : {&columns.fresh, &columns.sums, &columns.scaled, &columns.windows}) *row = LargeArray<Sum>(pitch_);
   if (sides_.second == 1) return;
-  columns.second_ring.resize(width * static_cast<std::size_t>(sides_.second));
-  for (auto* row : {&columns.second_sums, &columns.second_scaled}) row->resize(width);
+  columns.second_ring = LargeArray<Sum>(pitch_ * static_cast<std::size_t>(sides_.second));
+  for (auto* row : {&columns.second_sums, &columns.second_scaled}) *row = LargeArray<Sum>(pitch_);
 }
 
 template <typename Pixel>
 std::size_t SharpnessRows<Pixel>::memory_bytes(int width, const FocusSettings& settings) {
   const WindowSides sides = window_sides(settings);
   const int rows = sides.first + 4 + (sides.second == 1 ? 0 : sides.second + 2);
-  return static_cast<std::size_t>(width) *
-         (static_cast<std::size_t>(rows) * sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t) + 1);
+  return row_pitch(width) * (static_cast<std::size_t>(rows) * sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t) + 1);
 }
 
 template <typename Pixel>
@@ -87,9 +94,7 @@ bool SharpnessRows<Pixel>::row_saturated(int y) const noexcept {
 template <typename Pixel>
 template <typename Sum>
 void SharpnessRows<Pixel>::clear(Columns<Sum>& columns) noexcept {
-  for (auto* rows : {&columns.ring, &columns.sums, &columns.second_ring, &columns.second_sums}) {
-    std::fill(rows->begin(), rows->end(), Sum{0});
-  }
+  for (auto* rows : {&columns.ring, &columns.sums, &columns.second_ring, &columns.second_sums}) set_zero(*rows);
 }
 
 template <typename Pixel>
@@ -103,7 +108,7 @@ void SharpnessRows<Pixel>::begin(PlaneView<const Pixel> image, int first, double
   } else {
     clear(wide_columns_);
   }
-  std::fill(saturated_columns_.begin(), saturated_columns_.end(), std::uint16_t{0});
+  set_zero(saturated_columns_);
   counted_.begin(first, window_, image.height);
   second_.begin(first, sides_.second, image.height);
   first_.begin(second_.low, sides_.first, image.height);
@@ -189,14 +194,14 @@ void SharpnessRows<Pixel>::enter(Wide& columns, int y) noexcept {
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::leave(Narrow& columns, int y) noexcept {
-  std::fill(columns.fresh.begin(), columns.fresh.end(), std::uint16_t{0});
+  set_zero(columns.fresh);
   kernels_.slide_u16(columns.sums.data(), columns.fresh.data(), slot_of(columns.ring, y, sides_.first), width_,
                      code_.shift, columns.scaled.data());
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::leave(Wide& columns, int y) noexcept {
-  std::fill(columns.fresh.begin(), columns.fresh.end(), 0U);
+  set_zero(columns.fresh);
   kernels_.slide_u32(columns.sums.data(), columns.fresh.data(), slot_of(columns.ring, y, sides_.first), width_);
 }
 
@@ -214,14 +219,14 @@ void SharpnessRows<Pixel>::enter_second(Wide& columns, int y) noexcept {
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::leave_second(Narrow& columns, int y) noexcept {
-  std::fill(columns.fresh.begin(), columns.fresh.end(), std::uint16_t{0});
+  set_zero(columns.fresh);
   kernels_.slide_u16(columns.second_sums.data(), columns.fresh.data(), slot_of(columns.second_ring, y, sides_.second),
                      width_, code_.second_shift, columns.second_scaled.data());
 }
 
 template <typename Pixel>
 void SharpnessRows<Pixel>::leave_second(Wide& columns, int y) noexcept {
-  std::fill(columns.fresh.begin(), columns.fresh.end(), 0U);
+  set_zero(columns.fresh);
   kernels_.slide_u32(columns.second_sums.data(), columns.fresh.data(), slot_of(columns.second_ring, y, sides_.second),
                      width_);
 }

@@ -24,9 +24,10 @@
 /// Running column sums and sums in powers of three make the cost nearly independent of the window.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "core/base/large_array.hpp"
 #include "core/focus/kernels/focus_kernels.hpp"
 #include "core/focus/measure/sharpness_code.hpp"
 #include "core/image/image.hpp"
@@ -92,14 +93,14 @@ class SharpnessRows {
   /// a single box.
   template <typename Sum>
   struct Columns {
-    std::vector<Sum> ring;           // [first side][width], values of the rows in the box, 0 where there is none
-    std::vector<Sum> fresh;          // [width], the row that enters
-    std::vector<Sum> sums;           // [width], over the box's rows
-    std::vector<Sum> scaled;         // [width], the same, shifted
-    std::vector<Sum> second_ring;    // [second side][width], such sums of the rows in the second box
-    std::vector<Sum> second_sums;    // [width], over the second box's rows
-    std::vector<Sum> second_scaled;  // [width], the same, shifted
-    std::vector<Sum> windows;        // [width]
+    LargeArray<Sum> ring;           // [first side][pitch], values of the rows in the box, 0 where there is none
+    LargeArray<Sum> fresh;          // [width], the row that enters
+    LargeArray<Sum> sums;           // [width], over the box's rows
+    LargeArray<Sum> scaled;         // [width], the same, shifted
+    LargeArray<Sum> second_ring;    // [second side][pitch], such sums of the rows in the second box
+    LargeArray<Sum> second_sums;    // [width], over the second box's rows
+    LargeArray<Sum> second_scaled;  // [width], the same, shifted
+    LargeArray<Sum> windows;        // [width]
   };
   /// The rows that are inside a box: [low, high).
   struct RowRange {
@@ -141,8 +142,8 @@ class SharpnessRows {
   template <typename Sum>
   void move_to(Columns<Sum>& columns) noexcept;
   template <typename Sum>
-  [[nodiscard]] Sum* slot_of(std::vector<Sum>& ring, int y, int side) const noexcept {
-    return ring.data() + static_cast<std::ptrdiff_t>(y % side) * width_;
+  [[nodiscard]] Sum* slot_of(LargeArray<Sum>& ring, int y, int side) const noexcept {
+    return ring.data() + static_cast<std::ptrdiff_t>(y % side) * static_cast<std::ptrdiff_t>(pitch_);
   }
   void sum_windows(const std::uint16_t* values, int window, std::uint16_t* out) const noexcept;
   void sum_windows(const std::uint32_t* values, int window, std::uint32_t* out) const noexcept;
@@ -159,6 +160,7 @@ class SharpnessRows {
 
   const FocusKernels& kernels_;
   int width_;
+  std::size_t pitch_;  // from a row of a ring to the next, elements: every row starts a cache line
   int window_;
   WindowSides sides_;
   int distance_;
@@ -176,10 +178,10 @@ class SharpnessRows {
   int saturated_rows_ = 0;  // rows inside the window that hold a saturated pixel
   Narrow narrow_columns_;
   Wide wide_columns_;
-  std::vector<std::uint16_t> codes_;
-  std::vector<std::uint16_t> saturated_columns_;  // [width], saturated pixels in the window's rows, <= 63
-  std::vector<std::uint16_t> saturated_counts_;   // [width], over the window
-  std::vector<std::uint8_t> clipped_;
+  LargeArray<std::uint16_t> codes_;
+  LargeArray<std::uint16_t> saturated_columns_;  // [width], saturated pixels in the window's rows, <= 63
+  LargeArray<std::uint16_t> saturated_counts_;   // [width], over the window
+  LargeArray<std::uint8_t> clipped_;
 };
 
 /// The same codes for a whole image, obviously correct: every window is summed anew. Shape of the image. For tests.
