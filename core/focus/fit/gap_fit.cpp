@@ -24,6 +24,10 @@ constexpr std::size_t kLeastCurves = 500;
 constexpr double kLeastShareOfFifth = 0.05;
 /// Shares further from their mean, in standard deviations, are not those of the scan's curves.
 constexpr double kMostDeviations = 4.0;
+/// Each share may be a usual one and all three together not: of curves whose width is not the scan's. From the first
+/// strangeness to the second the five-sample fit takes over. Of the scan's own curves a tenth is beyond the first.
+constexpr double kUsual = 2.0;
+constexpr double kStrange = 5.0;
 /// From the first to the second, in steps towards the gap, the five-sample fit takes over: nearer to the gap's middle
 /// it has samples on both sides that tell as much. Past half a step the missing sample would have been the peak.
 constexpr double kFitBegins_steps = 0.3;
@@ -95,6 +99,14 @@ GapFit::Terms GapFit::terms(const Three& x) noexcept {
           a * a * a, a * a * b, a * a * c, a * b * b, a * b * c, a * c * c, b * b * b, b * b * c, b * c * c, c * c * c};
 }
 
+double GapFit::strangeness(const Terms& terms, const Polynomial& polynomial) noexcept {
+  double squares = 0.0;
+  for (const Terms& row : polynomial.whitening) {
+    squares += std::pow(std::inner_product(terms.begin(), terms.end(), row.begin(), 0.0), 2);
+  }
+  return squares;
+}
+
 std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tuples, const CurveShape& shape,
                                                 const CurveLimits& limits, int towards) const {
   std::vector<Three> shares;
@@ -140,6 +152,10 @@ std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tupl
   const Eigen::LLT<Eigen::Matrix<double, kTerms, kTerms>> factor(normal);
   if (factor.info() != Eigen::Success) return std::nullopt;
   Eigen::Map<Eigen::Matrix<double, kTerms, 1>>(result.factors.data()) = factor.solve(sums);
+  using Rows = Eigen::Matrix<double, kTerms, kTerms, Eigen::RowMajor>;
+  Rows whitening = Rows::Identity() * std::sqrt(n / kTerms);
+  factor.matrixL().solveInPlace(whitening);
+  Eigen::Map<Rows>(result.whitening.front().data()) = whitening;
   return result;
 }
 
@@ -160,7 +176,8 @@ double GapFit::height_um(const CurveTuple& curve) const noexcept {
   const Terms all = terms(x);
   const double vertex_steps = std::inner_product(all.begin(), all.end(), polynomial->factors.begin(), 0.0);
   const double change = vertex_steps - fitted_steps;
-  const double share = std::min(1.0, (kFitAlone_steps - fitted_steps) / (kFitAlone_steps - kFitBegins_steps));
+  const double usual = std::clamp((kStrange - strangeness(all, *polynomial)) / (kStrange - kUsual), 0.0, 1.0);
+  const double share = usual * std::min(1.0, (kFitAlone_steps - fitted_steps) / (kFitAlone_steps - kFitBegins_steps));
   return fitted_um + share * std::clamp(change, -kMostChange_steps, kMostChange_steps) * step_um_ * towards;
 }
 
