@@ -87,7 +87,7 @@ GapFit::Three GapFit::shares_in_place(const CurveTuple& curve, int towards, int 
   const auto moved = [&](int from_peak, int place) {
     const ReferenceSample found = sample(curve, z_um_, from_peak);
     const double place_um = peak_um + step_um_ * place;
-    return found.share * model_.at(place_um - height_um) / model_.at(found.z_um - height_um);
+    return found.share * model_.ratio(place_um - height_um, found.z_um - height_um);
   };
   return {moved(-2 * towards, -2 * towards), moved(-towards, -towards),
           moved(beyond == 2 ? towards : 2 * towards, 2 * towards)};
@@ -100,11 +100,10 @@ GapFit::Terms GapFit::terms(const Three& x) noexcept {
 }
 
 double GapFit::strangeness(const Terms& terms, const Polynomial& polynomial) noexcept {
-  double squares = 0.0;
-  for (const Terms& row : polynomial.whitening) {
-    squares += std::pow(std::inner_product(terms.begin(), terms.end(), row.begin(), 0.0), 2);
-  }
-  return squares;
+  using Square = Eigen::Map<const Eigen::Matrix<double, kTerms, kTerms>>;
+  using Column = Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>;
+  const Eigen::Matrix<double, kTerms, 1> white = Square(polynomial.whitening.front().data()) * Column(terms.data());
+  return white.squaredNorm();
 }
 
 std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tuples, const CurveShape& shape,
@@ -152,10 +151,10 @@ std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tupl
   const Eigen::LLT<Eigen::Matrix<double, kTerms, kTerms>> factor(normal);
   if (factor.info() != Eigen::Success) return std::nullopt;
   Eigen::Map<Eigen::Matrix<double, kTerms, 1>>(result.factors.data()) = factor.solve(sums);
-  using Rows = Eigen::Matrix<double, kTerms, kTerms, Eigen::RowMajor>;
-  Rows whitening = Rows::Identity() * std::sqrt(n / kTerms);
+  using Square = Eigen::Matrix<double, kTerms, kTerms>;
+  Square whitening = Square::Identity() * std::sqrt(n / kTerms);
   factor.matrixL().solveInPlace(whitening);
-  Eigen::Map<Rows>(result.whitening.front().data()) = whitening;
+  Eigen::Map<Square>(result.whitening.front().data()) = whitening;
   return result;
 }
 

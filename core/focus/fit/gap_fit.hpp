@@ -45,7 +45,8 @@ class GapFit {
     Three mean{};  // of the shares
     Three sd{};
     Terms factors{};
-    /// Rows that make of the terms others whose squares' sum is 1 in the mean over the curves that were learnt from.
+    /// Columns of a matrix that makes of the terms others, whose squares' sum is 1 in the mean over the curves that
+    /// were learnt from.
     std::array<Terms, kTerms> whitening{};
   };
 
