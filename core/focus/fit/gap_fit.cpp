@@ -22,7 +22,7 @@ constexpr std::size_t kLeastCurves = 500;
 /// Each fifth of a step must have this share of their vertices: curves that all peak at the same place between two
 /// samples, as those of a plateau, would teach that every curve does.
 constexpr double kLeastShareOfFifth = 0.05;
-/// Shares further from their mean, in standard deviations, are not those of the scan's curves.
+/// Nothing is learnt from shares further from their mean, in standard deviations.
 constexpr double kMostDeviations = 4.0;
 /// Each share may be a usual one and all three together not: of curves whose width is not the scan's. From the first
 /// strangeness to the second the five-sample fit takes over. Of the scan's own curves a tenth is beyond the first.
@@ -168,14 +168,13 @@ double GapFit::height_um(const CurveTuple& curve) const noexcept {
   const double fitted_steps = (fitted_um - z_um_[index]) / step_um_ * towards;
   if (!(fitted_steps < kFitAlone_steps)) return fitted_um;
   Three x = shares_in_place(curve, towards, 2, fitted_um);
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    x[j] = (x[j] - polynomial->mean[j]) / polynomial->sd[j];
-    if (!(std::abs(x[j]) <= kMostDeviations)) return fitted_um;
-  }
+  for (std::size_t j = 0; j < x.size(); ++j) x[j] = (x[j] - polynomial->mean[j]) / polynomial->sd[j];
   const Terms all = terms(x);
+  const double strange = strangeness(all, *polynomial);
+  if (!(strange < kStrange)) return fitted_um;
   const double vertex_steps = std::inner_product(all.begin(), all.end(), polynomial->factors.begin(), 0.0);
   const double change = vertex_steps - fitted_steps;
-  const double usual = std::clamp((kStrange - strangeness(all, *polynomial)) / (kStrange - kUsual), 0.0, 1.0);
+  const double usual = std::min(1.0, (kStrange - strange) / (kStrange - kUsual));
   const double share = usual * std::min(1.0, (kFitAlone_steps - fitted_steps) / (kFitAlone_steps - kFitBegins_steps));
   return fitted_um + share * std::clamp(change, -kMostChange_steps, kMostChange_steps) * step_um_ * towards;
 }

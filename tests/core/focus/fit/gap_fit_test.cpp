@@ -97,6 +97,13 @@ TEST(GapFit, LeavesTheMiddleOfTheGapAndAllOtherHeightsAlone) {
       EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
     }
   }
+  int nearly_in_the_middle = 0;
+  for (const CurveTuple& tuple : Curves(z_um, 94.0, 106.0, 1000).tuples) {
+    if (std::abs(fitted_um(tuple) - 100.0) > 4.6) continue;
+    EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
+    ++nearly_in_the_middle;
+  }
+  EXPECT_GT(nearly_in_the_middle, 500);
 }
 
 TEST(GapFit, LearnsNothingFromFewCurvesOrWithoutAWidth) {
@@ -117,7 +124,8 @@ TEST(GapFit, LearnsNothingFromAPlateau) {
   const auto z_um = heights_um(1.0);
   const Curves plateau(z_um, 139.5, 140.5, 3000);
   const GapFit gap(plateau.tuples, z_um, kShape, {});
-  for (const CurveTuple& tuple : Curves(z_um, 92.0, 94.0, 50).tuples) EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
+  for (const CurveTuple& tuple : Curves(z_um, 90.4, 93.0, 200).tuples)
+    EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
 }
 
 TEST(GapFit, TrustsNoCurveThatIsUnlikeTheScans) {
