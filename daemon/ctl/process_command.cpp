@@ -247,7 +247,7 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
                      "points whose focus curve is less than so many medians wide become holes, 0 = off, default 0.55");
   command.add_option("--second-peak", a.second_peak,
                      "points whose focus curve has a second peak higher than so much of the first become holes, 0.8 is "
-                     "usual; takes 2 bytes more per pixel; 0 = off, the default");
+                     "usual, 0.5 the least; takes 2 bytes more per pixel; 0 = off, the default");
   command.add_option("--clipped-share", a.clipped_share,
                      "points with more of their window at full scale become holes, 0 = off, default 0.7");
   command.add_option("--edge-band", a.edge_band_slices,

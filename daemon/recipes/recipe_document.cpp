@@ -62,6 +62,12 @@ void check_together(const Recipe& recipe, const Places& places, Problems& proble
   if (judged({window}) && recipe.focus.window_px % 2 == 0) {
     refuse(window, recipe.focus.window_px, "is even; expected an odd number so that a pixel is its centre");
   }
+  const std::string second_peak = "/reconstruct/holes/second_peak";
+  const double second_peak_limit = recipe.focus.tests.second_peak;
+  if (judged({second_peak}) && second_peak_limit > 0.0 && second_peak_limit < kLeastSecondPeak) {
+    refuse(second_peak, second_peak_limit,
+           "finds hardly any second peak, for noise fills the valley before it; expected 0 or 0.5..1");
+  }
   if (judged({mode, trigger}) && recipe.mode == ScanMode::kContinuous && recipe.camera.trigger == TriggerMode::kLine) {
     refuse(trigger, "line", "is for scan.mode step; in a continuous scan the camera runs free");
   }

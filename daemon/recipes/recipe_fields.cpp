@@ -128,10 +128,11 @@ void describe_tests(PointTests& tests, Fields& fields) {
   fields.number(
       "narrow_curve", tests.narrow_curve, {0.0, 1.0},
       "width of a point's focus curve over the scan's median; below it the point is a hole; 0 = no such test");
-  fields.number("second_peak", tests.second_peak, {0.0, 1.0},
-                "height of a focus curve's second peak, at least four samples away and beyond a valley, over that of "
-                "the first; above it the point is a hole; 0.8 is usual; takes 2 bytes more per pixel; 0 = no such "
-                "test");
+  fields.number(
+      "second_peak", tests.second_peak, {0.0, 1.0},
+      "height of a focus curve's second peak, at least four samples away and beyond a valley, over that of "
+      "the first; above it the point is a hole; 0.8 is usual, 0.5 the least; takes 2 bytes more per pixel; 0 = "
+      "no such test");
   fields.number(
       "clipped_share", tests.clipped_share, {0.0, 1.0},
       "share of the window's pixels at full scale at the peak; if more are, or noticeably more beside the peak "

@@ -35,6 +35,10 @@ class ScanCurve {
   [[nodiscard]] double at(double away_um) const noexcept {
     return std::pow(1.0 + bend_per_um2_ * away_um * away_um, -exponent_);
   }
+  /// at(away_um) / at(other_um)
+  [[nodiscard]] double ratio(double away_um, double other_um) const noexcept {
+    return std::pow((1.0 + bend_per_um2_ * other_um * other_um) / (1.0 + bend_per_um2_ * away_um * away_um), exponent_);
+  }
 
  private:
   double exponent_;

@@ -22,8 +22,12 @@ constexpr std::size_t kLeastCurves = 500;
 /// Each fifth of a step must have this share of their vertices: curves that all peak at the same place between two
 /// samples, as those of a plateau, would teach that every curve does.
 constexpr double kLeastShareOfFifth = 0.05;
-/// Shares further from their mean, in standard deviations, are not those of the scan's curves.
+/// Nothing is learnt from shares further from their mean, in standard deviations.
 constexpr double kMostDeviations = 4.0;
+/// Each share may be a usual one and all three together not: of curves whose width is not the scan's. From the first
+/// strangeness to the second the five-sample fit takes over. Of the scan's own curves a tenth is beyond the first.
+constexpr double kUsual = 2.0;
+constexpr double kStrange = 5.0;
 /// From the first to the second, in steps towards the gap, the five-sample fit takes over: nearer to the gap's middle
 /// it has samples on both sides that tell as much. Past half a step the missing sample would have been the peak.
 constexpr double kFitBegins_steps = 0.3;
@@ -83,7 +87,7 @@ GapFit::Three GapFit::shares_in_place(const CurveTuple& curve, int towards, int 
   const auto moved = [&](int from_peak, int place) {
     const ReferenceSample found = sample(curve, z_um_, from_peak);
     const double place_um = peak_um + step_um_ * place;
-    return found.share * model_.at(place_um - height_um) / model_.at(found.z_um - height_um);
+    return found.share * model_.ratio(place_um - height_um, found.z_um - height_um);
   };
   return {moved(-2 * towards, -2 * towards), moved(-towards, -towards),
           moved(beyond == 2 ? towards : 2 * towards, 2 * towards)};
@@ -93,6 +97,13 @@ GapFit::Terms GapFit::terms(const Three& x) noexcept {
   const auto [a, b, c] = x;
   return {1.0,       a,         b,         c,         a * a,     a * b,     a * c,     b * b,     b * c,     c * c,
           a * a * a, a * a * b, a * a * c, a * b * b, a * b * c, a * c * c, b * b * b, b * b * c, b * c * c, c * c * c};
+}
+
+double GapFit::strangeness(const Terms& terms, const Polynomial& polynomial) noexcept {
+  using Square = Eigen::Map<const Eigen::Matrix<double, kTerms, kTerms>>;
+  using Column = Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>;
+  const Eigen::Matrix<double, kTerms, 1> white = Square(polynomial.whitening.front().data()) * Column(terms.data());
+  return white.squaredNorm();
 }
 
 std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tuples, const CurveShape& shape,
@@ -140,6 +151,10 @@ std::optional<GapFit::Polynomial> GapFit::learn(std::span<const CurveTuple> tupl
   const Eigen::LLT<Eigen::Matrix<double, kTerms, kTerms>> factor(normal);
   if (factor.info() != Eigen::Success) return std::nullopt;
   Eigen::Map<Eigen::Matrix<double, kTerms, 1>>(result.factors.data()) = factor.solve(sums);
+  using Square = Eigen::Matrix<double, kTerms, kTerms>;
+  Square whitening = Square::Identity() * std::sqrt(n / kTerms);
+  factor.matrixL().solveInPlace(whitening);
+  Eigen::Map<Square>(result.whitening.front().data()) = whitening;
   return result;
 }
 
@@ -153,14 +168,14 @@ double GapFit::height_um(const CurveTuple& curve) const noexcept {
   const double fitted_steps = (fitted_um - z_um_[index]) / step_um_ * towards;
   if (!(fitted_steps < kFitAlone_steps)) return fitted_um;
   Three x = shares_in_place(curve, towards, 2, fitted_um);
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    x[j] = (x[j] - polynomial->mean[j]) / polynomial->sd[j];
-    if (!(std::abs(x[j]) <= kMostDeviations)) return fitted_um;
-  }
+  for (std::size_t j = 0; j < x.size(); ++j) x[j] = (x[j] - polynomial->mean[j]) / polynomial->sd[j];
   const Terms all = terms(x);
+  const double strange = strangeness(all, *polynomial);
+  if (!(strange < kStrange)) return fitted_um;
   const double vertex_steps = std::inner_product(all.begin(), all.end(), polynomial->factors.begin(), 0.0);
   const double change = vertex_steps - fitted_steps;
-  const double share = std::min(1.0, (kFitAlone_steps - fitted_steps) / (kFitAlone_steps - kFitBegins_steps));
+  const double usual = std::min(1.0, (kStrange - strange) / (kStrange - kUsual));
+  const double share = usual * std::min(1.0, (kFitAlone_steps - fitted_steps) / (kFitAlone_steps - kFitBegins_steps));
   return fitted_um + share * std::clamp(change, -kMostChange_steps, kMostChange_steps) * step_um_ * towards;
 }
 

@@ -7,7 +7,8 @@
 /// two apart, the samples two steps away, has next to no weight in it. The scan has thousands of curves without a gap:
 /// of each, the sample that would be missing is disregarded, and the vertex that all five tell is expressed by the
 /// three others' shares, as a cubic polynomial by least squares. Noise is in these shares as it is in those beside the
-/// gap, so the polynomial trusts them as far as they can be trusted.
+/// gap, so the polynomial trusts them as far as they can be trusted. It knows nothing of curves that are unlike those
+/// it learnt from, those of another texture beside the gap: they keep the five-sample fit.
 
 #include <array>
 #include <cstdint>
@@ -44,9 +45,14 @@ class GapFit {
     Three mean{};  // of the shares
     Three sd{};
     Terms factors{};
+    /// Columns of a matrix that makes of the terms others, whose squares' sum is 1 in the mean over the curves that
+    /// were learnt from.
+    std::array<Terms, kTerms> whitening{};
   };
 
   [[nodiscard]] static Terms terms(const Three& x) noexcept;
+  /// 1 in the mean over the curves that were learnt from, and the more the further a curve is from all of them.
+  [[nodiscard]] static double strangeness(const Terms& terms, const Polynomial& polynomial) noexcept;
   /// The samples two steps and one step away from the gap, and the one beyond it, as if they were exactly in their
   /// places for a curve with its vertex at height_um. towards: +1 for a gap after the peak's sample, -1 before.
   /// beyond: number of the sample beyond it, from the peak's.

@@ -119,6 +119,11 @@ void check_point_tests(const PointTests& tests) {
   check("limit of the broad curve", tests.broad_curve, 1.0);
   check("limit of the narrow curve", tests.narrow_curve, 1.0);
   check("limit of the second peak", tests.second_peak, 1.0);
+  if (tests.second_peak > 0.0 && tests.second_peak < kLeastSecondPeak) {
+    throw Error(ErrorCode::kBadInput, "limit of the second peak of " + std::to_string(tests.second_peak) +
+                                          ": must be 0 for none or within 0.5..1; below that the valley before it "
+                                          "is lost in noise, and fewer are found");
+  }
   check("clipped share of a window", tests.clipped_share, 1.0);
   check("jump beside which a strip is dropped, in slices,", tests.edge_band_slices, kMaxEdgeBandSlices);
   check("largest sigma in um", tests.max_sigma_um, kMaxSigmaLimit_um);

@@ -56,6 +56,9 @@ inline constexpr int kMaxBinSlices = 64;
 inline constexpr int kMaxSlicesOfAScan = 65535;
 inline constexpr int kMaxEdgeBandSlices = 65535;
 inline constexpr double kMaxSigmaLimit_um = 1e6;
+/// Of a second peak: the valley before it lies below three quarters of the limit, and of a lower limit so low that
+/// noise fills it. Then fewer second peaks would be found, not more.
+inline constexpr double kLeastSecondPeak = 0.5;
 
 /// What makes a hole of a point beside prominence and significance; README.md of core/focus/fit says where the limits
 /// come from. 0 turns a test off.
@@ -67,9 +70,9 @@ struct PointTests {
                                ///< more beside the peak than at it, a point is a hole
   int edge_band_slices = 3;    ///< neighbours' heights that are further apart, and further than a curve is wide, make
                                ///< holes of the strip beside them, see edge_band.hpp; >= 0
-  double second_peak = 0.0;    ///< height over the curve's minimum of a second peak over that of the first, 0..1; above
-                               ///< it a point is a hole; takes 2 bytes more per pixel, see second_peak
-  double max_sigma_um = 0.0;   ///< standard error of a height above which a point is a hole, >= 0
+  double second_peak = 0.0;   ///< height over the curve's minimum of a second peak over that of the first, 0 or 0.5..1;
+                              ///< above it a point is a hole; takes 2 bytes more per pixel, see second_peak
+  double max_sigma_um = 0.0;  ///< standard error of a height above which a point is a hole, >= 0
   bool operator==(const PointTests&) const = default;
 };
 

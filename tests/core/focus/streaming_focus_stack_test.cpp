@@ -314,6 +314,11 @@ TEST(StreamingFocusStack, RefusesBadSettings) {
   }
   EXPECT_THROW(StreamingFocusStack(4, 4, PixelFormat::kMono8, {.window_px = 9, .min_prominence = 1.5}, pool), Error);
   EXPECT_THROW(StreamingFocusStack(0, 4, PixelFormat::kMono8, {}, pool), Error);
+  for (const double second_peak : {-0.1, 1e-9, 0.3, 0.49, 1.1, std::nan("")}) {
+    FocusSettings settings;
+    settings.tests.second_peak = second_peak;
+    EXPECT_THROW(StreamingFocusStack(4, 4, PixelFormat::kMono8, settings, pool), Error) << second_peak;
+  }
 }
 
 TEST(StreamingFocusStack, StatesItsMemoryBeforehand) {

@@ -208,6 +208,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{with_camera(R"({"exposure": 1})"), "/acquire/camera/exposure", "did you mean 'exposure_us'?"},
         BadRecipe{with_reconstruct(R"({"lateral": {"pixel_pitch_x_um": -1}})"), "/reconstruct/lateral/pixel_pitch_x_um",
                   "above 0"},
+        BadRecipe{with_reconstruct(R"({"holes": {"second_peak": 0.3}})"), "/reconstruct/holes/second_peak", "0.5..1"},
         BadRecipe{with_reconstruct(R"({"smooth_px": 0.5})"), "/reconstruct/smooth_px", "1..16"},
         BadRecipe{with_focus(R"({"window": "round"})"), "/reconstruct/focus/window", "double_box"},
         BadRecipe{with("", R"(, "export": ["height_smooth.tiff"])"), "/export", "a value at /reconstruct/smooth_px"},

@@ -27,7 +27,8 @@ std::vector<double> heights_um(double direction) {
 
 /// Curves whose widths and tails differ from place to place, as textures make them, and their vertices.
 struct Curves {
-  Curves(const std::vector<double>& z_um, double from_um, double to_um, int count) {
+  Curves(const std::vector<double>& z_um, double from_um, double to_um, int count, double width = 1.0,
+         double spread = 1.0) {
     const GapBias bias(z_um, kShape);
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
@@ -36,8 +37,8 @@ struct Curves {
       vertices_um.push_back(uniform(random));
       CurveShape shape = kShape;
       const double coarse = normal(random);
-      shape.width_um *= std::exp(0.08 * coarse);
-      shape.exponent *= std::exp(-0.25 * coarse);
+      shape.width_um *= width * std::exp(0.08 * spread * coarse);
+      shape.exponent *= std::exp(-0.25 * spread * coarse);
       const ScanCurve curve(shape);
       std::vector<double> samples;
       for (const double z : z_um) samples.push_back(curve.at(z - vertices_um.back()) + 0.004 * normal(random));
@@ -96,6 +97,13 @@ TEST(GapFit, LeavesTheMiddleOfTheGapAndAllOtherHeightsAlone) {
       EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
     }
   }
+  int nearly_in_the_middle = 0;
+  for (const CurveTuple& tuple : Curves(z_um, 94.0, 106.0, 1000).tuples) {
+    if (std::abs(fitted_um(tuple) - 100.0) > 4.6) continue;
+    EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
+    ++nearly_in_the_middle;
+  }
+  EXPECT_GT(nearly_in_the_middle, 500);
 }
 
 TEST(GapFit, LearnsNothingFromFewCurvesOrWithoutAWidth) {
@@ -116,7 +124,8 @@ TEST(GapFit, LearnsNothingFromAPlateau) {
   const auto z_um = heights_um(1.0);
   const Curves plateau(z_um, 139.5, 140.5, 3000);
   const GapFit gap(plateau.tuples, z_um, kShape, {});
-  for (const CurveTuple& tuple : Curves(z_um, 92.0, 94.0, 50).tuples) EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
+  for (const CurveTuple& tuple : Curves(z_um, 90.4, 93.0, 200).tuples)
+    EXPECT_EQ(gap.height_um(tuple), fitted_um(tuple));
 }
 
 TEST(GapFit, TrustsNoCurveThatIsUnlikeTheScans) {
@@ -125,6 +134,20 @@ TEST(GapFit, TrustsNoCurveThatIsUnlikeTheScans) {
   const GapFit gap(learnt_from.tuples, z_um, kShape, {});
   CurveTuple strange{.index = 9, .share = {0.9F, 0.1F, 1.0F, 0.9F, 0.9F}, .noise = 0.004F, .height_um = 90.5F};
   EXPECT_EQ(gap.height_um(strange), fitted_um(strange));
+}
+
+/// A part of the surface with a texture of its own, at the height of the gap.
+TEST(GapFit, LeavesCurvesOfAnotherWidthToTheFiveSamples) {
+  const auto z_um = heights_um(1.0);
+  const Curves learnt_from(z_um, 40.0, 160.0, 3000, 1.0, 0.25);
+  const GapFit gap(learnt_from.tuples, z_um, kShape, {});
+  const auto height_um = [&](const CurveTuple& tuple) { return gap.height_um(tuple); };
+  const Curves alike(z_um, 85.0, 95.0, 500, 1.0, 0.25);
+  EXPECT_LT(alike.rms(height_um), 0.85 * alike.rms(fitted_um));
+  for (const double width : {0.7, 0.8, 1.25, 1.5}) {
+    const Curves others(z_um, 85.0, 115.0, 1500, width, 0.25);
+    EXPECT_LT(others.rms(height_um), 1.15 * others.rms(fitted_um)) << width;
+  }
 }
 
 }  // namespace

@@ -166,8 +166,6 @@ TEST_P(AFault, IsFoundAndNothingElseIs) {
 INSTANTIATE_TEST_SUITE_P(Planted, AFault, testing::ValuesIn(kFaults),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// Stripes of 16 px at two heights, so that every tile has both: between them a slice is less sharp than its
-/// neighbours.
 TEST(SliceGate, FindsTwoExposuresThatLoseLessThanHalfOfTheSharpness) {
   for (const std::size_t at : {std::size_t{8}, std::size_t{10}, std::size_t{13}}) {
     SCOPED_TRACE(at);
@@ -182,6 +180,8 @@ TEST(SliceGate, FindsTwoExposuresThatLoseLessThanHalfOfTheSharpness) {
   }
 }
 
+/// Stripes of 16 px at two heights, so that every tile has both: between them a slice is less sharp than its
+/// neighbours.
 TEST(SliceGate, BelievesTheSlicesBetweenTwoLevels) {
   for (const double apart_um : {20.0, 30.0, 40.0}) {
     SceneSettings level;
