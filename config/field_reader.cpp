@@ -179,9 +179,8 @@ void FieldReader::choices(std::string_view name, std::vector<std::string>& value
   if (!found->is_array()) return refuse(name, *found, expected);
   std::vector<std::string> read;
   for (const json& item : *found) {
-    if (!accepts(accepted, item) || std::find(read.begin(), read.end(), item.get<std::string>()) != read.end()) {
-      return refuse(name, *found, expected);
-    }
+    if (!accepts(accepted, item)) return refuse(name, item, expected);
+    if (std::find(read.begin(), read.end(), item.get<std::string>()) != read.end()) return refuse(name, item, expected);
     read.push_back(item.get<std::string>());
   }
   values = std::move(read);

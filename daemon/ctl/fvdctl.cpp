@@ -35,7 +35,8 @@ struct Arguments {
   std::string method;
   std::string params = "{}";
   ProcessArguments process;
-  std::string image;
+  std::string suggest_source;
+  StackChoice suggest_choice;
   StageArguments stage;
   RecipeArguments recipe;
 };
@@ -230,12 +231,13 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_recipe_commands(
       app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
 
-  command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
-          [&] { return run_suggest(a.image, terminal); })
-      ->add_option("image", a.image,
-                   "folder of slices, multi-page TIFF, or one image (PNG, TIFF, JPEG, PGM) where most of the surface "
-                   "is in focus")
+  sub = command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
+                [&] { return run_suggest(a.suggest_source, a.suggest_choice, terminal); });
+  sub->add_option("source", a.suggest_source,
+                  "folder of slices, multi-page TIFF, or one image (PNG, TIFF, JPEG, PGM, BMP) where most of the "
+                  "surface is in focus")
       ->required();
+  add_choice_options(*sub, a.suggest_choice);
 }
 
 /// What is wrong with a word that stands where a command should; empty where that is not what went wrong.

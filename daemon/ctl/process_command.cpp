@@ -11,6 +11,7 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_stack.hpp"
 #include "daemon/ctl/progress_line.hpp"
+#include "daemon/export/exporter_table.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 
@@ -72,6 +73,16 @@ std::optional<Value> named(const std::optional<std::string>& name, FromName from
   return name ? from_name(*name) : std::nullopt;  // the parser lets only known names through
 }
 
+/// Files that are asked for by an option are made, whatever the recipe's `export` lists.
+void also_export(ExportNeed need, Recipe& recipe) {
+  if (!recipe.exports) return;
+  for (const Exporter& exporter : exporter_table()) {
+    const std::string name(exporter.name);
+    const bool listed = std::find(recipe.exports->begin(), recipe.exports->end(), name) != recipe.exports->end();
+    if (exporter.need == need && !listed) recipe.exports->push_back(name);
+  }
+}
+
 Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   Overrides overrides;
   overrides.set("--operator", named<FocusOperator>(arguments.focus_operator, focus_operator_from_name),
@@ -79,6 +90,7 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   overrides.set("--window-shape", named<FocusWindow>(arguments.window, focus_window_from_name), recipe.focus.window);
   if (arguments.smooth_px) {
     recipe.smooth_px = arguments.smooth_px;
+    also_export(ExportNeed::kSmoothedMap, recipe);
     overrides.note("--smooth");
   }
   overrides.set("--window", arguments.window_px, recipe.focus.window_px);
@@ -102,7 +114,13 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
   }
   if (!arguments.extra_peaks.empty()) {
     recipe.extra_peaks.clear();
-    for (const auto& name : arguments.extra_peaks) recipe.extra_peaks.push_back(*peak_method_from_name(name));
+    for (const auto& name : arguments.extra_peaks) {
+      recipe.extra_peaks.push_back(*peak_method_from_name(name));
+      if (recipe.extra_peaks.back() == recipe.peak) {
+        throw UsageError("--extra-peak " + name + " is the peak of height.tiff already: name others only");
+      }
+    }
+    also_export(ExportNeed::kEachExtraMap, recipe);
     overrides.note("--extra-peak");
   }
   return overrides;
@@ -122,7 +140,7 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   }
   options.simulated = recorded_of_simulation(options.source);
   options.recipe_plans_scan = !arguments.recipe.empty();
-  options.slices = find_slices(options.source, {arguments.pattern, arguments.channel, arguments.time});
+  options.slices = find_slices(options.source, arguments.choice);
   options.significant_bits = arguments.significant_bits.value_or(0);
   options.z = z_source(arguments, options.recipe, options.slices);
   options.z_unit_assumed = std::holds_alternative<ZFile>(options.z) && !arguments.z_unit;
@@ -156,6 +174,19 @@ std::string limit_text(const MeasuredValue& measured) {
   return text.str();
 }
 
+/// "drift     0.042, -0.020 px/um undone; 14 % of the points are not in every slice"; nothing where none was.
+std::string drift_text(const Result& result) {
+  if (!result.slices.drift || result.slices.drift->undone == DriftUndone::kNothing) return {};
+  const Result::Drift& drift = *result.slices.drift;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3) << "drift     " << drift.x_px_per_um << ", " << drift.y_px_per_um
+       << " px/um " << (drift.undone == DriftUndone::kRecipe ? "measured, the recipe's undone; " : "undone; ")
+       << std::setprecision(1)
+       << 100.0 * static_cast<double>(result.holes.out_of_view) / static_cast<double>(result.points)
+       << " % of the points are not in every slice\n";
+  return text.str();
+}
+
 void print_summary(std::ostream& out, const ProcessReport& report, const std::filesystem::path& directory) {
   const Result& result = report.result;
   const auto um = [&result](std::string_view name) { return result.find(name)->value; };
@@ -170,6 +201,7 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
   } else {
     text << "heights   none: every point is a hole, see hole_points in result.json\n";
   }
+  text << drift_text(result);
   if (result.verdict) text << "verdict   " << verdict_name(*result.verdict) << "\n";
   for (const MeasuredValue& measured : result.measurements) {
     if (measured.verdict.value_or(Verdict::kPass) == Verdict::kPass) continue;
@@ -182,15 +214,17 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
   out << text.str() << std::flush;
 }
 
-/// Which files and pages are the slices, and where they are.
-void add_stack_options(CLI::App& command, ProcessArguments& a) {
-  command.add_option("--pattern", a.pattern,
-                     "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um} or {z_mm} z with sign and "
-                     "decimals, * any text; default: by the names themselves");
-  command.add_option("--channel", a.channel, "of the pages of a TIFF that has several, from 1")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--time", a.time, "of the pages of a TIFF that has several times, from 1")
-      ->check(CLI::PositiveNumber);
+/// The range of a window's side.
+std::string check_window(const std::string& text) {
+  int side = 0;
+  const bool number = CLI::detail::lexical_cast(text, side);
+  if (number && (side == 1 || (side % 2 == 1 && side >= kMinWindowPx && side <= kMaxWindowPx))) return {};
+  return text + " is not an odd number of " + std::to_string(kMinWindowPx) + " to " + std::to_string(kMaxWindowPx) +
+         " pixels, or 1 for the intensity";
+}
+
+/// Where the slices are in z.
+void add_z_options(CLI::App& command, ProcessArguments& a) {
   command
       .add_option("--significant-bits", a.significant_bits,
                   "of grey levels in files of 16 bit, at their lower or upper end; default: seen from the levels")
@@ -212,15 +246,69 @@ void add_stack_options(CLI::App& command, ProcessArguments& a) {
 
 }  // namespace
 
+void add_choice_options(CLI::App& command, StackChoice& choice) {
+  command.add_option("--pattern", choice.pattern,
+                     "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um} or {z_mm} z with sign and "
+                     "decimals, * any text; default: by the names themselves");
+  command.add_option("--channel", choice.channel, "of the pages of a TIFF that has several, from 1")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--time", choice.time, "of the pages of a TIFF that has several times, from 1")
+      ->check(CLI::PositiveNumber);
+}
+
+namespace {
+
+/// What becomes a hole.
+void add_hole_options(CLI::App& command, ProcessArguments& a) {
+  command
+      .add_option("--min-prominence", a.min_prominence,
+                  "points with a flatter focus curve become holes, 0..1, default 0.5")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--min-significance", a.min_significance,
+                  "points whose curve rises by less noise become holes, default 6")
+      ->check(CLI::Range(0.0, 1e6));
+  command
+      .add_option("--broad-curve", a.broad_curve,
+                  "points whose focus curve bends less than so many medians become holes, 0 = off, default 0.2")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--narrow-curve", a.narrow_curve,
+                  "points whose focus curve is less than so many medians wide become holes, 0 = off, default 0.55")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--second-peak", a.second_peak,
+                  "points whose focus curve has a second peak higher than so much of the first become holes, 0.8 is "
+                  "usual; takes 2 bytes more per pixel; 0 = off, the default")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--clipped-share", a.clipped_share,
+                  "points with more of their window at full scale become holes, 0 = off, default 0.7")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--edge-band", a.edge_band_slices,
+                  "a strip beside heights that jump by more slices becomes holes, 0 = off, default 3")
+      ->check(CLI::Range(0, kMaxEdgeBandSlices));
+  command
+      .add_option("--max-sigma", a.max_sigma_um,
+                  "points with a larger standard error in um become holes, 0 = off, the default")
+      ->check(CLI::Range(0.0, kMaxSigmaLimit_um));
+}
+
+}  // namespace
+
 void add_process_options(CLI::App& command, ProcessArguments& a) {
   command.add_option("source", a.source, "folder of slices (PNG, TIFF, JPEG, PGM, BMP), or a multi-page TIFF")
       ->required();
   command.add_option("--out", a.out, "directory to make for the result; must not exist")->required();
   command.add_option("--recipe", a.recipe, "file of a recipe: as a live job of it would; the options below change it")
       ->check(CLI::ExistingFile);
-  add_stack_options(command, a);
-  command.add_option("--window", a.window_px,
-                     "side of the focus window in pixels, odd, 3..63, default 9; the intensity has none");
+  add_choice_options(command, a.choice);
+  add_z_options(command, a);
+  command
+      .add_option("--window", a.window_px,
+                  "side of the focus window in pixels, odd, 3..63, default 9; the intensity has none")
+      ->check(CLI::Validator(check_window, "ODD"));
   command
       .add_option("--operator", a.focus_operator,
                   "what is summed over the window as the measure of sharpness, default diagonal_laplacian")
@@ -229,31 +317,19 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
       ->check(CLI::IsMember({"box", "double_box"}));
   command.add_option("--smooth", a.smooth_px, "also a smoothed map, standard deviation of the weights in pixels")
       ->check(CLI::Range(kMinSmoothPx, kMaxSmoothPx));
-  command.add_option("--distance", a.distance_px,
-                     "from a pixel to the neighbours its operator looks at, 1..7 pixels, default 2");
-  command.add_option("--bin", a.bin_slices,
-                     "slices summed to one sample of the focus curve, 1..64; default: by the curve's width");
+  command
+      .add_option("--distance", a.distance_px,
+                  "from a pixel to the neighbours its operator looks at, 1..7 pixels, default 2")
+      ->check(CLI::Range(1, kMaxDistancePx));
+  command
+      .add_option("--bin", a.bin_slices,
+                  "slices summed to one sample of the focus curve, 1..64; default: by the curve's width")
+      ->check(CLI::Range(1, kMaxBinSlices));
   command.add_option("--peak", a.peak, "how heights are taken from the focus curve, default five_sample")
       ->check(CLI::IsMember(peak_names()));
   command.add_option("--extra-peak", a.extra_peaks, "further height maps, may be repeated")
       ->check(CLI::IsMember(peak_names()));
-  command.add_option("--min-prominence", a.min_prominence,
-                     "points with a flatter focus curve become holes, 0..1, default 0.5");
-  command.add_option("--min-significance", a.min_significance,
-                     "points whose curve rises by less noise become holes, default 6");
-  command.add_option("--broad-curve", a.broad_curve,
-                     "points whose focus curve bends less than so many medians become holes, 0 = off, default 0.2");
-  command.add_option("--narrow-curve", a.narrow_curve,
-                     "points whose focus curve is less than so many medians wide become holes, 0 = off, default 0.55");
-  command.add_option("--second-peak", a.second_peak,
-                     "points whose focus curve has a second peak higher than so much of the first become holes, 0.8 is "
-                     "usual, 0.5 the least; takes 2 bytes more per pixel; 0 = off, the default");
-  command.add_option("--clipped-share", a.clipped_share,
-                     "points with more of their window at full scale become holes, 0 = off, default 0.7");
-  command.add_option("--edge-band", a.edge_band_slices,
-                     "a strip beside heights that jump by more slices becomes holes, 0 = off, default 3");
-  command.add_option("--max-sigma", a.max_sigma_um,
-                     "points with a larger standard error in um become holes, 0 = off, the default");
+  add_hole_options(command, a);
   command.add_flag("--stage-correction", a.stage_correction,
                    "seek the stage's errors in the focus curves and correct heights by them");
   command
@@ -267,7 +343,10 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
           "lateral drift of the slices: auto = measured in a first pass and undone by whole pixels, off = left as "
           "it is; default: the recipe's, else off")
       ->check(CLI::IsMember({"auto", "off"}));
-  command.add_option("--pixel-pitch-um", a.pixel_pitch_um, "distance of pixels on the object");
+  command
+      .add_option("--pixel-pitch-um", a.pixel_pitch_um,
+                  "distance of pixels on the object; default: the recipe's, else what an OME-TIFF says")
+      ->check(CLI::PositiveNumber);
   command.add_option("--part", a.part_id, "part id to write into the result; default: the name of the source");
   command.add_option("--threads", a.threads, "threads that compute, 0 = one per core")
       ->check(CLI::Range(0, 256))

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/ctl/fvdctl.hpp"
+#include "drivers/replay/slice_files.hpp"
 
 namespace CLI {
 class App;
@@ -26,10 +27,8 @@ struct ProcessArguments {
   std::string source;
   std::string out;
   std::string part_id;
-  std::string recipe;                   ///< file; empty = the defaults of recipes, and the stage is not corrected
-  std::string pattern;                  ///< of the slices' names; empty: by the names themselves
-  std::optional<int> channel;           ///< of pages, from 1
-  std::optional<int> time;              ///< likewise
+  std::string recipe;  ///< file; empty = the defaults of recipes, and the stage is not corrected
+  StackChoice choice;
   std::optional<int> significant_bits;  ///< of 16; absent: seen from the levels
   std::string z_file;
   std::optional<std::string> z_unit;  ///< of z_file; absent = um
@@ -57,6 +56,9 @@ struct ProcessArguments {
   std::optional<std::string> drift;  ///< "auto" or "off"; absent = as the recipe says
   int threads = 0;
 };
+
+/// --pattern, --channel and --time.
+void add_choice_options(CLI::App& command, StackChoice& choice);
 
 void add_process_options(CLI::App& command, ProcessArguments& arguments);
 

@@ -28,6 +28,12 @@ double milliseconds_since(SteadyClock::time_point start) {
   return std::chrono::duration<double, std::milli>(SteadyClock::now() - start).count();
 }
 
+/// Absolute, without a slash at its end.
+std::filesystem::path named_path(const std::filesystem::path& path) {
+  const auto whole = std::filesystem::absolute(path).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
 /// What would only come out after minutes of computing otherwise.
 void check_options(const ProcessOptions& options) {
   check_focus_settings(focus_settings(options.recipe));
@@ -35,6 +41,10 @@ void check_options(const ProcessOptions& options) {
     if (std::isfinite(pitch_um) && pitch_um > 0) continue;
     throw Error(ErrorCode::kBadInput,
                 "a pixel pitch of " + std::to_string(pitch_um) + " um: it must be finite and above 0");
+  }
+  const std::filesystem::path parent = named_path(options.out).parent_path();
+  if (!std::filesystem::is_directory(parent)) {
+    throw Error(ErrorCode::kStorageWrite, "there is no folder " + parent.string() + " to make the result in");
   }
   if (std::filesystem::exists(options.out)) {
     throw Error(ErrorCode::kStorageWrite, options.out.string() + " exists already: give another name, or move it away");
@@ -72,14 +82,13 @@ StepRecord step_record(int index, double z_um) {
 void describe(ResultData& data, const ProcessOptions& options, const RecordedStack& stack) {
   data.software_version = kVersion;
   data.created = std::chrono::system_clock::now();
-  auto source = std::filesystem::absolute(options.source).lexically_normal();
-  if (!source.has_filename()) source = source.parent_path();  // a trailing slash
+  const std::filesystem::path source = named_path(options.source);
   data.part_id = options.part_id.empty() ? source.filename().string() : options.part_id;
   data.source = source.string() + ": " + stack.list().description + "; files: " + files_text(stack.list());
   note_recipe(options.recipe, data);
   if (!options.knows_pixel_pitch) {
-    data.pixel_pitch_x_um.reset();
-    data.pixel_pitch_y_um.reset();
+    data.pixel_pitch_x_um = stack.list().pixel_pitch_x_um;
+    data.pixel_pitch_y_um = stack.list().pixel_pitch_y_um;
   }
   data.warnings = options.warnings;
   data.slices_planned = stack.slices();
@@ -92,7 +101,12 @@ class SliceFeed {
   /// focus: null to measure the drift alone.
   SliceFeed(StreamingFocusStack* focus, WorkerPool& pool, const RecordedStack& stack, int allowed_lost_slices,
             DriftPath drift)
-      : focus_(focus), pool_(pool), stack_(stack), gate_(allowed_lost_slices), undo_(std::move(drift)) {}
+      : focus_(focus),
+        pool_(pool),
+        stack_(stack),
+        gate_(allowed_lost_slices,
+              [&stack](int index) { return stack.list().slices.at(static_cast<std::size_t>(index)).name(); }),
+        undo_(std::move(drift)) {}
 
   void run(const std::vector<double>& z_um, ResultData& data, const std::function<void(int, int)>& on_slice) {
     for (int first = 0; first < stack_.slices(); first += StreamingFocusStack::kMaxBatch) {

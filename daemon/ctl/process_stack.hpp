@@ -24,7 +24,7 @@ struct ProcessOptions {
   bool z_unit_assumed = false;     ///< z is a file, and nobody said that it is in um
   Recipe recipe;                   ///< its id may be empty
   bool recipe_plans_scan = false;  ///< the slices should be as many, and as far apart, as the recipe says
-  bool knows_pixel_pitch = false;  ///< false: the recipe's is a default, and the files carry pixels
+  bool knows_pixel_pitch = false;  ///< false: the recipe's is a default; the slices' own, or the files carry pixels
   int threads = 0;                 ///< 0 = one per core
   std::optional<bool> undo_drift;  ///< true: as the slices show it; false: not at all; absent: as the recipe says
   int allowed_lost_slices = 2;     ///< so many slices that must not be believed are left out

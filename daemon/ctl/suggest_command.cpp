@@ -8,6 +8,7 @@
 #include <sstream>
 #include <thread>
 
+#include "core/base/error.hpp"
 #include "core/focus/focus_suggestion.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
@@ -29,8 +30,8 @@ struct Evidence {
 };
 
 /// The surface in focus everywhere, and the noise where it is not.
-Evidence look_at_stack(const std::filesystem::path& source) {
-  const RecordedStack stack(source);
+Evidence look_at_stack(const std::filesystem::path& source, const StackChoice& choice) {
+  const RecordedStack stack(find_slices(source, choice));
   WorkerPool pool(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   StreamingFocusStack focus(stack.width(), stack.height(), stack.format(), {}, pool);
   SliceImage image;
@@ -54,8 +55,11 @@ Evidence look_at_stack(const std::filesystem::path& source) {
   return evidence;
 }
 
-Evidence look_at(const std::filesystem::path& source) {
-  if (std::filesystem::is_directory(source) || tiff_content(source).size() > 1) return look_at_stack(source);
+Evidence look_at(const std::filesystem::path& source, const StackChoice& choice) {
+  if (!std::filesystem::exists(source)) {
+    throw Error(ErrorCode::kBadInput, "there is no file or folder " + source.string());
+  }
+  if (std::filesystem::is_directory(source) || tiff_content(source).size() > 1) return look_at_stack(source, choice);
   SliceImage slice;
   read_slice({source, std::nullopt}, slice);
   return {suggest_focus(slice.view()), std::nullopt};
@@ -63,8 +67,8 @@ Evidence look_at(const std::filesystem::path& source) {
 
 }  // namespace
 
-int run_suggest(const std::string& source, const Terminal& terminal) {
-  const auto [suggestion, width_slices] = look_at(source);
+int run_suggest(const std::string& source, const StackChoice& choice, const Terminal& terminal) {
+  const auto [suggestion, width_slices] = look_at(source, choice);
   const FocusSettings usual;
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << "\"focus\": { \"distance_px\": " << suggestion.distance_px

@@ -28,6 +28,8 @@ class CsvRow {
     return cell(std::to_string(value));
   }
   CsvRow& empty(int cells);
+  /// A word without comma, quote and line end.
+  CsvRow& word(std::string_view text) { return cell(text); }
 
  private:
   CsvRow& cell(std::string_view text);

@@ -117,7 +117,7 @@ void draw_colour_bar(cv::Mat& page, const cv::Rect& map, const ColourRange& limi
              cv::INTER_NEAREST);
   colours.copyTo(page(bar));
   cv::rectangle(page, bar, kInk);
-  put_text(page, "um", {bar.x, bar.y - 8}, 0.5, kInk);
+  put_text(page, "um", {bar.x, bar.br().y + 16}, 0.5, kInk);  // above the bar the header's text may reach
   if (empty) {
     put_text(page, "no valid points", {bar.br().x + 8, bar.y + 16}, 0.45, kPaleInk);
     return;
@@ -150,7 +150,8 @@ void draw_footer(cv::Mat& page, const cv::Rect& map, const PreviewText& text, do
 }
 
 PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
-  const auto tenths = static_cast<long>(summary.valid_fraction() * 1000);  // rounded down: 100 % means all
+  long tenths = std::lround(summary.valid_fraction() * 1000);
+  if (summary.valid < summary.points) tenths = std::min(tenths, 999L);  // 100 % means all
   PreviewText text;
   text.title = result_title(data);
   text.subtitle = (data.recipe_id.empty() ? "" : "recipe " + data.recipe_id + ", ") +

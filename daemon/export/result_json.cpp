@@ -136,6 +136,7 @@ Json suspects(const std::vector<SuspectSlice>& slices) {
                     {"figure_is", suspect_figure_text(slice.reason)},
                     {"unit", "1"},
                     {"done", suspect_done_name(slice.done)}});
+    if (!slice.file.empty()) list.back()["file"] = slice.file;
   }
   return list;
 }

@@ -207,6 +207,7 @@ SuspectSlice suspect_slice(const Node& node) {
   slice.reason = node.at("reason").named(suspect_reason_from_name, "a reason to suspect a slice");
   slice.figure = node.at("figure").number();
   slice.done = node.at("done").named(suspect_done_from_name, "left_out or taken_again");
+  if (node.has("file")) slice.file = node.at("file").text();
   return slice;
 }
 

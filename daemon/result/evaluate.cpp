@@ -1,6 +1,7 @@
 #include "daemon/result/evaluate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -21,8 +22,12 @@ constexpr int kListedSuspects = 4;
 /// Over the focus curve's width, above which the result warns.
 constexpr double kMaxDrift_px = 1.0;
 constexpr double kMaxScale_percent = 0.2;
-/// So many standard errors a figure lies above its limit before it is said.
+/// So many standard errors a change of scale lies above its limit before it is said.
 constexpr double kErrors = 2.0;
+/// So many times its standard error a drift must be: less may be noise.
+constexpr double kLeastDriftErrors = 3.0;
+/// Share of valid points below which the result warns.
+constexpr double kFewValid = 0.05;
 
 FurtherHeights further_heights(PeakMethod peak, const HeightMap& map) {
   const auto height = summarize_heights(map.height_m, map.sigma_m, map.mask).height;
@@ -127,14 +132,14 @@ void warn_of_suspects(const Result::Slices& slices, std::vector<Warning>& warnin
   warnings.push_back({"light_flicker", text.str()});
 }
 
-/// Of what is left after undoing; a figure must exceed its limit by more than its own error can make.
+/// Of what is left after undoing, unless its own error can make as much.
 void warn_of_drift(const ResultData& data, std::vector<Warning>& warnings) {
   if (!data.drift || data.drift_undone == DriftUndone::kSlices) return;
   const DriftFigures& drift = *data.drift;
   const double width_um = data.map.curve_width_um;
   const double left_px = width_um * std::hypot(drift.x_px_per_um - data.drift_undone_x_px_per_um,
                                                drift.y_px_per_um - data.drift_undone_y_px_per_um);
-  if (left_px - kErrors * width_um * drift.error_px_per_um > kMaxDrift_px) {
+  if (left_px > std::max(kMaxDrift_px, kLeastDriftErrors * width_um * drift.error_px_per_um)) {
     std::ostringstream text;
     text.precision(3);
     text << "the image drifts by " << left_px << " px over the focus curve's width of " << width_um
@@ -161,6 +166,45 @@ void warn_of_scale(const ResultData& data, std::vector<Warning>& warnings) {
   warnings.push_back({"scale_changes", text.str()});
 }
 
+/// What most holes are, and what could be done about it.
+std::string most_holes_text(const HoleCounts& holes) {
+  struct Reason {
+    std::size_t points;
+    const char* text;
+  };
+  const std::array reasons{
+      Reason{holes.low_prominence,
+             "have too flat a focus curve (min_prominence): is the light on, and the surface within the range?"},
+      Reason{holes.first_slice, "are sharpest at the first slice: does the surface lie beyond the range?"},
+      Reason{holes.last_slice, "are sharpest at the last slice: does the surface lie beyond the range?"},
+      Reason{holes.not_bracketed, "have a peak that its neighbours do not enclose: take slices closer together"},
+      Reason{holes.saturated, "are at full scale (clipped_share): less exposure or light"},
+      Reason{holes.insignificant,
+             "rise too little above the noise (min_significance): is the light on, and the surface within the range?"},
+      Reason{holes.edge_bleeding, "show the blur of brighter edges: less contrast of the light"},
+      Reason{holes.broad_curve, "have a far broader focus curve than the others (broad_curve)"},
+      Reason{holes.narrow_curve, "have a far narrower focus curve than the others (narrow_curve)"},
+      Reason{holes.second_peak, "have a second peak (second_peak)"},
+      Reason{holes.edge_band, "lie beside a jump of the heights (edge_band_slices)"},
+      Reason{holes.max_sigma, "have a larger standard error than allowed (max_sigma_um)"},
+      Reason{holes.out_of_view, "are not in every slice, as the image drifts"}};
+  const auto& most = *std::max_element(reasons.begin(), reasons.end(),
+                                       [](const Reason& a, const Reason& b) { return a.points < b.points; });
+  return most.points == 0 ? std::string() : "; " + std::to_string(most.points) + " points " + most.text;
+}
+
+void warn_of_holes(const Result& result, std::vector<Warning>& warnings) {
+  const std::string most = most_holes_text(result.holes);
+  if (result.valid_points == 0) {
+    warnings.push_back({"no_valid_point", "not one point is valid" + most});
+  } else if (result.valid_fraction() < kFewValid) {
+    std::ostringstream text;
+    text.precision(2);
+    text << "only " << 100.0 * result.valid_fraction() << " % of the points are valid" << most;
+    warnings.push_back({"few_valid_points", text.str()});
+  }
+}
+
 std::vector<Warning> warnings_of(const Result& result, const ResultData& data) {
   std::vector<Warning> warnings = data.warnings;
   const int missing = result.slices.planned - result.slices.measured;
@@ -175,10 +219,7 @@ std::vector<Warning> warnings_of(const Result& result, const ResultData& data) {
   warn_of_suspects(result.slices, warnings);
   warn_of_drift(data, warnings);
   warn_of_scale(data, warnings);
-  if (result.valid_points == 0) {
-    warnings.push_back(
-        {"no_valid_point", "not one point is valid: is the light on, and the surface within the range?"});
-  }
+  warn_of_holes(result, warnings);
   const auto at_end = [&](std::size_t points, const char* code, const char* end) {
     const double fraction = result.points == 0 ? 0.0 : static_cast<double>(points) / static_cast<double>(result.points);
     if (fraction <= kMaxFractionAtEnd) return;

@@ -32,7 +32,7 @@ bool evenly_spaced(std::vector<NameNumber> numbers) {
 }  // namespace
 
 void ask_for_pattern(const std::string& why, const std::vector<std::string>& patterns) {
-  std::string message = why + ": say which with --pattern of fvdctl process, or move the others away; for example";
+  std::string message = why + ": say which with --pattern of fvdctl, or move the others away; for example";
   for (std::size_t i = 0; i < patterns.size(); ++i) {
     message += (i == 0 ? " '" : i + 1 == patterns.size() ? " or '" : ", '") + patterns[i] + "'";
   }
@@ -88,20 +88,43 @@ std::optional<double> NameColumns::unit_um(std::size_t column) const {
   return leading_unit_um(fields_.front().texts[column + 1]);
 }
 
-std::string NameColumns::pattern(const std::vector<std::size_t>& columns, const std::string& field) const {
+std::string NameColumns::pattern(const std::vector<std::size_t>& columns, const std::string& field,
+                                 const std::vector<std::size_t>& any) const {
   const NameFields& row = fields_.front();
+  const auto among = [](const std::vector<std::size_t>& of, std::size_t column) {
+    return std::find(of.begin(), of.end(), column) != of.end();
+  };
   std::string result;
   for (std::size_t column = 0; column < row.numbers.size(); ++column) {
-    const bool replaced = std::find(columns.begin(), columns.end(), column) != columns.end();
-    result += row.texts[column] + (replaced ? field : row.numbers[column].text());
+    const std::string other = among(any, column) ? "*" : row.numbers[column].text();
+    result += row.texts[column] + (among(columns, column) ? field : other);
   }
   return result + row.texts.back() + std::filesystem::path(names_.front()).extension().string();
 }
 
+std::size_t NameColumns::rows_beside_first(std::size_t column) const {
+  return static_cast<std::size_t>(std::count_if(fields_.begin(), fields_.end(), [&](const NameFields& row) {
+    for (std::size_t other = 0; other < row.numbers.size(); ++other) {
+      if (other != column && compare(row.numbers[other], at(0, other)) != 0) return false;
+    }
+    return true;
+  }));
+}
+
 void NameColumns::ask(const std::string& why, const std::vector<std::size_t>& columns) const {
+  constexpr std::size_t kLeastSlices = 3;  // a peak needs as many
   std::vector<std::string> patterns;
-  for (const std::size_t column : columns) patterns.push_back(pattern({column}, unit_um(column) ? "{z_um}" : "{n}"));
-  ask_for_pattern(why, patterns);
+  std::vector<std::string> all;
+  for (const std::size_t column : columns) {
+    const std::string field = unit_um(column) ? "{z_um}" : "{n}";
+    all.push_back(pattern({column}, field));
+    if (rows_beside_first(column) >= kLeastSlices) {
+      patterns.push_back(all.back());
+    } else if (rows() >= kLeastSlices && distinct(column)) {  // whatever the others are
+      patterns.push_back(pattern({column}, field, varying()));
+    }
+  }
+  ask_for_pattern(why, patterns.empty() ? all : patterns);
 }
 
 void NameColumns::separate_sign(std::size_t column) {

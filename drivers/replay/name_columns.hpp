@@ -30,13 +30,17 @@ class NameColumns {
   /// Unit of length after the number, in um. None where an x or y stands before it: a position of the part.
   [[nodiscard]] std::optional<double> unit_um(std::size_t column) const;
 
-  /// The first name with fields of --pattern, or '*', in the place of the numbers of these columns.
-  [[nodiscard]] std::string pattern(const std::vector<std::size_t>& columns, const std::string& field) const;
+  /// The first name with fields of --pattern, or '*', in the place of the numbers of these columns, and with '*' in the
+  /// place of those of `any`.
+  [[nodiscard]] std::string pattern(const std::vector<std::size_t>& columns, const std::string& field,
+                                    const std::vector<std::size_t>& any = {}) const;
 
-  /// Throws Error kBadInput: why, and a pattern for each of these columns.
+  /// Throws Error kBadInput: why, and a pattern for each of these columns that has a stack beside the first name.
   [[noreturn]] void ask(const std::string& why, const std::vector<std::size_t>& columns) const;
 
  private:
+  /// Rows that are equal to the first in all columns but this.
+  [[nodiscard]] std::size_t rows_beside_first(std::size_t column) const;
   void resolve_sign(std::size_t column);
   void resolve_point(std::size_t column);
   void separate_sign(std::size_t column);

@@ -37,7 +37,7 @@ std::vector<std::string> names_in(const NameColumns& columns, const Order& order
 [[noreturn]] void refuse_twice(const NameColumns& columns, std::size_t a, std::size_t b) {
   throw Error(ErrorCode::kBadInput, columns.name(a) + " and " + columns.name(b) +
                                         " have the same number: their order is not known; move one of them away, or " +
-                                        "say with --pattern of fvdctl process which names are slices");
+                                        "say with --pattern of fvdctl which names are slices");
 }
 
 void require_distinct(const NameColumns& columns, std::size_t column, const Order& order) {

@@ -27,6 +27,8 @@ struct PageDescription {
   std::vector<PagePlace> pages;            ///< in any order
   bool by_directory = false;               ///< page counts all directories of the file; else those that hold an image
   std::optional<double> spacing_um;        ///< z from slice to slice; never 0
+  std::optional<double> pixel_pitch_x_um;  ///< of pixels on the object; above 0
+  std::optional<double> pixel_pitch_y_um;
   std::string problem;                     ///< why the description cannot be used; empty if it can
 };
 

@@ -57,16 +57,26 @@ class Pixels {
 
   PageDescription read(const std::string& filename) {
     if (!description_.problem.empty()) return description_;
-    const std::string unit = text_of(element_, "PhysicalSizeZUnit");
-    const double spacing = element_.DoubleAttribute("PhysicalSizeZ", 0.0);
-    const double unit_um = unit.empty() ? 1.0 : described_unit_um(unit);  // um is the schema's default
-    if (std::isfinite(spacing) && spacing * unit_um != 0.0) description_.spacing_um = spacing * unit_um;
+    description_.spacing_um = physical_size_um("PhysicalSizeZ");
+    description_.pixel_pitch_x_um = physical_size_um("PhysicalSizeX");
+    description_.pixel_pitch_y_um = physical_size_um("PhysicalSizeY");
+    for (auto* const pitch_um : {&description_.pixel_pitch_x_um, &description_.pixel_pitch_y_um}) {
+      if (*pitch_um && **pitch_um < 0.0) pitch_um->reset();
+    }
     read_pages(filename);
     read_positions();
     return description_;
   }
 
  private:
+  /// Never 0.
+  [[nodiscard]] std::optional<double> physical_size_um(const std::string& name) const {
+    const std::string unit = text_of(element_, (name + "Unit").c_str());
+    const double unit_um = unit.empty() ? 1.0 : described_unit_um(unit);  // um is the schema's default
+    const double size_um = element_.DoubleAttribute(name.c_str(), 0.0) * unit_um;
+    return std::isfinite(size_um) && size_um != 0.0 ? std::optional(size_um) : std::nullopt;
+  }
+
   /// Samples of one page are one channel, whatever SizeC counts.
   void read_channels(int samples_per_page) {
     int samples = 0;

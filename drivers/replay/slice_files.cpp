@@ -102,8 +102,10 @@ std::vector<Candidate> candidates_in(const fs::path& folder, const std::vector<s
   return candidates;
 }
 
-/// Names that a person would take for slices of the same stack, although they have other numbers.
-void check_same_words(const fs::path& folder, const Candidate& best, const std::vector<Candidate>& all) {
+/// Names that a person would take for slices of the same stack, although they have other numbers, or none, as "img.png"
+/// before "img (1).png".
+void check_same_words(const fs::path& folder, const Candidate& best, const std::vector<Candidate>& all,
+                      const std::vector<std::string>& pictures) {
   if (best.names.empty()) return;
   const auto words = [](const std::string& name) {
     return name_fields(fs::path(name).stem().string()).words() + plain_extension(name);
@@ -113,6 +115,13 @@ void check_same_words(const fs::path& folder, const Candidate& best, const std::
     ask_for_pattern("in " + folder.string() + " are " + best.description + " and also " + other.names.front() +
                         ", which may be a slice of them",
                     {counted(best.names.front()), counted(other.names.front())});
+  }
+  for (const std::string& name : pictures) {
+    if (!is_image(name) || !name_fields(fs::path(name).stem().string()).numbers.empty()) continue;
+    if (words(name) != words(best.names.front())) continue;
+    ask_for_pattern("in " + folder.string() + " are " + best.description + " and also " + name +
+                        ", which has no number and may be the first of them: give it one if it is a slice; if not",
+                    {counted(best.names.front())});
   }
 }
 
@@ -142,7 +151,7 @@ SliceList listed_pages(const fs::path& file, const StackChoice& choice, const st
 
 constexpr const char* kExpected =
     "; expected image files (PNG, TIFF, JPEG, PGM, BMP) whose names differ in a number only, such as slice_000.png, "
-    "slice_001.png, or one multi-page TIFF; --pattern of fvdctl process describes other names";
+    "slice_001.png, or one multi-page TIFF; --pattern of fvdctl describes other names";
 
 SliceList find_by_pattern(const fs::path& folder, const NamePattern& pattern) {
   const auto pictures = pictures_in(folder);
@@ -167,11 +176,11 @@ SliceList find_slices(const fs::path& source, const StackChoice& choice) {
   const std::string& pattern = choice.pattern;
   std::error_code error;
   const auto status = fs::status(source, error);
-  if (!fs::exists(status)) refuse("there is no folder " + source.string());
+  if (!fs::exists(status)) refuse("there is no file or folder " + source.string());
   if (fs::is_regular_file(status)) {
     const TiffContent content = is_tiff(source) ? tiff_content(source) : TiffContent{};
     if (content.size() < 2 && content.contiguous == 0)
-      refuse(source.string() + " is a file but not a TIFF with several pages" + kExpected);
+      refuse(source.string() + " is a file but not a TIFF with several pages; expected one, or a folder of slices");
     if (!pattern.empty()) refuse(source.string() + " is one file: --pattern is for the names in a folder");
     return listed_pages(source, choice, {});
   }
@@ -196,9 +205,9 @@ SliceList find_slices(const fs::path& source, const StackChoice& choice) {
   if (candidates.size() > 1 && 2 * candidates[1].slices > best.slices) {
     refuse(
         "in " + source.string() + " both " + best.description + " and " + candidates[1].description +
-        " could be the slices: move the others away, or say with --pattern of fvdctl process which names are slices");
+        " could be the slices: move the others away, or say with --pattern of fvdctl which names are slices");
   }
-  check_same_words(source, best, candidates);
+  check_same_words(source, best, candidates, pictures);
   if (!best.tiff.empty()) return listed_pages(source / best.tiff, choice, pictures);
   require_no_page(best.description);
   return listed(source, best.names, order_names(best.names), pictures);

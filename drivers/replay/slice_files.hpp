@@ -35,6 +35,8 @@ struct SliceList {
   std::string doubt;         ///< what a person should know of the order: a slice may be missing; empty: nothing
   std::vector<double> z_um;  ///< of each slice, as its name or page says with a unit; empty: they do not
   std::string z_from;        ///< what says it: "the names", "ImageJ's description"
+  std::optional<double> pixel_pitch_x_um;  ///< distance of pixels on the object, where a page's description says it
+  std::optional<double> pixel_pitch_y_um;
   int used_files = 0;
   std::vector<std::string> ignored;        ///< the other image files of the folder, by name; used + ignored = all
   int used_pages = 0;                      ///< of a multi-page TIFF
@@ -46,7 +48,7 @@ struct SliceList {
 /// order_names(), or one multi-page TIFF if it has more pages than any family has files; which of its pages:
 /// tiff_slices(). Other files are left alone and listed. Throws Error kBadInput if the path does not exist, holds no
 /// stack or only one slice, has two files with the same number, or leaves a choice: a second candidate with more than
-/// half the slices of the largest, further files whose names have the same words as the slices', numbers that can be
+/// half the slices of the largest, further files whose names have the same words as the slices', with other numbers or none, numbers that can be
 /// read in two ways. The message names the choices.
 [[nodiscard]] SliceList find_slices(const std::filesystem::path& source, const StackChoice& choice = {});
 

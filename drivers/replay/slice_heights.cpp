@@ -31,16 +31,23 @@ double to_um(double value, LengthUnit unit) {
 }
 
 /// No stage makes such steps: they are numbers of another unit.
-constexpr double kMinFileStep_um = 1e-3;
+constexpr double kMinStep_um = 1e-3;
 
-void check_unit(const ZFile& file, const std::vector<double>& z_um) {
+void check_unit(const ZSource& source, const std::vector<double>& z_um, const SliceList& list) {
   if (z_um.size() < 2) return;
   const double step_um = std::abs(z_um.back() - z_um.front()) / static_cast<double>(z_um.size() - 1);
-  if (step_um >= kMinFileStep_um) return;
+  if (step_um >= kMinStep_um) return;
   std::ostringstream message;
-  message << file.path.string() << ": the mean step is " << step_um << " um, less than any stage makes; numbers in "
-          << "another unit than um need it said: --z-unit mm or m of fvdctl process with --z-file, stage.replay_z_unit "
-          << "of a configuration";
+  if (const auto* file = std::get_if<ZFile>(&source)) {
+    message << file->path.string() << ": the mean step is " << step_um << " um, less than any stage makes; numbers in "
+            << "another unit than um need it said: --z-unit mm or m of fvdctl process with --z-file, "
+            << "stage.replay_z_unit of a configuration";
+  } else {
+    message << "a z step of " << step_um << " um"
+            << (std::holds_alternative<ZNames>(source) ? " by " + list.z_from : std::string())
+            << " is less than any stage makes; expected at least " << kMinStep_um << " um: give it in um, with "
+            << "--z-step-um of fvdctl process";
+  }
   refuse(message.str());
 }
 
@@ -105,21 +112,23 @@ std::vector<double> slice_heights_um(const ZSource& source, const SliceList& lis
       refuse(file->path.string() + " has " + std::to_string(z_um.size()) + " heights, but there are " +
              std::to_string(list.slices.size()) + " slices: " + list.description);
     }
-    check_unit(*file, z_um);
+    check_unit(source, z_um, list);
     check_against_names(*file, z_um, list);
   } else if (std::holds_alternative<ZNames>(source)) {
     if (list.z_um.empty()) {
       refuse("the names of the slices " + list.description + " carry no z with a unit, such as z_0.5um: give a step, " +
-             "a file with the z of each slice, or --pattern of fvdctl process with {z_um} or {z_mm}");
+             "a file with the z of each slice, or --pattern of fvdctl with {z_um} or {z_mm}");
     }
     z_um = list.z_um;
+    check_unit(source, z_um, list);
   } else {
     if (!list.gap.empty()) {
       refuse("the slices " + list.description + " are not evenly numbered (" + list.gap +
-             "), so their z cannot come from a constant step: give a file with the z of each slice, or number them "
-             "without a gap");
+             "), so their z cannot come from a constant step: give a file with the z of each slice, --z-file of fvdctl "
+             "process, replay_z_file of a configuration");
     }
     z_um = spaced(std::get<ZSpacing>(source), list.slices.size());
+    check_unit(source, z_um, list);
   }
   check_monotonic(z_um, list);
   return z_um;

@@ -39,8 +39,8 @@ using ZSource = std::variant<ZSpacing, ZFile, ZNames>;
 /// z of each slice of the list in um, strictly rising or strictly falling.
 /// Throws Error kBadInput: a step of 0, a step for a list whose numbering has a gap, a file that cannot be read, a line
 /// that is not one number (named), a header of another unit, another count than slices, z not finite or not monotonic
-/// or in another order than the z in the names, a file whose mean step is below 0.001 um, which is one of another unit,
-/// names without z.
+/// or in another order than the z in the names, a mean step below 0.001 um, which is one of another unit, names
+/// without z.
 [[nodiscard]] std::vector<double> slice_heights_um(const ZSource& source, const SliceList& list);
 
 /// Index of the height nearest to z_um; heights_um not empty.

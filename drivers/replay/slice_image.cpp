@@ -113,7 +113,12 @@ GreyMapping survey_slices(const std::vector<SliceLocation>& slices, int signific
   for (std::size_t i = 0; i < kSurveyed && !survey.decided(); ++i) look(i * last / (kSurveyed - 1));
   for (std::size_t i = 0; i <= last && survey.wants_all(); ++i) look(i);
   GreyMapping mapping;
-  on_image(slices.front(), [&] { mapping = survey.mapping(); });
+  try {
+    mapping = survey.mapping();
+  } catch (const ImageFileError& failure) {  // only of bits that were told
+    refuse(slices.front(),
+           "does not fit --significant-bits " + std::to_string(significant_bits) + ": " + failure.what());
+  }
   return mapping;
 }
 

@@ -66,7 +66,7 @@ int choose(const std::filesystem::path& file, const PageDescription& told, const
   if (told.times > 1) there += ", " + std::to_string(told.times) + " times";
   if (!chosen && count == 1) return 0;
   if (!chosen) {
-    refuse(file, "has several " + std::string(what) + "s: " + there + "; say with fvdctl process --" + what +
+    refuse(file, "has several " + std::string(what) + "s: " + there + "; say with --" + what + " of fvdctl" +
                      " which one is the stack, " + listed(count, names));
   }
   if (*chosen < 1 || *chosen > count) {
@@ -229,6 +229,10 @@ SliceList tiff_slices(const std::filesystem::path& file, const StackChoice& choi
     }
   } else {
     list = as_described(file, content, *told, choice);
+  }
+  if (told && told->pixel_pitch_x_um && told->pixel_pitch_y_um) {
+    list.pixel_pitch_x_um = told->pixel_pitch_x_um;
+    list.pixel_pitch_y_um = told->pixel_pitch_y_um;
   }
   list.doubt = note;
   count_pages(content, list);

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,8 +22,12 @@ class SliceGate {
   /// Takes a believed slice, in order, and the gain of its sharpness.
   using Pass = std::function<void(Item&& item, double z_um, double gain)>;
 
-  /// allowed_lost_slices: so many suspects are left out; one more is an error.
-  explicit SliceGate(int allowed_lost_slices) : allowed_(allowed_lost_slices) {}
+  /// The file of the slice with this index, for messages.
+  using FileOf = std::function<std::string(int index)>;
+
+  /// allowed_lost_slices: so many suspects are left out; one more is an error. file_of: empty where slices have none.
+  explicit SliceGate(int allowed_lost_slices, FileOf file_of = {})
+      : allowed_(allowed_lost_slices), file_of_(std::move(file_of)) {}
 
   /// view: of the item's pixels, which stay where they are when it is moved. figures: of those pixels.
   /// Throws Error kBadSlice for one suspect too many.
@@ -60,11 +65,13 @@ class SliceGate {
         continue;
       }
       suspects_.push_back(*decision->suspect);
+      if (file_of_) suspects_.back().file = file_of_(suspects_.back().index);
       if (static_cast<int>(suspects_.size()) > allowed_) throw_suspects(suspects_, allowed_);
     }
   }
 
   int allowed_;
+  FileOf file_of_;
   SliceJudge judge_;
   std::deque<Held> held_;
   std::vector<SuspectSlice> suspects_;

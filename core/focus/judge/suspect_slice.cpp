@@ -1,5 +1,6 @@
 #include "core/focus/judge/suspect_slice.hpp"
 
+#include <cmath>
 #include <sstream>
 
 #include "core/base/error.hpp"
@@ -36,6 +37,36 @@ Words words(SuspectReason reason) noexcept {
   return {};
 }
 
+/// What the figure says to people; empty where it says them nothing.
+std::string figure_words(const SuspectSlice& slice) {
+  std::ostringstream text;
+  text.precision(2);
+  const double percent = 100.0 * slice.figure;
+  switch (slice.reason) {
+    case SuspectReason::kDark:
+      text << "its brightness is " << percent << " % of its neighbours', or of full scale where it has none";
+      break;
+    case SuspectReason::kBrighter:
+      text << "its brightness is " << slice.figure << " times its neighbours'";
+      break;
+    case SuspectReason::kConstant:
+      text << "the level is " << percent << " % of full scale";
+      break;
+    case SuspectReason::kPartial:
+      text << percent << " % of its rows have no signal of their own";
+      break;
+    case SuspectReason::kRepeated:
+      break;
+    case SuspectReason::kExchanged:
+      text << "slices farther off resemble it more than those beside it";
+      break;
+    case SuspectReason::kVibration:  // a logarithm of sharpness, which is a square of differences
+      text << "its fine detail differs from its neighbours' by a factor of " << std::exp(0.5 * std::abs(slice.figure));
+      break;
+  }
+  return text.str();
+}
+
 template <typename Value, typename Name>
 std::optional<Value> from_name(const auto& all, Name name_of, std::string_view name) noexcept {
   for (const Value value : all) {
@@ -65,17 +96,19 @@ std::string_view suspect_figure_text(SuspectReason reason) noexcept { return wor
 std::string suspect_text(const SuspectSlice& slice) {
   const Words reason = words(slice.reason);
   std::ostringstream text;
-  text.precision(3);
-  text << "slice " << slice.index << " at " << slice.z_um << " um " << reason.says << " (" << reason.figure << " is "
-       << slice.figure << ")";
-  return text.str();
+  text.precision(6);
+  text << "slice " << (slice.file.empty() ? std::to_string(slice.index) : slice.file) << " at " << slice.z_um << " um "
+       << reason.says;
+  const std::string figure = figure_words(slice);
+  return figure.empty() ? text.str() : text.str() + " (" + figure + ")";
 }
 
 void throw_suspects(const std::vector<SuspectSlice>& suspects, int allowed_lost_slices) {
   std::ostringstream text;
   text << suspect_text(suspects.back()) << "; with it " << suspects.size() << " slice(s) must not be believed, "
        << allowed_lost_slices
-       << " may be left out: mend the cause and take the slices again, or allow more by allowed_lost_slices";
+       << " may be left out: mend the cause and take the slices again, or allow more by allowed_lost_slices of the "
+          "recipe, --allowed-lost-slices of fvdctl process";
   throw Error(ErrorCode::kBadSlice, text.str());
 }
 

@@ -44,13 +44,15 @@ struct SuspectSlice {
   SuspectReason reason = SuspectReason::kDark;
   double figure = 0.0;  ///< what spoke against it; its meaning: suspect_figure_text()
   SuspectDone done = SuspectDone::kLeftOut;
+  std::string file = {};  ///< of a recorded slice, as people name it; empty: it has none
   bool operator==(const SuspectSlice&) const = default;
 };
 
 /// What `figure` is, e.g. "brightness over its neighbours'"; the unit is 1 throughout.
 [[nodiscard]] std::string_view suspect_figure_text(SuspectReason reason) noexcept;
 
-/// E.g. "slice 10 at 100 um is dark (brightness over its neighbours' is 0.09)".
+/// E.g. "slice 10 at 100 um is dark (its brightness is 9 % of its neighbours', ...)"; of a recorded one "slice
+/// s_010.png at 100 um ...".
 [[nodiscard]] std::string suspect_text(const SuspectSlice& slice);
 
 /// Throws Error kBadSlice: the last of them is one more than may be left out.

@@ -130,6 +130,9 @@ TEST_F(ADriftingStack, IsPutBackByWhatItsSlicesShow) {
   const Json result = processed({"--z-step-um", "10", "--drift", "auto"}, "auto");
 
   EXPECT_EQ(result["slices"]["drift_px"]["undone"], "slices");
+  EXPECT_THAT(said_,
+              testing::ContainsRegex("drift     0\\.[0-9]+, -?0\\.[0-9]+ px/um undone; [0-9.]+ % of the points are "
+                                     "not in every slice"));
   EXPECT_NEAR(result["slices"]["drift_px"]["x"].get<double>(), kPxPerSlice * (kSlices - 1), 0.5);
   EXPECT_THAT(codes(result), Not(Contains("lateral_drift")));
   write_drifting(scratch_ / "still", 0);

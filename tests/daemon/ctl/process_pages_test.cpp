@@ -87,6 +87,32 @@ TEST_F(ARecordedStack, Of12BitsIn16SaturatesAt4095) {
   EXPECT_EQ(result()["values"]["hole_points"]["saturated"], 0);
 }
 
+TEST_F(ARecordedStack, Of8BitsHasNoMoreWhateverTheOptionSays) {
+  test::write_stack(scratch_ / "in", "s", ".png", kSlices, kFocus);
+  EXPECT_EQ(process({"--z-step-um", "10", "--significant-bits", "12"}), kExitBadData);
+  EXPECT_THAT(err_, HasSubstr("s0.png in " + (scratch_ / "in").string() + " does not fit --significant-bits 12"));
+  EXPECT_THAT(err_, testing::Not(HasSubstr("damaged")));
+}
+
+TEST_F(ARecordedStack, OfOnePageIsRefusedWithoutAPattern) {
+  test::write_tiff(scratch_ / "one.tif", {{slice(0), "", 0, 0}});
+  EXPECT_EQ(process({"--z-step-um", "10"}, "one.tif"), kExitBadData);
+  EXPECT_THAT(err_, HasSubstr("not a TIFF with several pages; expected one, or a folder of slices"));
+}
+
+TEST_F(ARecordedStack, OfOmeHasItsPixelPitch) {
+  const std::string ome =
+      "<OME><Image><Pixels DimensionOrder=\"XYZCT\" SizeZ=\"11\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"2.5\" "
+      "PhysicalSizeY=\"2.5\" PhysicalSizeZ=\"10\"><TiffData/></Pixels></Image></OME>";
+  std::vector<test::TiffPageSpec> pages;
+  for (int i = 0; i < kSlices; ++i) pages.push_back({slice(i), i == 0 ? ome : "", 0, 0});
+  test::write_tiff(scratch_ / "ome.tif", pages);
+  ASSERT_EQ(process({}, "ome.tif"), kExitOk) << err_;
+  EXPECT_EQ(result()["focus"]["pixel_pitch_x_um"], 2.5);
+  ASSERT_EQ(process({"--pixel-pitch-um", "3"}, "ome.tif"), kExitOk) << err_;
+  EXPECT_EQ(result()["focus"]["pixel_pitch_y_um"], 3.0);
+}
+
 TEST_F(ARecordedStack, OfImageJBehindOneDirectoryIsRead) {
   std::vector<cv::Mat> images;
   for (int i = 0; i < kSlices; ++i) images.push_back(slice(i));

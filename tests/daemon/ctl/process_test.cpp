@@ -73,6 +73,34 @@ TEST(Process, MakesAHeightMapOfRecordedSlices) {
   EXPECT_THAT(result["provenance"]["source"].get<std::string>(), HasSubstr("s*.png"));
 }
 
+TEST(Process, NamesTheFileOfALeftOutSlice) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 11, 5.0);
+  cv::imwrite((scratch / "in/s7.png").string(), cv::Mat(30, 40, CV_8UC1, cv::Scalar(51)));
+  const Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--bin", "1", "--out", scratch / "out"});
+  ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("slice s7.png at 70 um has the same grey level everywhere (the level is 20 % of "
+                                     "full scale)"));
+  const auto result = nlohmann::json::parse(test::read_text(scratch / "out/result.json"));
+  EXPECT_EQ(result["slices"]["suspect"][0]["file"], "s7.png");
+  EXPECT_THAT(test::read_text(scratch / "out/step_log.csv"), HasSubstr(",constant\n"));
+  const Outcome none =
+      process({scratch / "in", "--z-step-um", "10", "--allowed-lost-slices", "0", "--out", scratch / "none"});
+  EXPECT_EQ(none.code, kExitBadData);
+  EXPECT_THAT(none.err, HasSubstr("slice s7.png at 70 um"));
+  EXPECT_THAT(none.err, HasSubstr("--allowed-lost-slices of fvdctl process"));
+}
+
+TEST(Process, NamesTheLimitThatMakesNearlyAllHoles) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 11, 5.0);
+  const Outcome outcome =
+      process({scratch / "in", "--z-step-um", "10", "--bin", "1", "--max-sigma", "1e-6", "--out", scratch / "out"});
+  ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("not one point is valid; "));
+  EXPECT_THAT(outcome.out, HasSubstr("larger standard error than allowed (max_sigma_um)"));
+}
+
 TEST(Process, ChoosesItsBinsByTheWidthThatAFirstPassTells) {
   const ScratchDir scratch;
   test::write_stack(scratch / "in", "s", ".png", 31, 14.0);
@@ -218,6 +246,16 @@ TEST_F(AProcessWithARecipe, IsChangedByOptionsAndSaysSo) {
   EXPECT_TRUE(told["recipe"]["sha256"].is_null()) << "it is not that recipe any more";
   EXPECT_EQ(told["warnings"][0]["code"], "recipe_overridden");
   EXPECT_THAT(told["warnings"][0]["text"].get<std::string>(), HasSubstr("--window, --extra-peak"));
+}
+
+TEST_F(AProcessWithARecipe, MakesTheFilesThatOptionsAskForWhateverItsExportLists) {
+  test::write_text(scratch_ / "part.json", R"({"format": 2, "acquire": {"scan": {"start_um": 0, "step_um": 10,
+    "slices": 11}}, "export": ["height.tiff"]})");
+  ASSERT_EQ(run({"--smooth", "3", "--extra-peak", "nearest", "--out", scratch_ / "out"}).code, kExitOk);
+  for (const char* file : {"height.tiff", "height_smooth.tiff", "sigma_smooth.tiff", "height_nearest.tiff"}) {
+    EXPECT_TRUE(fs::exists(scratch_ / "out" / file)) << file;
+  }
+  EXPECT_FALSE(fs::exists(scratch_ / "out/mask.png"));
 }
 
 TEST_F(AProcessWithARecipe, TakesHeightsFromTheSlicesOwnFileBeforeTheRecipes) {
@@ -367,10 +405,31 @@ TEST(Process, RefusesWhatItWouldOnlyFindOutLater) {
     return process(arguments);
   };
   EXPECT_EQ(with({"--out", scratch / "in"}).code, kExitIo) << "exists";
-  EXPECT_EQ(with({"--out", scratch / "nowhere/out"}).code, kExitIo);
-  EXPECT_EQ(with({"--out", scratch / "out", "--window", "8"}).code, kExitBadData);
-  EXPECT_EQ(with({"--out", scratch / "out", "--min-prominence", "1.5"}).code, kExitBadData);
-  EXPECT_EQ(with({"--out", scratch / "out", "--pixel-pitch-um", "-1"}).code, kExitBadData);
+  const Outcome nowhere = with({"--out", scratch / "nowhere/out"});
+  EXPECT_EQ(nowhere.code, kExitIo);
+  EXPECT_THAT(nowhere.err, HasSubstr("there is no folder " + (scratch / "nowhere").string()));
+  EXPECT_THAT(nowhere.err, ::testing::Not(HasSubstr("slice"))) << "before the first one is read";
+  for (const auto& [option, value] : std::vector<std::pair<std::string, std::string>>{{"--window", "8"},
+                                                                                      {"--window", "65"},
+                                                                                      {"--distance", "8"},
+                                                                                      {"--bin", "0"},
+                                                                                      {"--min-prominence", "1.5"},
+                                                                                      {"--min-significance", "-1"},
+                                                                                      {"--broad-curve", "2"},
+                                                                                      {"--narrow-curve", "2"},
+                                                                                      {"--second-peak", "8"},
+                                                                                      {"--clipped-share", "2"},
+                                                                                      {"--edge-band", "-1"},
+                                                                                      {"--max-sigma", "-1"},
+                                                                                      {"--pixel-pitch-um", "-1"}}) {
+    const Outcome outcome = with({"--out", scratch / "out", option, value});
+    EXPECT_EQ(outcome.code, kExitUsage) << option;
+    EXPECT_THAT(outcome.err, HasSubstr(option)) << "names it";
+  }
+  const Outcome twice = with({"--out", scratch / "out", "--peak", "parabola", "--extra-peak", "parabola"});
+  EXPECT_EQ(twice.code, kExitUsage);
+  EXPECT_THAT(twice.err, HasSubstr("--extra-peak parabola is the peak of height.tiff already"));
+  EXPECT_EQ(process({scratch / "in", "--z-step-um", "1e-9", "--out", scratch / "out"}).code, kExitBadData);
   EXPECT_THAT(scratch.entries(), testing::ElementsAre("in"));
 }
 

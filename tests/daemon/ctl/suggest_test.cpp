@@ -44,7 +44,7 @@ TEST(Suggest, PrintsSettingsForARecipeAndRefusesWhatItCannotRead) {
   EXPECT_THAT(good.out, HasSubstr("\"distance_px\": 2, \"window_px\": 9 }  (the defaults)"));
   const Outcome bad = suggest((scratch / "in/s9.png").string());
   EXPECT_NE(bad.code, kExitOk);
-  EXPECT_THAT(bad.err, HasSubstr("s9.png"));
+  EXPECT_THAT(bad.err, HasSubstr("there is no file or folder " + (scratch / "in/s9.png").string()));
 }
 
 TEST(Suggest, LooksAtAWholeStack) {
@@ -59,6 +59,19 @@ TEST(Suggest, LooksAtAWholeStack) {
   std::ostringstream err;
   ASSERT_EQ(run_fvdctl({"suggest", scratch / "in"}, {out, err, false, false}), kExitOk) << err.str();
   EXPECT_THAT(out.str(), HasSubstr("\"window_px\": 9"));
+  EXPECT_THAT(out.str(), HasSubstr("slices wide at half its height"));
+}
+
+TEST(Suggest, ChoosesTheSlicesAsProcessDoes) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "left", ".png", 9, 4.0);
+  test::write_stack(scratch / "in", "right", ".png", 9, 4.0);
+  std::ostringstream out;
+  std::ostringstream err;
+  EXPECT_EQ(run_fvdctl({"suggest", scratch / "in"}, {out, err, false, false}), kExitBadData);
+  EXPECT_THAT(err.str(), HasSubstr("--pattern"));
+  EXPECT_EQ(run_fvdctl({"suggest", scratch / "in", "--pattern", "left{n}.png"}, {out, err, false, false}), kExitOk)
+      << err.str();
   EXPECT_THAT(out.str(), HasSubstr("slices wide at half its height"));
 }
 

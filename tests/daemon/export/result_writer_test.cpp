@@ -136,13 +136,19 @@ TEST(ResultJson, HasNullWhereNothingIsKnown) {
 }
 
 TEST(StepCsv, HasOneRowASliceUnderNamesWithUnits) {
-  const std::string csv = step_csv(test::sample_result().steps);
+  SuspectSlice left_out;
+  left_out.index = 2;
+  left_out.reason = SuspectReason::kPartial;
+  SuspectSlice again = left_out;
+  again.index = 0;
+  again.done = SuspectDone::kTakenAgain;
+  const std::string csv = step_csv(test::sample_result().steps, {again, left_out});
   EXPECT_EQ(csv,
             "index,measured,commanded_um,quantised_um,commanded_counts,move_ms,settle_polls,triggers,"
-            "measured_um,measured_sd_um,position_samples,error_um,frame_id,exposure_start_ms\n"
-            "0,1,0.000000,0.000000,0,12.500,4,1,0.062500,0.000000,2,0.062500,7,0.000\n"
-            "1,0,10.000000,10.000000,1000,12.500,4,4,,,,,,\n"
-            "2,1,20.000000,20.000000,2000,12.500,4,1,20.062500,0.000000,2,0.062500,9,40.000\n");
+            "measured_um,measured_sd_um,position_samples,error_um,frame_id,exposure_start_ms,left_out\n"
+            "0,1,0.000000,0.000000,0,12.500,4,1,0.062500,0.000000,2,0.062500,7,0.000,\n"
+            "1,0,10.000000,10.000000,1000,12.500,4,4,,,,,,,\n"
+            "2,1,20.000000,20.000000,2000,12.500,4,1,20.062500,0.000000,2,0.062500,9,40.000,partial\n");
 }
 
 TEST(StepCsv, IsAHeaderAloneForAnEmptyLog) {

@@ -211,6 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{with_reconstruct(R"({"holes": {"second_peak": 0.3}})"), "/reconstruct/holes/second_peak", "0.5..1"},
         BadRecipe{with_reconstruct(R"({"smooth_px": 0.5})"), "/reconstruct/smooth_px", "1..16"},
         BadRecipe{with_focus(R"({"window": "round"})"), "/reconstruct/focus/window", "double_box"},
+        BadRecipe{with("", R"(, "export": ["height.tiff", "heigt.gsf"])"), "/export", "\"heigt.gsf\" is not accepted"},
         BadRecipe{with("", R"(, "export": ["height_smooth.tiff"])"), "/export", "a value at /reconstruct/smooth_px"},
         BadRecipe{with("", R"(, "export": ["height.csv"])"), "/export", "\"height.tiff\""},
         BadRecipe{with("", R"(, "export": ["height_*.tiff"])"), "/export",

@@ -79,10 +79,31 @@ TEST(Evaluate, WarnsOfTheDriftThatIsLeftAlone) {
 
 TEST(Evaluate, DoesNotWarnOfADriftThatMayBeNoise) {
   ResultData data = drifting(0.03, 1e-4);
-  data.drift->error_px_per_um = 0.01;
+  data.drift->error_px_per_um = 0.011;
   data.drift->scale_error_per_um = 1e-4;
   EXPECT_THAT(codes(evaluated(data)), testing::AllOf(testing::Not(testing::Contains("lateral_drift")),
                                                      testing::Not(testing::Contains("scale_changes"))));
+}
+
+TEST(Evaluate, WarnsOfADriftThatVariesFromSliceToSlice) {
+  ResultData data = drifting(0.04, 0.0);
+  data.drift->error_px_per_um = 0.011;
+  EXPECT_THAT(codes(evaluated(data)), testing::Contains("lateral_drift"));
+}
+
+TEST(Evaluate, NamesWhatMostHolesAreWhereFewPointsAreValid) {
+  ResultData data = test::sample_result();
+  data.map = test::sample_map(30, 2);
+  for (int x = 1; x < 60; ++x) {
+    test::make_hole(data.map, x % 30, x / 30, x < 10 ? mask_reason::kLowProminence : mask_reason::kSaturated);
+  }
+  const Result result = evaluated(data);
+  const auto warning = std::find_if(result.warnings.begin(), result.warnings.end(),
+                                    [](const Warning& one) { return one.code == "few_valid_points"; });
+  ASSERT_NE(warning, result.warnings.end());
+  EXPECT_EQ(warning->text,
+            "only 1.7 % of the points are valid; 50 points are at full scale (clipped_share): less "
+            "exposure or light");
 }
 
 TEST(Evaluate, DoesNotJudgeWhereTheRecipeDoesNot) {

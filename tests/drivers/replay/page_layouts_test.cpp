@@ -167,6 +167,21 @@ std::string fault_of(const Layout& row, const std::filesystem::path& file, Score
   return {};
 }
 
+TEST(PageLayouts, TellThePitchOfPixelsWhereTheirDescriptionDoes) {
+  const test::ScratchDir scratch;
+  const auto slices = [&](const std::string& attributes) {
+    test::write_tiff(
+        scratch / "s.tif",
+        pages(3, ome("DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\" " + attributes, "<TiffData/>")));
+    return find_slices(scratch / "s.tif");
+  };
+  const SliceList told = slices("PhysicalSizeX=\"2.5\" PhysicalSizeY=\"0.0026\" PhysicalSizeYUnit=\"mm\"");
+  EXPECT_DOUBLE_EQ(told.pixel_pitch_x_um.value_or(0.0), 2.5);
+  EXPECT_DOUBLE_EQ(told.pixel_pitch_y_um.value_or(0.0), 2.6);
+  EXPECT_FALSE(slices("PhysicalSizeX=\"2.5\"").pixel_pitch_x_um) << "of one side alone";
+  EXPECT_FALSE(slices("PhysicalSizeX=\"2\" PhysicalSizeXUnit=\"pixel\" PhysicalSizeY=\"2\"").pixel_pitch_y_um);
+}
+
 TEST(PageLayouts, AreAllRightAndNothingIsDroppedSilently) {
   Score score;
   for (const auto& table : {described_layouts(), plain_layouts()}) {

@@ -70,7 +70,7 @@ TEST(SliceFiles, RefuseTwoFilesOfOneNumber) {
 TEST(SliceFiles, RefuseAFolderWithoutAStack) {
   const ScratchDir scratch;
   expect_error(ErrorCode::kBadInput, {"no slices", "slice_000.png"}, [&] { (void)find_slices(scratch.path()); });
-  expect_error(ErrorCode::kBadInput, {"no folder", "nowhere"}, [&] { (void)find_slices(scratch / "nowhere"); });
+  expect_error(ErrorCode::kBadInput, {"no file or folder", "nowhere"}, [&] { (void)find_slices(scratch / "nowhere"); });
   cv::imwrite((scratch / "slice_0.png").string(), pattern_slice(0, 0));
   expect_error(ErrorCode::kBadInput, {"only one slice", "slice_0.png"}, [&] { (void)find_slices(scratch.path()); });
   expect_error(ErrorCode::kBadInput, {"not a TIFF with several pages"},

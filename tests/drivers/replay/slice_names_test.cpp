@@ -124,7 +124,7 @@ const std::vector<Row> kRows{
      {},
      {},
      {},
-     {"more than one number varies", "{n}_90.png", "001_{n}.png"}},
+     {"more than one number varies", "{n}_*.png", "*_{n}.png"}},
     {"SameZTwice", {"z0um_1.png", "z0um_2.png", "z5um_1.png", "z5um_2.png"}, {}, {}, {}, {"same z", "z{z_um}um_1.png"}},
     {"TimeStamps", {"IMG_20261123_115959.jpg", "IMG_20261123_120001.jpg", "IMG_20261123_120003.jpg"}},
     {"TimeWithDashes", {"2026-11-30T23-59-58.png", "2026-11-30T23-59-59.png", "2026-12-01T00-00-01.png"}},
@@ -160,6 +160,12 @@ const std::vector<Row> kRows{
      {},
      {},
      {"s1 (1).png", "may be a slice", "--pattern"}},
+    {"FirstSliceWithoutANumber",
+     joined(counted("img (#).png", 6, 1), {"img.png"}),
+     {},
+     {},
+     {},
+     {"also img.png", "no number", "'img ({n}).png'"}},
     {"TwoRuns", joined(counted("run1_#.png", 4), counted("run2_#.png", 4)), {}, {}, {}, {"run1_{n}.png"}},
     {"TwoFamilies",
      joined(counted("left#.png", 5), counted("right#.png", 4)),
@@ -181,6 +187,20 @@ const std::vector<Row> kRows{
     {"PatternWithoutANumber", counted("s#.png", 4), {}, {}, "s*.png", {"needs {n}, {z_um} or {z_mm}"}},
     {"PatternWithAnUnknownField", counted("s#.png", 4), {}, {}, "s{t}.png", {"{n}, {z_um}, {z_mm}"}},
 };
+
+TEST(SliceNamesOfTwoRuns, AreAskedForWithPatternsThatMakeAStack) {
+  const ScratchDir scratch;
+  for (const std::string& name : joined(counted("run1_#.png", 4), counted("run2_#.png", 4))) {
+    test::write_text(scratch / name, "");
+  }
+  try {
+    (void)find_slices(scratch.path());
+    FAIL() << "no question";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("'run1_{n}.png'"));
+    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("run{n}")));
+  }
+}
 
 class SliceNames : public testing::TestWithParam<Row> {};
 
