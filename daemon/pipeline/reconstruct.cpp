@@ -9,6 +9,8 @@ namespace fvd {
 
 namespace {
 
+constexpr double kUsualJump = 3.0;  ///< steps
+
 HeightMap finish(const StreamingFocusStack& stack, PeakMethod method, const ResultData& data) {
   HeightMap map = stack.finish(method);
   hide_border(map, data.hidden_border, data.focus.window_px / 2 + data.focus.distance_px);
@@ -73,8 +75,10 @@ void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultD
 void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data) {
   if (recipe.smooth_px) {
     data.smooth_px = recipe.smooth_px;
-    data.smoothed =
-        smooth_heights(data.map.height_m, data.map.sigma_m, {*recipe.smooth_px, window_area_px2(data.focus)}, pool);
+    // Within a curve's width noise alone may part neighbours.
+    const double jump_um = data.map.curve_width_um > 0.0 ? data.map.curve_width_um : kUsualJump * recipe.step_um;
+    data.smoothed = smooth_heights(data.map.height_m, data.map.sigma_m,
+                                   {*recipe.smooth_px, window_area_px2(data.focus), jump_um}, pool);
   }
   for (const PeakMethod method : recipe.extra_peaks) {
     const bool done = method == recipe.peak || std::any_of(data.extra_maps.begin(), data.extra_maps.end(),
