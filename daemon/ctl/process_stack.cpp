@@ -79,13 +79,13 @@ StepRecord step_record(int index, double z_um) {
   return step;
 }
 
-void describe(ResultData& data, const ProcessOptions& options, const RecordedStack& stack) {
+void describe(ResultData& data, const ProcessOptions& options, const Recipe& recipe, const RecordedStack& stack) {
   data.software_version = kVersion;
   data.created = std::chrono::system_clock::now();
   const std::filesystem::path source = named_path(options.source);
   data.part_id = options.part_id.empty() ? source.filename().string() : options.part_id;
   data.source = source.string() + ": " + stack.list().description + "; files: " + files_text(stack.list());
-  note_recipe(options.recipe, data);
+  note_recipe(recipe, data);
   if (!options.knows_pixel_pitch) {
     data.pixel_pitch_x_um = stack.list().pixel_pitch_x_um;
     data.pixel_pitch_y_um = stack.list().pixel_pitch_y_um;
@@ -221,10 +221,13 @@ class Pass {
   StreamingFocusStack focus_;
 };
 
-/// Whether a pass without bins told a width that wants them.
-bool wants_bins(const Recipe& recipe, const HeightMap& map) {
-  return learns_bins(recipe) && !recipe.learnt_width &&
-         choose_bin_slices(recipe.step_um, map.curve_width_um, recipe.slices) > 1;
+/// Takes over the width that a pass without bins told. Whether it wants bins.
+bool learn_bins(Recipe& recipe, ResultData& data) {
+  if (!learns_bins(recipe) || !(data.map.curve_width_um > 0.0)) return false;
+  recipe.learnt_width = LearntWidth{.width_um = data.map.curve_width_um,
+                                    .most_bin_slices = most_bin_slices(data.map.height_m, data.steps, recipe.step_um)};
+  data.bins_by = bin_choice(recipe);
+  return focus_settings(recipe).bin_slices > 1;
 }
 
 /// What is to be undone, after a pass over the slices where they have to show it.
@@ -247,28 +250,23 @@ DriftPath drift_of(const ProcessOptions& options, const RecordedStack& stack, co
 /// From the slices to the maps; twice where the first pass finds the steps so fine that bins are better. The memory of
 /// curves and slices is free again when the result is written.
 void measure(const ProcessOptions& options, const RecordedStack& stack, SteadyClock::time_point start,
-             const std::function<void(int, int)>& on_slice, ResultData& data) {
-  const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
+             const std::vector<double>& z_um, Recipe recipe, const std::function<void(int, int)>& on_slice,
+             ResultData& data) {
   for (Warning& warning : check_stack(options, z_um)) data.warnings.push_back(std::move(warning));
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   WorkerPool pool(options.threads > 0 ? options.threads : std::max(1, cores));
-  Recipe recipe = options.recipe;
-  recipe.slices = static_cast<int>(z_um.size());
-  if (!options.recipe_plans_scan) recipe.step_um = median_step_um(z_um);
   const std::vector<Warning> warnings = data.warnings;
   data.times.prepare_ms = milliseconds_since(start);
   const DriftPath drift = drift_of(options, stack, z_um, pool, data);
   auto pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, drift, pool);
   pass->run(stack, z_um, data, on_slice);
-  if (wants_bins(recipe, data.map)) {
-    recipe.learnt_width = LearntWidth{.width_um = data.map.curve_width_um};
+  if (learn_bins(recipe, data)) {
     data.warnings = warnings;
     data.frames = {};
     data.steps.clear();
     data.suspects.clear();
     data.map = {};
     data.focus = focus_settings(recipe);
-    data.bins_by = bin_choice(recipe);
     pass.reset();  // its memory first
     pass = std::make_unique<Pass>(recipe, stack, options.allowed_lost_slices, drift, pool);
     pass->run(stack, z_um, data, on_slice);
@@ -283,8 +281,10 @@ ProcessReport process_stack(const ProcessOptions& options, const std::function<v
   check_options(options);
   const RecordedStack stack(options.slices, options.significant_bits);
   ResultData data;
-  describe(data, options, stack);
-  measure(options, stack, start, on_slice, data);
+  const std::vector<double> z_um = slice_heights_um(options.z, stack.list());
+  const Recipe recipe = recipe_of_slices(options, z_um);
+  describe(data, options, recipe, stack);
+  measure(options, stack, start, z_um, recipe, on_slice, data);
   data.step_summary = summarize_steps(data.steps);
   return {stack.list().description, files_text(stack.list()), write_result(options.out, data)};
 }

@@ -24,8 +24,7 @@ constexpr double kMaxUsualStep_um = 1000.0;
 constexpr const char* kSayTheUnit =
     "if its numbers are not in um, give --z-file with --z-unit mm or m; if they are, --z-unit um";
 
-void require_enough_slices(const ProcessOptions& options, int slices) {
-  const FocusSettings focus = focus_settings(options.recipe);
+void require_enough_slices(const ProcessOptions& options, const FocusSettings& focus, int slices) {
   const int least = (kSamplesOfAPeak - 1) * focus.bin_slices + 1;
   if (slices >= least) return;
   std::ostringstream message;
@@ -71,9 +70,20 @@ double median_step_um(const std::vector<double>& z_um) {
   return *middle;
 }
 
+Recipe recipe_of_slices(const ProcessOptions& options, const std::vector<double>& z_um) {
+  Recipe recipe = options.recipe;
+  recipe.slices = static_cast<int>(z_um.size());
+  if (z_um.size() < 2) return recipe;
+  const double step_um = median_step_um(z_um);
+  const bool as_planned =
+      options.recipe_plans_scan && std::abs(step_um - recipe.step_um) <= kMaxStepDifference * recipe.step_um;
+  if (!as_planned) recipe.step_um = step_um;
+  return recipe;
+}
+
 std::vector<Warning> check_stack(const ProcessOptions& options, const std::vector<double>& z_um) {
   const Recipe& recipe = options.recipe;
-  require_enough_slices(options, static_cast<int>(z_um.size()));
+  require_enough_slices(options, focus_settings(recipe_of_slices(options, z_um)), static_cast<int>(z_um.size()));
   const double step_um = median_step_um(z_um);
   require_plausible_unit(options, step_um);
   std::vector<Warning> warnings;

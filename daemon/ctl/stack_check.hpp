@@ -15,6 +15,10 @@ namespace fvd::ctl {
 /// whose unit nobody said with steps far from the recipe's.
 [[nodiscard]] std::vector<Warning> check_stack(const ProcessOptions& options, const std::vector<double>& z_um);
 
+/// The recipe as these slices were taken: as many, and as far apart as they are unless that is what it plans; bins
+/// follow from that.
+[[nodiscard]] Recipe recipe_of_slices(const ProcessOptions& options, const std::vector<double>& z_um);
+
 /// The median of the distances between neighbours, which slices that are missing in between do not change. At least
 /// two.
 [[nodiscard]] double median_step_um(const std::vector<double>& z_um);

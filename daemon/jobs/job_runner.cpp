@@ -30,14 +30,15 @@ Recipe with_learnt_width(Recipe recipe, const CurveWidthTable& widths) {
 /// The width that the curves of a handful of points have is no width of the scan.
 constexpr double kLeastValidShare = 0.1;
 
-void learn_width(const Recipe& recipe, const HeightMap& map, CurveWidthTable& widths) {
+void learn_width(const Recipe& recipe, const ResultData& scan, CurveWidthTable& widths) {
+  const HeightMap& map = scan.map;
   const auto points = map.mask.pixels();
   const auto valid = static_cast<double>(std::count(points.begin(), points.end(), MaskReasons{0}));
   const double width_um = map.curve_width_um;
   if (!learns_bins(recipe) || !(width_um > 0.0)) return;
   if (valid < kLeastValidShare * static_cast<double>(points.size())) return;
   try {
-    widths.learn(recipe, width_um);
+    widths.learn(recipe, width_um, most_bin_slices(map.height_m, scan.steps, recipe.step_um));
   } catch (const Error& failure) {
     spdlog::warn("recipe {}: the focus curve's width cannot be remembered: {}", recipe.id, failure.what());
   }
@@ -117,7 +118,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
   if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
   if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
   JobResult result = deps_.make_result(directory, acquired);
-  if (!result.error) learn_width(recipe, acquired.map, deps_.store.curve_widths());
+  if (!result.error) learn_width(recipe, acquired, deps_.store.curve_widths());
   return result;
 }
 

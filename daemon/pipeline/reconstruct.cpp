@@ -1,6 +1,10 @@
 #include "daemon/pipeline/reconstruct.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <sstream>
 
 #include "core/focus/fit/smooth_heights.hpp"
@@ -8,6 +12,8 @@
 namespace fvd {
 
 namespace {
+
+constexpr double kUsualJump = 3.0;  ///< steps
 
 HeightMap finish(const StreamingFocusStack& stack, PeakMethod method, const ResultData& data) {
   HeightMap map = stack.finish(method);
@@ -57,10 +63,39 @@ DriftPath recipe_drift(const Recipe& recipe, double middle_um) {
   return {recipe.drift_px_per_um_x, recipe.drift_px_per_um_y, middle_um};
 }
 
+int most_bin_slices(const Plane<float>& height_m, const StepLog& steps, double step_um) {
+  constexpr double kLostShare = 0.005;
+  constexpr double kUncertain = 0.25;  // steps: where a peak that lies there is seen
+  double lowest_um = std::numeric_limits<double>::infinity();
+  double highest_um = -lowest_um;
+  for (const StepRecord& step : steps) {
+    if (!step.measured) continue;
+    lowest_um = std::min(lowest_um, step.measured_um);
+    highest_um = std::max(highest_um, step.measured_um);
+  }
+  std::array<std::size_t, kMaxBinSlices + 1> kept_up_to{};  // points that larger bins than so many slices lose
+  std::size_t points = 0;
+  for (const float height : height_m.pixels()) {
+    if (std::isnan(height)) continue;
+    ++points;
+    const double height_um = 1e6 * static_cast<double>(height);
+    const double margin = std::min(height_um - lowest_um, highest_um - height_um) / step_um;
+    const double most = std::clamp(std::floor(margin + 0.5 - kUncertain), 1.0, static_cast<double>(kMaxBinSlices));
+    ++kept_up_to[static_cast<std::size_t>(most)];
+  }
+  std::size_t lost = 0;
+  for (int bin = 1; bin < kMaxBinSlices; ++bin) {
+    lost += kept_up_to[static_cast<std::size_t>(bin)];
+    if (static_cast<double>(lost) > kLostShare * static_cast<double>(points)) return bin;
+  }
+  return kMaxBinSlices;
+}
+
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data) {
   data.state_bytes_per_pixel = stack.state_bytes_per_pixel();
   data.map = finish(stack, recipe.peak, data);
-  const int wanted = choose_bin_slices(recipe.step_um, data.map.curve_width_um, recipe.slices);
+  const int wanted = std::min(choose_bin_slices(recipe.step_um, data.map.curve_width_um, recipe.slices),
+                              most_bin_slices(data.map.height_m, data.steps, recipe.step_um));
   if (data.bins_by != BinChoice::kUnknownWidth || wanted == data.focus.bin_slices) return;
   std::ostringstream text;
   text.precision(3);
@@ -73,8 +108,10 @@ void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultD
 void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data) {
   if (recipe.smooth_px) {
     data.smooth_px = recipe.smooth_px;
-    data.smoothed =
-        smooth_heights(data.map.height_m, data.map.sigma_m, {*recipe.smooth_px, window_area_px2(data.focus)}, pool);
+    // Within a curve's width noise alone may part neighbours.
+    const double jump_um = data.map.curve_width_um > 0.0 ? data.map.curve_width_um : kUsualJump * recipe.step_um;
+    data.smoothed = smooth_heights(data.map.height_m, data.map.sigma_m,
+                                   {*recipe.smooth_px, window_area_px2(data.focus), jump_um}, pool);
   }
   for (const PeakMethod method : recipe.extra_peaks) {
     const bool done = method == recipe.peak || std::any_of(data.extra_maps.begin(), data.extra_maps.end(),

@@ -28,6 +28,10 @@ void note_drift(const DriftMeter& drift, const HiddenBorder& hidden, ResultData&
 /// What the bins follow from. context: pure.
 [[nodiscard]] BinChoice bin_choice(const Recipe& recipe);
 
+/// The largest bins that cost hardly any of the heights that were found: a bin of n slices begins to see peaks n - 1/2
+/// steps within the range. height_m: NaN in holes. step_um: > 0. context: pure.
+[[nodiscard]] int most_bin_slices(const Plane<float>& height_m, const StepLog& steps, double step_um);
+
 /// Heights by recipe.peak; a warning where the curves turn out so wide against the step that bins would have made less
 /// error, and nothing had told their width before. Throws Error kBadSlice without slices, as the next.
 void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultData& data);

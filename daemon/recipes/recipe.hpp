@@ -2,6 +2,7 @@
 
 /// A recipe: how one kind of part is measured.
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,8 +16,9 @@ namespace fvd {
 
 /// A focus curve's width that was measured, not given.
 struct LearntWidth {
-  double width_um = 0.0;  ///< full width at half maximum
-  int scans = 0;          ///< that told it; 0 = the slices themselves, which were looked at first
+  double width_um = 0.0;                ///< full width at half maximum
+  int scans = 0;                        ///< that told it; 0 = the slices themselves, which were looked at first
+  int most_bin_slices = kMaxBinSlices;  ///< larger bins would have cost heights near the ends of the range
 };
 
 struct Recipe {
@@ -68,6 +70,9 @@ struct Recipe {
   const double width_um = recipe.curve_width_um > 0.0 ? recipe.curve_width_um : learnt_um;
   settings.bin_slices =
       recipe.bin_slices > 0 ? recipe.bin_slices : choose_bin_slices(recipe.step_um, width_um, recipe.slices);
+  if (learns_bins(recipe) && recipe.learnt_width) {
+    settings.bin_slices = std::min(settings.bin_slices, recipe.learnt_width->most_bin_slices);
+  }
   if (settings.focus_operator == FocusOperator::kIntensity) settings.window_px = 1;
   return settings;
 }

@@ -25,8 +25,9 @@ class CurveWidthTable {
 
   /// Nothing before the first good scan with these settings. Throws Error kDatabase, as the next.
   [[nodiscard]] std::optional<LearntWidth> find(const Recipe& recipe) const;
-  /// Takes in what a good scan told, > 0 um: a mean in which the last five scans weigh most. Durable at the return.
-  void learn(const Recipe& recipe, double width_um);
+  /// Takes in what a good scan told: of the width, > 0 um, a mean in which the last five scans weigh most; of the bins
+  /// the smallest number of slices that one of them allowed. Durable at the return.
+  void learn(const Recipe& recipe, double width_um, int most_bin_slices);
 
  private:
   const Connection writer_;

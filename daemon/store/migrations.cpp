@@ -130,12 +130,22 @@ CREATE TABLE curve_widths (
 )");
 }
 
+/// Version 6: bins that would cost heights near the ends of the range. What was learnt before knows nothing of them and
+/// may come from scans whose bins did: it is learnt anew.
+void remember_bins_that_keep_the_ends(Database& database) {
+  database.execute(R"(
+DELETE FROM curve_widths;
+ALTER TABLE curve_widths ADD COLUMN most_bin_slices INTEGER NOT NULL DEFAULT 64;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
     MigrationStep{"versions of recipes", keep_recipe_versions},
     MigrationStep{"whether the part was free at a job's end", keep_whether_the_part_was_free},
     MigrationStep{"widths of focus curves", remember_curve_widths},
+    MigrationStep{"bins that keep the ends of the range", remember_bins_that_keep_the_ends},
 };
 
 void require_own_file(const Database& database, int version) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "core/base/error.hpp"
+#include "core/focus/fit/local_quadratic.hpp"
 
 namespace fvd {
 
@@ -18,9 +18,13 @@ namespace {
 /// Weights beyond so many standard deviations are left out: 1 % of the largest.
 constexpr double kReach = 3.0;
 
-/// A fit whose variance is more than so many times that of a point is one that its neighbours do not hold: at the end
-/// of a strip, or where nearly all of them are holes.
-constexpr double kLargestFactor = 4.0;
+/// Heights that scatter about their quadratic by more than so many of their standard errors (squared) are more than one
+/// surface, and are fitted a second time point by point.
+constexpr double kMostScatter = 4.0;
+/// There, what is off the quadratic of the nearby heights by more than so many standard errors takes no part.
+constexpr double kMostErrors = 6.0;
+/// Every n-th pixel does for such a fit, so many to a standard deviation of the weights.
+constexpr double kSamplesPerSigma = 4.0;
 
 /// Along one direction: weight times the offset to the powers 0..4. Offsets are in sigma, so that all powers are of one
 /// size.
@@ -34,35 +38,6 @@ constexpr int kRowSums = kPointSums + kHeightSums + 2;
 constexpr int kSquares = kPointSums + kHeightSums;
 constexpr int kVariances = kSquares + 1;
 
-/// What the solver gets per column: sums of u^i v^j over points, i + j <= 4, and over heights, i + j <= 2.
-struct Term {
-  int u;
-  int v;
-};
-constexpr std::array<Term, 15> kPointTerms{{{0, 0},
-                                            {1, 0},
-                                            {0, 1},
-                                            {2, 0},
-                                            {1, 1},
-                                            {0, 2},
-                                            {3, 0},
-                                            {2, 1},
-                                            {1, 2},
-                                            {0, 3},
-                                            {4, 0},
-                                            {3, 1},
-                                            {2, 2},
-                                            {1, 3},
-                                            {0, 4}}};
-constexpr int kUnknowns = 6;  // 1, u, v, u^2, u v, v^2: the first six terms
-
-constexpr int term_index(int u, int v) {
-  for (std::size_t i = 0; i < kPointTerms.size(); ++i) {
-    if (kPointTerms[i].u == u && kPointTerms[i].v == v) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 class Smoother {
  public:
   Smoother(const Plane<float>& height_m, const Plane<float>& sigma_m, const SmoothSettings& settings,
@@ -73,7 +48,10 @@ class Smoother {
         width_(height_m.width()),
         height_(height_m.height()),
         radius_(static_cast<int>(std::ceil(kReach * settings.sigma_px))),
-        correlated_px_(settings.correlated_px) {
+        stride_(std::max(1, static_cast<int>(settings.sigma_px / kSamplesPerSigma))),
+        sigma_px_(settings.sigma_px),
+        quadratic_(settings.sigma_px, radius_, settings.correlated_px),
+        jump_um_(settings.jump_um) {
     for (int offset = -radius_; offset <= radius_; ++offset) {
       const double u = offset / settings.sigma_px;
       double value = std::exp(-0.5 * u * u);
@@ -82,8 +60,6 @@ class Smoother {
         value *= u;
       }
     }
-    // With all neighbours: the sum of the squared weights of the estimate over the variance factor of the weighted fit.
-    squares_over_factor_ = full_squares_over_factor();
   }
 
   /// Rows first .. end - 1.
@@ -104,8 +80,8 @@ class Smoother {
         : row_of_slot(static_cast<std::size_t>(2 * s.radius_ + 1), -1),
           rows(row_of_slot.size() * kRowSums * static_cast<std::size_t>(s.width_)),
           padded((4 + 1) * static_cast<std::size_t>(s.width_ + 2 * s.radius_)),
-          points(kPointTerms.size() * static_cast<std::size_t>(s.width_)),
-          heights((kUnknowns + 2) * static_cast<std::size_t>(s.width_)) {}
+          points(kLocalProducts.size() * static_cast<std::size_t>(s.width_)),
+          heights((kLocalUnknowns + 2) * static_cast<std::size_t>(s.width_)) {}
     std::vector<int> row_of_slot;
     std::vector<double> rows;     // [slot][sum][width]
     std::vector<double> padded;   // [valid, height, square, variance][width + 2 radius]
@@ -172,22 +148,19 @@ class Smoother {
       const auto to = [&](std::vector<double>& sums, std::size_t i) {
         return sums.data() + static_cast<std::ptrdiff_t>(i) * width_;
       };
-      for (std::size_t i = 0; i < kPointTerms.size(); ++i) {
-        const Term term = kPointTerms[i];
+      for (std::size_t i = 0; i < kLocalProducts.size(); ++i) {
+        const LocalTerm term = kLocalProducts[i];
         add_row(row_sum(band, at, term.u), taps_[static_cast<std::size_t>(term.v)][tap], to(band.points, i));
       }
-      for (std::size_t i = 0; i < kUnknowns; ++i) {
-        const Term term = kPointTerms[i];
+      for (std::size_t i = 0; i < kLocalUnknowns; ++i) {
+        const LocalTerm term = kLocalProducts[i];
         add_row(row_sum(band, at, kPointSums + term.u), taps_[static_cast<std::size_t>(term.v)][tap],
                 to(band.heights, i));
       }
-      add_row(row_sum(band, at, kSquares), taps_[0][tap], to(band.heights, kUnknowns));
-      add_row(row_sum(band, at, kVariances), taps_[0][tap], to(band.heights, kUnknowns + 1));
+      add_row(row_sum(band, at, kSquares), taps_[0][tap], to(band.heights, kLocalUnknowns));
+      add_row(row_sum(band, at, kVariances), taps_[0][tap], to(band.heights, kLocalUnknowns + 1));
     }
   }
-
-  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
   void solve(const Band& band, int x, int y) const {
     float& height_out = out_.height_m.at(x, y);
@@ -195,67 +168,68 @@ class Smoother {
     height_out = height_m_.at(x, y);
     sigma_out = sigma_m_.at(x, y);
     if (std::isnan(height_out)) return;
-    const auto point = [&](int term) {
-      return band
-          .points[static_cast<std::size_t>(term) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+    const auto at = [&](const std::vector<double>& sums, std::size_t i) {
+      return sums[i * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
     };
-    const auto height = [&](int term) {
-      return band
-          .heights[static_cast<std::size_t>(term) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-    };
-    Matrix normal;
-    for (int i = 0; i < kUnknowns; ++i) {
-      for (int j = 0; j < kUnknowns; ++j) {
-        normal(i, j) = point(kProducts[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
-      }
+    LocalSums sums;
+    for (std::size_t i = 0; i < sums.points.size(); ++i) sums.points[i] = at(band.points, i);
+    for (std::size_t i = 0; i < kLocalUnknowns; ++i) sums.heights[i] = at(band.heights, i);
+    sums.squares = at(band.heights, kLocalUnknowns);
+    sums.variances = at(band.heights, kLocalUnknowns + 1);
+    std::optional<LocalFit> fit = quadratic_.fit(sums, 1);
+    if (!fit) return;
+    int samples_apart = 1;
+    double height_um = 0.0;
+    if (fit->scatter > kMostScatter * fit->variance) {
+      samples_apart = stride_;
+      height_um = 1e6 * static_cast<double>(height_out);
+      fit = fitted_on_one_side(x, y);
     }
-    const Eigen::LLT<Matrix> factor(normal);
-    if (factor.info() != Eigen::Success) return;
-    const Vector first = factor.solve(Vector::Unit(0));  // its first element: the fit's variance over that of a point
-    const double squares = squares_over_factor_ * first(0);
-    if (!(squares > 0.0 && squares * correlated_px_ < kLargestFactor)) return;
-    Vector sums;
-    for (int i = 0; i < kUnknowns; ++i) sums(i) = height(i);
-    const Vector fit = factor.solve(sums);
-    const double weights = point(0);
-    const double scatter = std::max(0.0, (height(kUnknowns) - fit.dot(sums)) / weights);
-    const double variance = std::max(height(kUnknowns + 1) / weights, scatter);
-    height_out = static_cast<float>(fit(0) * 1e-6);
-    sigma_out = static_cast<float>(1e-6 * std::sqrt(variance * squares * correlated_px_));
+    if (!fit) return;
+    height_um += fit->surface[0];
+    height_out = static_cast<float>(height_um * 1e-6);
+    sigma_out = static_cast<float>(1e-6 * std::sqrt(std::max(fit->variance, fit->scatter) *
+                                                    quadratic_.variance_factor(fit->squares, samples_apart)));
   }
 
-  /// Sum k^2 over M^-1(0,0) for a neighbourhood without holes, k = M^-1 X^T W of the middle's height.
-  [[nodiscard]] double full_squares_over_factor() const {
-    Matrix normal = Matrix::Zero();
-    Matrix squared = Matrix::Zero();
-    for (int v = 0; v < 2 * radius_ + 1; ++v) {
-      for (int u = 0; u < 2 * radius_ + 1; ++u) {
-        const auto one = [&](const Taps& taps, int power, int at) {
-          return taps[static_cast<std::size_t>(power)][static_cast<std::size_t>(at)];
-        };
-        const double weight = one(taps_, 0, u) * one(taps_, 0, v);
-        Vector terms;
-        for (int i = 0; i < kUnknowns; ++i) {
-          const Term term = kPointTerms[static_cast<std::size_t>(i)];
-          terms(i) = one(taps_, term.u, u) * one(taps_, term.v, v) / weight;
-        }
-        normal += weight * terms * terms.transpose();
-        squared += weight * weight * terms * terms.transpose();
-      }
-    }
-    const Vector first = normal.llt().solve(Vector::Unit(0));
-    return first.dot(squared * first) / first(0);
+  /// Of the neighbours that lie on the point's own side of a wall, heights relative to the point's: first of those that
+  /// are about as high, then of all that lie on that surface.
+  [[nodiscard]] std::optional<LocalFit> fitted_on_one_side(int x, int y) const {
+    const std::optional<LocalFit> near = quadratic_.fit(
+        sums_about(x, y, [this](double height, const LocalTerms&) { return std::abs(height) <= jump_um_; }), stride_);
+    if (!near) return std::nullopt;
+    const double most = std::min(jump_um_, kMostErrors * std::sqrt(std::max(near->variance, near->scatter)));
+    return quadratic_.fit(sums_about(x, y,
+                                     [&](double height, const LocalTerms& terms) {
+                                       return std::abs(height - std::inner_product(terms.begin(), terms.end(),
+                                                                                   near->surface.begin(), 0.0)) <= most;
+                                     }),
+                          stride_);
   }
 
-  static constexpr std::array<std::array<int, kUnknowns>, kUnknowns> kProducts = [] {
-    std::array<std::array<int, kUnknowns>, kUnknowns> products{};
-    for (std::size_t i = 0; i < kUnknowns; ++i) {
-      for (std::size_t j = 0; j < kUnknowns; ++j) {
-        products[i][j] = term_index(kPointTerms[i].u + kPointTerms[j].u, kPointTerms[i].v + kPointTerms[j].v);
+  /// takes_part(height, terms): of a neighbour, um above the point, and its offset's terms.
+  template <typename TakesPart>
+  [[nodiscard]] LocalSums sums_about(int x, int y, const TakesPart& takes_part) const {
+    LocalSums sums;
+    const float middle = height_m_.at(x, y);
+    const int reach = radius_ / stride_ * stride_;
+    for (int v = -reach; v <= reach; v += stride_) {
+      if (y + v < 0 || y + v >= height_) continue;
+      const float* const heights = height_m_.row(y + v) + x;
+      const float* const sigmas = sigma_m_.row(y + v) + x;
+      for (int u = -reach; u <= reach; u += stride_) {
+        if (x + u < 0 || x + u >= width_ || std::isnan(heights[u])) continue;
+        const double height = 1e6 * (static_cast<double>(heights[u]) - static_cast<double>(middle));
+        const double along = u / sigma_px_;
+        const double down = v / sigma_px_;
+        const LocalTerms terms{1.0, along, down, along * along, along * down, down * down};
+        if (!takes_part(height, terms)) continue;
+        sums.add(terms, height, 1e6 * static_cast<double>(sigmas[u]),
+                 taps_[0][static_cast<std::size_t>(u + radius_)] * taps_[0][static_cast<std::size_t>(v + radius_)]);
       }
     }
-    return products;
-  }();
+    return sums;
+  }
 
   const Plane<float>& height_m_;
   const Plane<float>& sigma_m_;
@@ -263,8 +237,10 @@ class Smoother {
   int width_;
   int height_;
   int radius_;
-  double correlated_px_;
-  double squares_over_factor_ = 1.0;
+  int stride_;  // px, of the fits point by point
+  double sigma_px_;
+  LocalQuadratic quadratic_;
+  double jump_um_;
   Taps taps_;
 };
 
@@ -279,6 +255,9 @@ SmoothedHeights smooth_heights(const Plane<float>& height_m, const Plane<float>&
   if (!(settings.correlated_px >= 1.0)) {
     throw Error(ErrorCode::kBadInput,
                 "errors correlated over " + std::to_string(settings.correlated_px) + " px^2: must be at least 1 px^2");
+  }
+  if (!(settings.jump_um > 0.0)) {
+    throw Error(ErrorCode::kBadInput, "jumps of " + std::to_string(settings.jump_um) + " um: must be above 0 um");
   }
   const int width = height_m.width();
   const int height = height_m.height();

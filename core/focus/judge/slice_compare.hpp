@@ -58,6 +58,18 @@ struct OrderFigure {
 [[nodiscard]] bool exchanged(const SliceFigures& before2, const SliceFigures& before, const SliceFigures& first,
                              const SliceFigures& second, const SliceFigures& after, const SliceFigures& after2);
 
+/// Whether the step from first to second, of four slices that follow each other, is noise alone: second was taken where
+/// first was. Judged in tiles that change over the steps before and after it, where a stage that moved would have
+/// changed them; the product of both differences, of four exposures, has no part of the noise. About the focus of a
+/// flat surface, where two slices may be alike, so are the other two.
+struct StandstillFigure {
+  double change = 1.0;  ///< of the step over that of all three about it; near a third for even steps, 0 for none
+  double share = 0.0;   ///< of the tiles, that say so
+  [[nodiscard]] bool stood_still() const noexcept;
+};
+[[nodiscard]] StandstillFigure standstill_of(const SliceFigures& before, const SliceFigures& first,
+                                             const SliceFigures& second, const SliceFigures& after);
+
 /// Whether a slice is as sharp, in every direction, as its neighbours let expect.
 struct MotionFigure {
   int tiles = 0;              ///< those in which both neighbours show texture well above the noise

@@ -98,6 +98,16 @@ void SliceJudge::doubt_order(const Neighbours& next) {
   }
 }
 
+/// Shows what the slice before shows, but for noise: the stage did not move, or the camera sent what it had.
+void SliceJudge::doubt_standstill(Waiting& oldest, const Neighbours& next) const {
+  if (!last_believed_ || !before_last_ || next.empty()) return;
+  const StandstillFigure figure = standstill_of(*before_last_, *last_believed_, oldest.figures, *next[0]);
+  if (!figure.stood_still()) return;
+  oldest.suspect = true;
+  oldest.slice.reason = SuspectReason::kStandstill;
+  oldest.slice.figure = figure.change;
+}
+
 void SliceJudge::doubt_motion(Waiting& oldest, const Neighbours& next) {
   if (!last_believed_ || next.empty()) return;
   const MotionFigure motion = motion_of(*last_believed_, oldest.figures, *next[0], second_least_);
@@ -147,6 +157,7 @@ std::optional<SuspectSlice> SliceJudge::doubt(Waiting& oldest) {
   if (light > kMostLight) return condemned(SuspectReason::kBrighter, light);
   const Neighbours even = evenly_spaced_next();
   doubt_order(even);
+  if (!oldest.suspect) doubt_standstill(oldest, even);
   if (!oldest.suspect) doubt_motion(oldest, even);
   return oldest.suspect ? std::optional(oldest.slice) : std::nullopt;
 }

@@ -52,6 +52,7 @@ class SliceJudge {
   using Neighbours = std::vector<const SliceFigures*>;
   [[nodiscard]] Neighbours evenly_spaced_next() const;
   void doubt_order(const Neighbours& next);
+  void doubt_standstill(Waiting& oldest, const Neighbours& next) const;
   void doubt_motion(Waiting& oldest, const Neighbours& next);
   void note_noise(const SliceFigures& figures);
   [[nodiscard]] double accept(SliceFigures figures, int index);

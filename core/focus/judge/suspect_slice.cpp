@@ -30,6 +30,8 @@ Words words(SuspectReason reason) noexcept {
       return {"repeated", "is identical to the one before, to the bit", "share of its pixels that are the same"};
     case SuspectReason::kExchanged:
       return {"exchanged", "is out of order", "correlation of the step within with the step around"};
+    case SuspectReason::kStandstill:
+      return {"standstill", "shows the same as the one before but for noise", "change over that of the steps about it"};
     case SuspectReason::kVibration:
       return {"vibration", "was moved while it was exposed, or exposed twice",
               "logarithm of its sharpness over its neighbours', the strongest direction"};

@@ -11,18 +11,19 @@
 namespace fvd {
 
 enum class SuspectReason {
-  kDark,       ///< hardly any light
-  kBrighter,   ///< far more light than the others, as of a flash
-  kConstant,   ///< every pixel has the same grey level
-  kPartial,    ///< delivered in part: the rest is empty, constant, or left over of the slice before
-  kRepeated,   ///< identical to the slice before, to the bit
-  kExchanged,  ///< out of order: it resembles the neighbours of its neighbour more than its own
-  kVibration,  ///< blurred in one direction, or far less sharp than both neighbours: moved, or exposed twice
+  kDark,        ///< hardly any light
+  kBrighter,    ///< far more light than the others, as of a flash
+  kConstant,    ///< every pixel has the same grey level
+  kPartial,     ///< delivered in part: the rest is empty, constant, or left over of the slice before
+  kRepeated,    ///< identical to the slice before, to the bit
+  kExchanged,   ///< out of order: it resembles the neighbours of its neighbour more than its own
+  kStandstill,  ///< as the slice before but for noise: taken at the same height
+  kVibration,   ///< blurred in one direction, or far less sharp than both neighbours: moved, or exposed twice
 };
 
 inline constexpr std::array kAllSuspectReasons{
-    SuspectReason::kDark,     SuspectReason::kBrighter,  SuspectReason::kConstant, SuspectReason::kPartial,
-    SuspectReason::kRepeated, SuspectReason::kExchanged, SuspectReason::kVibration};
+    SuspectReason::kDark,     SuspectReason::kBrighter,  SuspectReason::kConstant,   SuspectReason::kPartial,
+    SuspectReason::kRepeated, SuspectReason::kExchanged, SuspectReason::kStandstill, SuspectReason::kVibration};
 
 /// What was done about it.
 enum class SuspectDone {

@@ -130,6 +130,20 @@ TEST(Process, BinsNoStackThatIsTooShort) {
   const auto focus = nlohmann::json::parse(test::read_text(scratch / "out/result.json"))["focus"];
   EXPECT_GT(choose_bin_slices(10.0, focus["curve_width_um"].get<double>()), 1);
   EXPECT_EQ(focus["bin_slices"], 1);
+  EXPECT_EQ(focus["bins_by"], "slices") << "which told the width";
+}
+
+TEST(Process, BinsNoStackWhoseHeightsThatWouldCost) {
+  const ScratchDir scratch;
+  test::write_stack(scratch / "in", "s", ".png", 31, 1.2);
+  ASSERT_EQ(process({scratch / "in", "--z-step-um", "10", "--out", scratch / "out"}).code, kExitOk);
+  const auto result = nlohmann::json::parse(test::read_text(scratch / "out/result.json"));
+  EXPECT_GT(choose_bin_slices(10.0, result["focus"]["curve_width_um"].get<double>(), 31), 1);
+  EXPECT_EQ(result["focus"]["bin_slices"], 1);
+  EXPECT_EQ(result["focus"]["bins_by"], "slices");
+  EXPECT_THAT(result["warnings"], ::testing::IsEmpty());
+  const cv::Mat height = read_float(scratch / "out/height.tiff");
+  EXPECT_NEAR(static_cast<double>(height.at<float>(15, 20)), 12e-6, 1e-6);
 }
 
 TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
@@ -307,6 +321,25 @@ TEST_F(AProcessWithARecipe, WarnsOfOtherSlicesThanTheRecipePlans) {
   EXPECT_EQ(warnings[0]["text"], "there are 11 slices, the recipe has 12");
   EXPECT_EQ(warnings[1]["code"], "step_differs");
   EXPECT_EQ(warnings[1]["text"], "the step is 9 um, the recipe's is 10 um");
+}
+
+TEST_F(AProcessWithARecipe, TakesBinsFromTheSlicesOwnStep) {
+  test::write_stack(scratch_ / "in", "s", ".png", 31, 14.0);
+  std::string recipe = kRecipe;
+  recipe.replace(recipe.find("\"step_um\": 10, \"slices\": 11"), 27, "\"step_um\": 2, \"slices\": 101");
+  recipe.replace(recipe.find("\"window_px\""), 0, "\"curve_width_um\": 30, ");
+  test::write_text(scratch_ / "part.json", recipe);
+  const auto bins = [&](const std::string& out, std::vector<std::string> options) {
+    options.insert(options.end(), {"--out", scratch_ / out});
+    EXPECT_EQ(run(options).code, kExitOk);
+    return result(out)["focus"]["bin_slices"].get<int>();
+  };
+  EXPECT_EQ(bins("planned", {"--z-step-um", "2.01"}), 3) << "as the recipe says, within the error of a stage";
+  EXPECT_EQ(bins("own", {"--z-step-um", "10"}), 1);
+  EXPECT_EQ(bins("told", {"--z-step-um", "10", "--bin", "1"}), 1);
+  const cv::Mat one = read_float(scratch_ / "own/height.tiff");
+  const cv::Mat other = read_float(scratch_ / "told/height.tiff");
+  EXPECT_EQ(std::memcmp(one.data, other.data, one.total() * one.elemSize()), 0);
 }
 
 TEST_F(AProcessWithARecipe, WarnsWhereTheSlicesSpanLessThanTheFocusCurve) {

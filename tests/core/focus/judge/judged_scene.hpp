@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/focus/judge/slice_gate.hpp"
@@ -45,24 +46,34 @@ struct Scene {
     sim::RendererOptions options;
     options.seed = settings.seed;
     options.readout_noise = settings.noise;
-    sim::DefocusRenderer renderer(texture, made.height_um, options);
+    renderer_.emplace(texture, made.height_um, options);
     for (int k = 0; k < settings.slices; ++k) {
-      Image image = Image::unset(texture.width(), texture.height());
-      sim::ExposureRequest request;
-      request.width = texture.width();
-      request.height = texture.height();
-      request.exposure_index = static_cast<std::uint64_t>(k);
       z_um.push_back(settings.step_um * k);
-      renderer.render(z_um.back(), request, std::as_writable_bytes(image.pixels()));
-      slices.push_back(std::move(image));
+      slices.push_back(exposed(z_um.back(), static_cast<std::uint64_t>(k)));
     }
   }
+
+  /// Slice k once more, with other noise.
+  [[nodiscard]] Image again(std::size_t k) { return exposed(z_um[k], 1000 + k); }
 
   [[nodiscard]] ImageView view(std::size_t k) const { return image_view(slices[k].view(), PixelFormat::kMono8); }
 
   std::vector<Image> slices;
   std::vector<double> z_um;
   Plane<float> height_um;
+
+ private:
+  Image exposed(double height, std::uint64_t index) {
+    Image image = Image::unset(height_um.width(), height_um.height());
+    sim::ExposureRequest request;
+    request.width = image.width();
+    request.height = image.height();
+    request.exposure_index = index;
+    renderer_->render(height, request, std::as_writable_bytes(image.pixels()));
+    return image;
+  }
+
+  std::optional<sim::DefocusRenderer> renderer_;
 };
 
 inline std::uint8_t grey(double level) { return static_cast<std::uint8_t>(std::clamp(std::lround(level), 0L, 255L)); }

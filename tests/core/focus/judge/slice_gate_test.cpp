@@ -128,6 +128,8 @@ constexpr std::array kFaults{
           [](Scene& scene, std::size_t at) { scene.slices[at] = scene.slices[at - 1].clone(); }, true},
     Fault{"exchanged", SuspectReason::kExchanged,
           [](Scene& scene, std::size_t at) { std::swap(scene.slices[at], scene.slices[at + 1]); }, false, 2},
+    Fault{"stood_still", SuspectReason::kStandstill,
+          [](Scene& scene, std::size_t at) { scene.slices[at] = scene.again(at - 1); }, false},
     Fault{"shaken", SuspectReason::kVibration,
           [](Scene& scene, std::size_t at) { test::shake(scene.slices[at], 3, 2); }, false},
 };
@@ -136,7 +138,8 @@ class AFault : public testing::TestWithParam<Fault> {};
 
 TEST_P(AFault, IsFoundAndNothingElseIs) {
   const Fault& fault = GetParam();
-  const bool needs_neighbours = fault.reason == SuspectReason::kExchanged || fault.reason == SuspectReason::kVibration;
+  const bool needs_neighbours = fault.reason == SuspectReason::kExchanged ||
+                                fault.reason == SuspectReason::kStandstill || fault.reason == SuspectReason::kVibration;
   int found = 0;
   for (const std::size_t at : {std::size_t{0}, std::size_t{6}, std::size_t{10}, std::size_t{13}, std::size_t{20}}) {
     if ((needs_neighbours || fault.reason == SuspectReason::kRepeated || std::string(fault.name) == "half_left_over") &&
@@ -214,6 +217,25 @@ TEST(SliceGate, BelievesSlicesThatJitter) {
       });
     }
     EXPECT_THAT(judge_scene(scene).suspect_indices(), IsEmpty()) << rms_px;
+  }
+}
+
+/// Two levels so far apart that hardly anything changes between them.
+TEST(SliceGate, BelievesSlicesBetweenTheFociOfTwoLevels) {
+  for (const double apart_um : {60.0, 90.0, 120.0}) {
+    for (const double step_um : {15.0, 25.0, 35.0}) {
+      const SceneSettings level{.step_um = step_um, .slices = 12, .tilt_x_um_per_px = 0.0};
+      Scene scene(level);
+      SceneSettings higher = level;
+      higher.base_um += apart_um;
+      const Scene other(higher);
+      for (std::size_t k = 0; k < scene.slices.size(); ++k) {
+        change(scene.slices[k], [&](double grey, int x, int y) {
+          return x / 16 % 2 == 0 ? grey : static_cast<double>(other.slices[k].at(x, y));
+        });
+      }
+      EXPECT_THAT(judge_scene(scene).suspect_indices(), IsEmpty()) << apart_um << ' ' << step_um;
+    }
   }
 }
 
