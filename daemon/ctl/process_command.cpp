@@ -279,7 +279,7 @@ void add_hole_options(CLI::App& command, ProcessArguments& a) {
   command
       .add_option("--second-peak", a.second_peak,
                   "points whose focus curve has a second peak higher than so much of the first become holes, 0.8 is "
-                  "usual; takes 2 bytes more per pixel; 0 = off, the default")
+                  "usual, 0.5 the least; takes 2 bytes more per pixel; 0 = off, the default")
       ->check(CLI::Range(0.0, 1.0));
   command
       .add_option("--clipped-share", a.clipped_share,
