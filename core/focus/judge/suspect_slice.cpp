@@ -62,6 +62,9 @@ std::string figure_words(const SuspectSlice& slice) {
     case SuspectReason::kExchanged:
       text << "slices farther off resemble it more than those beside it";
       break;
+    case SuspectReason::kStandstill:
+      text << "it changed by " << percent << " % of what slices change by there";
+      break;
     case SuspectReason::kVibration:  // a logarithm of sharpness, which is a square of differences
       text << "its fine detail differs from its neighbours' by a factor of " << std::exp(0.5 * std::abs(slice.figure));
       break;
