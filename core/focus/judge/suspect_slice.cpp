@@ -102,7 +102,7 @@ std::string suspect_text(const SuspectSlice& slice) {
   const Words reason = words(slice.reason);
   std::ostringstream text;
   text.precision(6);
-  text << "slice " << (slice.file.empty() ? std::to_string(slice.index) : slice.file) << " at " << slice.z_um << " um "
+  text << (slice.file.empty() ? "slice " + std::to_string(slice.index) : slice.file) << " at " << slice.z_um << " um "
        << reason.says;
   const std::string figure = figure_words(slice);
   return figure.empty() ? text.str() : text.str() + " (" + figure + ")";

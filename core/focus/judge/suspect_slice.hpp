@@ -52,8 +52,8 @@ struct SuspectSlice {
 /// What `figure` is, e.g. "brightness over its neighbours'"; the unit is 1 throughout.
 [[nodiscard]] std::string_view suspect_figure_text(SuspectReason reason) noexcept;
 
-/// E.g. "slice 10 at 100 um is dark (its brightness is 9 % of its neighbours', ...)"; of a recorded one "slice
-/// s_010.png at 100 um ...".
+/// E.g. "slice 10 at 100 um is dark (its brightness is 9 % of its neighbours', ...)"; of a recorded one
+/// "s_010.png at 100 um ...".
 [[nodiscard]] std::string suspect_text(const SuspectSlice& slice);
 
 /// Throws Error kBadSlice: the last of them is one more than may be left out.

@@ -64,8 +64,13 @@ TEST(Suggest, LooksAtAWholeStack) {
 
 TEST(Suggest, ChoosesTheSlicesAsProcessDoes) {
   const ScratchDir scratch;
-  test::write_stack(scratch / "in", "left", ".png", 9, 4.0);
-  test::write_stack(scratch / "in", "right", ".png", 9, 4.0);
+  fs::create_directories(scratch / "in");
+  for (int i = 0; i < 9; ++i) {
+    for (const char* const name : {"left", "right"}) {
+      cv::imwrite((scratch / "in" / (name + std::to_string(i) + ".png")).string(),
+                  test::pattern_slice(i, 4.0, CV_8UC1, 80, 60));
+    }
+  }
   std::ostringstream out;
   std::ostringstream err;
   EXPECT_EQ(run_fvdctl({"suggest", scratch / "in"}, {out, err, false, false}), kExitBadData);
