@@ -10,9 +10,11 @@ namespace fvd {
 
 namespace {
 
-/// A fit whose variance is more than so many times that with all neighbours is one that its neighbours do not hold: at
-/// the end of a strip, or where nearly all of them are holes.
-constexpr double kLargestFactor = 16.0;
+/// A fit whose variance is more than so many times that of a point, and so many times that with all neighbours (which
+/// weights narrower than a window make more of), is one that its neighbours do not hold: at the end of a strip, or
+/// where nearly all of them are holes.
+constexpr double kMostOverPoint = 4.0;
+constexpr double kMostOverAll = 2.0;
 
 using Matrix = Eigen::Matrix<double, static_cast<int>(kLocalUnknowns), static_cast<int>(kLocalUnknowns)>;
 using Vector = Eigen::Matrix<double, static_cast<int>(kLocalUnknowns), 1>;
@@ -90,7 +92,8 @@ std::optional<LocalFit> LocalQuadratic::fit(const LocalSums& sums, int samples_a
   LocalFit fit;
   fit.squares = squares_over_factor_ * first(0);
   const double all = full_squares_ * samples_apart * samples_apart;
-  if (!(fit.squares > 0.0 && fit.squares < kLargestFactor * all)) return std::nullopt;
+  const double point = 1.0 / correlated_samples(samples_apart);
+  if (!(fit.squares > 0.0 && fit.squares < std::max(kMostOverAll * all, kMostOverPoint * point))) return std::nullopt;
   const Eigen::Map<const Vector> heights(sums.heights.data());
   const Vector surface = factor.solve(heights);
   std::copy_n(surface.data(), kLocalUnknowns, fit.surface.data());
@@ -99,8 +102,12 @@ std::optional<LocalFit> LocalQuadratic::fit(const LocalSums& sums, int samples_a
   return fit;
 }
 
+double LocalQuadratic::correlated_samples(int samples_apart) const noexcept {
+  return std::max(1.0, correlated_px_ / (samples_apart * samples_apart));
+}
+
 double LocalQuadratic::variance_factor(double squares, int samples_apart) const noexcept {
-  const double correlated = std::max(1.0, correlated_px_ / (samples_apart * samples_apart));
+  const double correlated = correlated_samples(samples_apart);
   const double independent = squares * correlated;
   return independent / (1.0 + independent * (1.0 - 1.0 / correlated));
 }

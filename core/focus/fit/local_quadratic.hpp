@@ -64,6 +64,8 @@ class LocalQuadratic {
   [[nodiscard]] double variance_factor(double squares, int samples_apart) const noexcept;
 
  private:
+  [[nodiscard]] double correlated_samples(int samples_apart) const noexcept;  // whose errors are one
+
   double correlated_px_;
   double full_squares_ = 1.0;         // with all neighbours
   double squares_over_factor_ = 1.0;  // that over the variance factor of the weighted fit

@@ -24,7 +24,7 @@ constexpr double kMostScatter = 4.0;
 /// There, what is off the quadratic of the nearby heights by more than so many standard errors takes no part.
 constexpr double kMostErrors = 6.0;
 /// Every n-th pixel does for such a fit, so many to a standard deviation of the weights.
-constexpr double kSamplesPerSigma = 4.0;
+constexpr double kSamplesPerSigma = 3.0;
 
 /// Along one direction: weight times the offset to the powers 0..4. Offsets are in sigma, so that all powers are of one
 /// size.
