@@ -29,7 +29,7 @@ struct PageDescription {
   std::optional<double> spacing_um;        ///< z from slice to slice; never 0
   std::optional<double> pixel_pitch_x_um;  ///< of pixels on the object; above 0
   std::optional<double> pixel_pitch_y_um;
-  std::string problem;                     ///< why the description cannot be used; empty if it can
+  std::string problem;  ///< why the description cannot be used; empty if it can
 };
 
 /// ImageJ's "ImageJ=1.53t\nimages=42\nchannels=2\nslices=21\nspacing=10.0\nunit=um\n": channels change fastest, then

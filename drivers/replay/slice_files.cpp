@@ -203,9 +203,8 @@ SliceList find_slices(const fs::path& source, const StackChoice& choice) {
     refuse(source.string() + " has only one slice, " + best.names.front() + ": a height map needs several" + kExpected);
   }
   if (candidates.size() > 1 && 2 * candidates[1].slices > best.slices) {
-    refuse(
-        "in " + source.string() + " both " + best.description + " and " + candidates[1].description +
-        " could be the slices: move the others away, or say with --pattern of fvdctl which names are slices");
+    refuse("in " + source.string() + " both " + best.description + " and " + candidates[1].description +
+           " could be the slices: move the others away, or say with --pattern of fvdctl which names are slices");
   }
   check_same_words(source, best, candidates, pictures);
   if (!best.tiff.empty()) return listed_pages(source / best.tiff, choice, pictures);

@@ -48,8 +48,8 @@ struct SliceList {
 /// order_names(), or one multi-page TIFF if it has more pages than any family has files; which of its pages:
 /// tiff_slices(). Other files are left alone and listed. Throws Error kBadInput if the path does not exist, holds no
 /// stack or only one slice, has two files with the same number, or leaves a choice: a second candidate with more than
-/// half the slices of the largest, further files whose names have the same words as the slices', with other numbers or none, numbers that can be
-/// read in two ways. The message names the choices.
+/// half the slices of the largest, further files whose names have the same words as the slices', with other numbers or
+/// none, numbers that can be read in two ways. The message names the choices.
 [[nodiscard]] SliceList find_slices(const std::filesystem::path& source, const StackChoice& choice = {});
 
 }  // namespace fvd

@@ -150,12 +150,11 @@ inline __attribute__((always_inline)) void update_at(const CurveRow& row, const 
     Codes value;
     load_pixels(sample.codes + x, there, value);
     const CodeMask follows = age == 1;
-    const CodeMask follows2 = age == 2;
     const Codes higher = value > peak ? value : peak;
     const CodeMask stays = higher == peak;
     minimum = value < minimum ? value : minimum;
     right = follows ? value : right;
-    right2 = follows2 ? value : right2;
+    right2 = age == 2 ? value : right2;
     if constexpr (kClipped) {
       take_clipped(sample.clipped == nullptr ? nullptr : sample.clipped + x, there, stays, follows, clipped);
     }
