@@ -1,36 +1,24 @@
-#include "daemon/ctl/fvdctl.hpp"
 
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "daemon/ctl/exit_codes.hpp"
 #include "tests/daemon/ctl/fake_rpc_server.hpp"
+#include "tests/daemon/ctl/run_command.hpp"
 
 namespace fvd::ctl {
 namespace {
 
 using nlohmann::json;
 using test::FakeRpcServer;
+using test::Outcome;
+using test::run_command;
 using testing::HasSubstr;
-
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-Outcome run(std::vector<std::string> arguments, bool terminal = false) {
-  std::ostringstream out;
-  std::ostringstream err;
-  const int code = run_fvdctl(arguments, {out, err, terminal, terminal});
-  return {code, out.str(), err.str()};
-}
 
 Outcome ask(const FakeRpcServer& server, std::vector<std::string> arguments, bool terminal = false) {
   arguments.insert(arguments.begin(), {"--address", server.endpoint().text()});
-  return run(std::move(arguments), terminal);
+  return run_command(arguments, terminal);
 }
 
 json status(const char* state, int done, const char* phase = "acquiring") {
@@ -145,8 +133,8 @@ TEST(Fvdctl, CallsAnyMethod) {
   FakeRpcServer server({{"recipe.get", FakeRpcServer::result({{"id", "x"}})}});
   EXPECT_EQ(ask(server, {"rpc", "recipe.get", R"({"id":"x"})"}).code, kExitOk);
   EXPECT_EQ(server.requests().at(0)["params"]["id"], "x");
-  EXPECT_EQ(run({"rpc", "a", "{"}).code, kExitBadData);
-  EXPECT_EQ(run({"rpc", "a", "7"}).code, kExitBadData);
+  EXPECT_EQ(run_command({"rpc", "a", "{"}).code, kExitBadData);
+  EXPECT_EQ(run_command({"rpc", "a", "7"}).code, kExitBadData);
 }
 
 TEST(Fvdctl, TurnsErrorsOfTheDaemonIntoExitCodes) {
@@ -164,7 +152,7 @@ TEST(Fvdctl, TurnsErrorsOfTheDaemonIntoExitCodes) {
 }
 
 TEST(Fvdctl, ExitsWithUnavailableWithoutADaemon) {
-  const Outcome outcome = run({"--runtime-dir", "/nonexistent", "state"});
+  const Outcome outcome = run_command({"--runtime-dir", "/nonexistent", "state"});
   EXPECT_EQ(outcome.code, kExitUnavailable);
   EXPECT_THAT(outcome.err, HasSubstr("is fvd running?"));
 }
@@ -188,26 +176,26 @@ TEST(Fvdctl, ExitsWithUsageForWrongArguments) {
       {"process", "folder", "--out", "o", "--z-file", "z.txt", "--z-unit", "inch"},
   };
   for (const auto& arguments : wrong) {
-    const Outcome outcome = run(arguments);
+    const Outcome outcome = run_command(arguments);
     EXPECT_EQ(outcome.code, kExitUsage) << testing::PrintToString(arguments);
     EXPECT_FALSE(outcome.err.empty());
   }
 }
 
 TEST(Fvdctl, NamesAnUnknownCommandAndTheNearest) {
-  const Outcome near = run({"--runtime-dir", "/r", "stat"});
+  const Outcome near = run_command({"--runtime-dir", "/r", "stat"});
   EXPECT_EQ(near.code, kExitUsage);
   EXPECT_THAT(near.err, HasSubstr("'stat' is not a command; expected one of state, start, "));
   EXPECT_THAT(near.err, HasSubstr("did you mean 'state'?"));
-  const Outcome far = run({"bogus"});
+  const Outcome far = run_command({"bogus"});
   EXPECT_EQ(far.code, kExitUsage);
   EXPECT_THAT(far.err, HasSubstr("'bogus' is not a command"));
 }
 
 TEST(Fvdctl, PrintsHelpAndVersion) {
-  EXPECT_EQ(run({"--help"}).code, kExitOk);
-  EXPECT_THAT(run({"--help"}).out, HasSubstr("process"));
-  EXPECT_THAT(run({"--version"}).out, testing::StartsWith("fvdctl "));
+  EXPECT_EQ(run_command({"--help"}).code, kExitOk);
+  EXPECT_THAT(run_command({"--help"}).out, HasSubstr("process"));
+  EXPECT_THAT(run_command({"--version"}).out, testing::StartsWith("fvdctl "));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <cstring>
 #include <optional>
 #include <ostream>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +10,8 @@
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/ctl/exit_codes.hpp"
-#include "daemon/ctl/fvdctl.hpp"
 #include "daemon/export/recorded_slices.hpp"
+#include "tests/daemon/ctl/run_command.hpp"
 #include "tests/support/scratch_dir.hpp"
 #include "tests/support/stack_folder.hpp"
 
@@ -23,18 +22,9 @@ using test::ScratchDir;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-Outcome process(std::vector<std::string> arguments) {
+test::Outcome process(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "process");
-  std::ostringstream out;
-  std::ostringstream err;
-  const int code = run_fvdctl(arguments, {out, err, false, false});
-  return {code, out.str(), err.str()};
+  return test::run_command(arguments);
 }
 
 cv::Mat read_float(const fs::path& path) { return cv::imread(path.string(), cv::IMREAD_UNCHANGED); }
@@ -54,7 +44,7 @@ class AProcessWithARecipe : public testing::Test {
     test::write_stack(scratch_ / "in", "s", ".png", 11, 4.0);
     test::write_text(scratch_ / "part.json", kRecipe);
   }
-  Outcome run(std::vector<std::string> more) {
+  test::Outcome run(std::vector<std::string> more) {
     std::vector<std::string> arguments{scratch_ / "in", "--recipe", scratch_ / "part.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return process(arguments);
@@ -84,7 +74,7 @@ TEST_F(AProcessWithARecipe, MeasuresAsTheOptionsThatSayTheSame) {
 }
 
 TEST_F(AProcessWithARecipe, TellsTheRecipeAndJudgesByIt) {
-  const Outcome outcome = run({"--out", scratch_ / "out"});
+  const test::Outcome outcome = run({"--out", scratch_ / "out"});
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("verdict   pass"));
   const auto told = result("out");
@@ -96,7 +86,7 @@ TEST_F(AProcessWithARecipe, TellsTheRecipeAndJudgesByIt) {
 }
 
 TEST_F(AProcessWithARecipe, EndsAsFailedWhereTooFewPointsAreValid) {
-  const Outcome outcome = run({"--min-significance", "1000000", "--out", scratch_ / "out"});
+  const test::Outcome outcome = run({"--min-significance", "1000000", "--out", scratch_ / "out"});
   EXPECT_EQ(outcome.code, kExitVerdictFail) << outcome.err;
   EXPECT_THAT(outcome.out,
               HasSubstr("verdict   fail\nlimit     valid_fraction is 0, the recipe asks for at least 0.5"));
@@ -140,7 +130,7 @@ TEST_F(AProcessWithARecipe, RefusesHeightsThatSeemToBeInAnotherUnit) {
   std::string heights;
   for (int i = 0; i < 11; ++i) heights += std::to_string(0.01 * i) + "\n";
   test::write_text(scratch_ / "in/z.txt", heights);
-  const Outcome refused = run({"--out", scratch_ / "out"});
+  const test::Outcome refused = run({"--out", scratch_ / "out"});
   EXPECT_EQ(refused.code, kExitBadData);
   EXPECT_THAT(refused.err, HasSubstr("z.txt: the step is 0.01 um, the recipe's is 10 um"));
   EXPECT_THAT(refused.err, HasSubstr("--z-unit mm or m"));
@@ -157,7 +147,7 @@ TEST(Process, WarnsOfAUnitThatNobodySaidWithOddSteps) {
   const ScratchDir scratch;
   test::write_stack(scratch / "in", "s", ".png", 4, 2.0);
   test::write_text(scratch / "z.txt", "0\n0.01\n0.02\n0.03\n");
-  const Outcome outcome = process({scratch / "in", "--z-file", scratch / "z.txt", "--out", scratch / "out"});
+  const test::Outcome outcome = process({scratch / "in", "--z-file", scratch / "z.txt", "--out", scratch / "out"});
   EXPECT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("z.txt: the step is 0.01 um: if its numbers are not in um"));
 }
@@ -204,7 +194,7 @@ TEST_F(AProcessWithARecipe, WarnsWhereTheSlicesSpanLessThanTheFocusCurve) {
 
 TEST_F(AProcessWithARecipe, RefusesABadRecipeAndLeavesNothing) {
   test::write_text(scratch_ / "part.json", R"({"scan": {"start_um": 0, "step_um": -1, "slices": 11}})");
-  const Outcome outcome = run({"--out", scratch_ / "out"});
+  const test::Outcome outcome = run({"--out", scratch_ / "out"});
   EXPECT_EQ(outcome.code, kExitBadData);
   EXPECT_THAT(outcome.err, HasSubstr("/scan/step_um"));
   EXPECT_FALSE(fs::exists(scratch_ / "out"));

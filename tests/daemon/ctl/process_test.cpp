@@ -2,7 +2,6 @@
 #include <cstring>
 #include <optional>
 #include <ostream>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +10,8 @@
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/ctl/exit_codes.hpp"
-#include "daemon/ctl/fvdctl.hpp"
 #include "daemon/export/recorded_slices.hpp"
+#include "tests/daemon/ctl/run_command.hpp"
 #include "tests/support/scratch_dir.hpp"
 #include "tests/support/stack_folder.hpp"
 
@@ -23,18 +22,9 @@ using test::ScratchDir;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-Outcome process(std::vector<std::string> arguments) {
+test::Outcome process(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "process");
-  std::ostringstream out;
-  std::ostringstream err;
-  const int code = run_fvdctl(arguments, {out, err, false, false});
-  return {code, out.str(), err.str()};
+  return test::run_command(arguments);
 }
 
 cv::Mat read_float(const fs::path& path) { return cv::imread(path.string(), cv::IMREAD_UNCHANGED); }
@@ -54,8 +44,8 @@ TEST(Process, MakesTheAllInFocusImageInTheColoursOfTheSlices) {
 TEST(Process, MakesAHeightMapOfRecordedSlices) {
   const ScratchDir scratch;
   test::write_stack(scratch / "in", "s", ".png", 11, 4.0);
-  const Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--z-start-um", "-7", "--extra-peak", "nearest",
-                                   "--bin", "1", "--pixel-pitch-um", "2", "--out", scratch / "out"});
+  const test::Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--z-start-um", "-7", "--extra-peak",
+                                         "nearest", "--bin", "1", "--pixel-pitch-um", "2", "--out", scratch / "out"});
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("s*.png (11 files), 40 x 30 pixels"));
   EXPECT_THAT(outcome.err, HasSubstr("slice 11/11"));
@@ -81,7 +71,7 @@ TEST(Process, NamesTheFileOfALeftOutSlice) {
     if (i == 7) image.setTo(51);
     cv::imwrite((scratch / "in" / ("s" + std::to_string(i) + ".png")).string(), image);
   }
-  const Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--bin", "1", "--out", scratch / "out"});
+  const test::Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--bin", "1", "--out", scratch / "out"});
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr(": s7.png at 70 um has the same grey level everywhere (the level is 20 % of "
                                      "full scale)"));
@@ -89,7 +79,7 @@ TEST(Process, NamesTheFileOfALeftOutSlice) {
   ASSERT_EQ(result["slices"]["suspect"].size(), 1U);
   EXPECT_EQ(result["slices"]["suspect"][0]["file"], "s7.png");
   EXPECT_THAT(test::read_text(scratch / "out/step_log.csv"), HasSubstr(",constant\n"));
-  const Outcome none =
+  const test::Outcome none =
       process({scratch / "in", "--z-step-um", "10", "--allowed-lost-slices", "0", "--out", scratch / "none"});
   EXPECT_EQ(none.code, kExitBadData);
   EXPECT_THAT(none.err, HasSubstr("s7.png at 70 um"));
@@ -99,7 +89,7 @@ TEST(Process, NamesTheFileOfALeftOutSlice) {
 TEST(Process, NamesTheLimitThatMakesNearlyAllHoles) {
   const ScratchDir scratch;
   test::write_stack(scratch / "in", "s", ".png", 11, 5.0);
-  const Outcome outcome =
+  const test::Outcome outcome =
       process({scratch / "in", "--z-step-um", "10", "--bin", "1", "--max-sigma", "1e-6", "--out", scratch / "out"});
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("not one point is valid; "));
@@ -111,7 +101,7 @@ TEST(Process, ChoosesItsBinsByTheWidthThatAFirstPassTells) {
   test::write_stack(scratch / "in", "s", ".png", 31, 14.0);
   const auto focus_of = [&](const std::string& out, std::vector<std::string> options) {
     options.insert(options.begin(), {scratch / "in", "--z-step-um", "10", "--out", scratch / out});
-    const Outcome outcome = process(options);
+    const test::Outcome outcome = process(options);
     EXPECT_EQ(outcome.code, kExitOk) << outcome.err;
     const auto result = nlohmann::json::parse(test::read_text(scratch / out / "result.json"));
     EXPECT_EQ(result["frames"]["ok"], 31);
@@ -170,8 +160,8 @@ TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
   }
   const HeightMap expected = live.finish(PeakMethod::kLogParabola);
 
-  const Outcome outcome = process({scratch / "job/slices", "--z-file", scratch / "job/slices/z.txt", "--peak",
-                                   "log_parabola", "--bin", "1", "--out", scratch / "out"});
+  const test::Outcome outcome = process({scratch / "job/slices", "--z-file", scratch / "job/slices/z.txt", "--peak",
+                                         "log_parabola", "--bin", "1", "--out", scratch / "out"});
 
   ASSERT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_NE(test::read_text(scratch / "out/result.json").find("\"simulated\": true"), std::string::npos)
@@ -195,11 +185,11 @@ TEST(Process, GivesTheSameHeightsBitForBitAsTheScanThatRecordedTheSlices) {
 TEST(Process, RefusesFewerSlicesThanAPeakNeeds) {
   const ScratchDir scratch;
   test::write_stack(scratch / "two", "s", ".png", 2, 1.0);
-  const Outcome two = process({scratch / "two", "--z-step-um", "10", "--out", scratch / "out"});
+  const test::Outcome two = process({scratch / "two", "--z-step-um", "10", "--out", scratch / "out"});
   EXPECT_EQ(two.code, kExitBadData);
   EXPECT_THAT(two.err, HasSubstr("two has 2 slices; a peak needs at least 3"));
   test::write_stack(scratch / "four", "s", ".png", 4, 1.0);
-  const Outcome four = process({scratch / "four", "--z-step-um", "10", "--bin", "2", "--out", scratch / "out"});
+  const test::Outcome four = process({scratch / "four", "--z-step-um", "10", "--bin", "2", "--out", scratch / "out"});
   EXPECT_EQ(four.code, kExitBadData);
   EXPECT_THAT(four.err, HasSubstr("four has 4 slices; a peak needs at least 5"));
   EXPECT_THAT(four.err, HasSubstr("in bins of 2 slices"));
@@ -222,7 +212,7 @@ TEST_P(ABadStack, IsRefusedByNameAndLeavesNothing) {
   const ScratchDir scratch;
   test::write_stack(scratch / "in", "s", ".png", 6, 3.0);
   GetParam().spoil(scratch / "in");
-  const Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--out", scratch / "out"});
+  const test::Outcome outcome = process({scratch / "in", "--z-step-um", "10", "--out", scratch / "out"});
   EXPECT_EQ(outcome.code, kExitBadData);
   EXPECT_THAT(outcome.err, HasSubstr(GetParam().named));
   EXPECT_THAT(scratch.entries(), testing::ElementsAre("in"));
@@ -271,7 +261,7 @@ TEST(Process, RefusesWhatItWouldOnlyFindOutLater) {
     return process(arguments);
   };
   EXPECT_EQ(with({"--out", scratch / "in"}).code, kExitIo) << "exists";
-  const Outcome nowhere = with({"--out", scratch / "nowhere/out"});
+  const test::Outcome nowhere = with({"--out", scratch / "nowhere/out"});
   EXPECT_EQ(nowhere.code, kExitIo);
   EXPECT_THAT(nowhere.err, HasSubstr("there is no folder " + (scratch / "nowhere").string()));
   EXPECT_THAT(nowhere.err, ::testing::Not(HasSubstr("slice"))) << "before the first one is read";
@@ -288,11 +278,11 @@ TEST(Process, RefusesWhatItWouldOnlyFindOutLater) {
                                                                                       {"--edge-band", "-1"},
                                                                                       {"--max-sigma", "-1"},
                                                                                       {"--pixel-pitch-um", "-1"}}) {
-    const Outcome outcome = with({"--out", scratch / "out", option, value});
+    const test::Outcome outcome = with({"--out", scratch / "out", option, value});
     EXPECT_EQ(outcome.code, kExitUsage) << option;
     EXPECT_THAT(outcome.err, HasSubstr(option)) << "names it";
   }
-  const Outcome twice = with({"--out", scratch / "out", "--peak", "parabola", "--extra-peak", "parabola"});
+  const test::Outcome twice = with({"--out", scratch / "out", "--peak", "parabola", "--extra-peak", "parabola"});
   EXPECT_EQ(twice.code, kExitUsage);
   EXPECT_THAT(twice.err, HasSubstr("--extra-peak parabola is the peak of height.tiff already"));
   EXPECT_EQ(process({scratch / "in", "--z-step-um", "1e-9", "--out", scratch / "out"}).code, kExitBadData);

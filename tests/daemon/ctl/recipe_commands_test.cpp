@@ -1,7 +1,6 @@
 #include "daemon/ctl/recipe_commands.hpp"
 
 #include <fstream>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,11 +8,13 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 #include "tests/daemon/ctl/fake_rpc_server.hpp"
+#include "tests/daemon/ctl/run_command.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd::ctl {
 namespace {
 
+using fvd::test::Outcome;
 using fvd::test::ScratchDir;
 using nlohmann::json;
 using test::FakeRpcServer;
@@ -21,21 +22,12 @@ using testing::HasSubstr;
 
 constexpr const char* kOld = R"({"scan": {"start_um": -7, "step_um": 10, "slices": 21}})";
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
 class FvdctlRecipe : public ::testing::Test {
  protected:
   Outcome run(std::vector<std::string> arguments) {
-    std::ostringstream out;
-    std::ostringstream err;
     arguments.insert(arguments.begin(), "recipe");
     if (server) arguments.insert(arguments.begin(), {"--address", server->endpoint().text()});
-    const int code = run_fvdctl(arguments, {out, err, false, false});
-    return {code, out.str(), err.str()};
+    return fvd::test::run_command(arguments);
   }
   void answer(const char* method, const json& result) {
     server = std::make_unique<FakeRpcServer>(std::vector<FakeRpcServer::Step>{{method, FakeRpcServer::result(result)}});

@@ -11,21 +11,17 @@
 
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/fvdctl.hpp"
+#include "tests/daemon/ctl/run_command.hpp"
 #include "tests/support/scratch_dir.hpp"
 #include "tests/support/stack_folder.hpp"
 
 namespace fvd::ctl {
 namespace {
 
+using test::Outcome;
 using test::ScratchDir;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int code = 0;
-  std::string out;
-  std::string err;
-};
 
 TEST(Suggest, PrintsSettingsForARecipeAndRefusesWhatItCannotRead) {
   const ScratchDir scratch;
@@ -33,12 +29,7 @@ TEST(Suggest, PrintsSettingsForARecipeAndRefusesWhatItCannotRead) {
   cv::Mat image(200, 400, CV_8UC1, cv::Scalar(100));  // bare on the left, three columns a period on the right
   for (int x = 150; x < image.cols; x += 3) image.col(x).setTo(160);
   cv::imwrite((scratch / "in/s2.png").string(), image);
-  const auto suggest = [](const std::string& file) {
-    std::ostringstream out;
-    std::ostringstream err;
-    const int code = run_fvdctl({"suggest", file}, {out, err, false, false});
-    return Outcome{code, out.str(), err.str()};
-  };
+  const auto suggest = [](const std::string& file) { return test::run_command({"suggest", file}); };
   const Outcome good = suggest((scratch / "in/s2.png").string());
   EXPECT_EQ(good.code, kExitOk) << good.err;
   EXPECT_THAT(good.out, HasSubstr("\"distance_px\": 2, \"window_px\": 9 }  (the defaults)"));
