@@ -22,7 +22,9 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^">]+)[">]', re.MULTILIN
 FORBIDDEN = [
     ("core includes core only", r"(config|drivers|sim|daemon|tests)/", "core", None),
     ("core has no JSON, logging, device or image library",
-     r"(nlohmann|spdlog|arv|modbus|opencv2|boost|sqlite3|CLI)", "core", None),
+     r"(nlohmann|spdlog|arv|modbus|opencv2|boost|sqlite3|CLI)", "core", r"^core/metrology/"),
+    ("metrology has no JSON, logging, device or image library; of Boost only Math",
+     r"(nlohmann|spdlog|arv|modbus|opencv2|boost/(?!math/)|sqlite3|CLI)", "core/metrology", None),
     ("config includes core only", r"(drivers|sim|daemon|tests)/", "config", None),
     ("drivers know nothing of daemon and sim", r"(sim|daemon|tests)/", "drivers", None),
     ("sim knows only core and config", r"(drivers|daemon|tests)/", "sim", None),
@@ -41,6 +43,7 @@ CORE = {
     "hw": "base image",
     "runtime": "base",
     "surface": "base image",
+    "metrology": "base image runtime surface",
     "stage": "base hw",
     "focus": "base image runtime surface",
     "scan": "base focus hw image runtime stage surface",
