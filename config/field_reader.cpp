@@ -79,6 +79,10 @@ std::optional<std::int64_t> whole_number(const json& value, bool hex) {
   return number;
 }
 
+bool is_within(NumberRange range, double number) {
+  return (range.above_min ? number > range.min : number >= range.min) && number <= range.max;
+}
+
 bool accepts(const std::vector<std::string>& accepted, const json& value) {
   return value.is_string() && std::find(accepted.begin(), accepted.end(), value.get<std::string>()) != accepted.end();
 }
@@ -141,8 +145,7 @@ void FieldReader::number(std::string_view name, double& value, NumberRange range
   const json* found = find(name);
   if (found == nullptr) return;
   const double number = found->is_number() ? found->get<double>() : std::nan("");
-  const bool above = range.above_min ? number > range.min : number >= range.min;
-  if (!above || !(number <= range.max)) return refuse(name, *found, range_text(range));
+  if (!is_within(range, number)) return refuse(name, *found, range_text(range));
   value = number;
 }
 
@@ -175,15 +178,35 @@ void FieldReader::choices(std::string_view name, std::vector<std::string>& value
                           const std::vector<std::string>& accepted, std::string_view /*meaning*/) {
   const json* found = find(name);
   if (found == nullptr) return;
-  const std::string expected = "a list without repetitions of " + joined(accepted);
+  const std::string expected =
+      "a list without repetitions of " + (accepted.empty() ? std::string("texts") : joined(accepted));
+  const auto is_one = [&accepted](const json& item) {
+    if (!accepted.empty()) return accepts(accepted, item);
+    if (!item.is_string()) return false;
+    const std::size_t size = item.get_ref<const std::string&>().size();
+    return size > 0 && size <= kMaxWordLength;
+  };
   if (!found->is_array()) return refuse(name, *found, expected);
   std::vector<std::string> read;
   for (const json& item : *found) {
-    if (!accepts(accepted, item)) return refuse(name, item, expected);
+    if (!is_one(item)) return refuse(name, item, expected);
     if (std::find(read.begin(), read.end(), item.get<std::string>()) != read.end()) return refuse(name, item, expected);
     read.push_back(item.get<std::string>());
   }
   values = std::move(read);
+}
+
+void FieldReader::numbers(std::string_view name, std::vector<double>& values, NumberRange range, IntegerRange count,
+                          std::string_view /*meaning*/) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  const auto size = static_cast<std::int64_t>(found->size());
+  const auto is_one = [&range](const json& item) { return item.is_number() && is_within(range, item.get<double>()); };
+  if (!found->is_array() || size < count.min || size > count.max ||
+      !std::all_of(found->begin(), found->end(), is_one)) {
+    return refuse(name, *found, "a list of " + count_text(count) + " numbers, each " + range_text(range));
+  }
+  values = found->get<std::vector<double>>();
 }
 
 void FieldReader::any(std::string_view name, std::string& json_text, std::size_t max_bytes,

@@ -30,6 +30,8 @@ class FieldReader final : public Fields {
               std::string_view meaning) override;
   void choices(std::string_view name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
                std::string_view meaning) override;
+  void numbers(std::string_view name, std::vector<double>& values, NumberRange range, IntegerRange count,
+               std::string_view meaning) override;
   void any(std::string_view name, std::string& json_text, std::size_t max_bytes, std::string_view meaning) override;
   bool object_list(std::string_view name, const ObjectList& list, IntegerRange count,
                    std::string_view meaning) override;

@@ -78,7 +78,20 @@ class SchemaWriter final : public Fields {
   }
   void choices(std::string_view name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
                std::string_view meaning) override {
-    put(name, {{"type", "array"}, {"items", {{"enum", accepted}}}, {"uniqueItems", true}, {"default", values}},
+    ordered_json item{{"enum", accepted}};
+    if (accepted.empty()) item = {{"type", "string"}, {"minLength", 1}, {"maxLength", kMaxWordLength}};
+    put(name, {{"type", "array"}, {"items", std::move(item)}, {"uniqueItems", true}, {"default", values}}, meaning);
+  }
+  void numbers(std::string_view name, std::vector<double>& values, NumberRange range, IntegerRange count,
+               std::string_view meaning) override {
+    ordered_json item{
+        {"type", "number"}, {range.above_min ? "exclusiveMinimum" : "minimum", range.min}, {"maximum", range.max}};
+    put(name,
+        {{"type", "array"},
+         {"items", std::move(item)},
+         {"minItems", count.min},
+         {"maxItems", count.max},
+         {"default", values}},
         meaning);
   }
   void any(std::string_view name, std::string&, std::size_t, std::string_view meaning) override {

@@ -29,6 +29,10 @@ class ValueWriter final : public Fields {
                std::string_view) override {
     put(name, values);
   }
+  void numbers(std::string_view name, std::vector<double>& values, NumberRange, IntegerRange,
+               std::string_view) override {
+    put(name, values);
+  }
   void any(std::string_view name, std::string& json_text, std::size_t, std::string_view) override {
     if (!json_text.empty()) put(name, ordered_json::parse(json_text));
   }

@@ -89,9 +89,13 @@ class Fields {
   virtual void text(std::string_view name, std::string& value, std::size_t max_length, std::string_view meaning) = 0;
   virtual void choice(std::string_view name, std::string& value, const std::vector<std::string>& accepted,
                       std::string_view meaning) = 0;
-  /// A list without repetitions.
+  /// A list without repetitions. Without accepted names any text of up to kMaxWordLength bytes is one.
   virtual void choices(std::string_view name, std::vector<std::string>& values,
                        const std::vector<std::string>& accepted, std::string_view meaning) = 0;
+
+  /// A list of numbers. count: how many there may be.
+  virtual void numbers(std::string_view name, std::vector<double>& values, NumberRange range, IntegerRange count,
+                       std::string_view meaning) = 0;
 
   /// Any JSON value of at most max_bytes as text, kept as its text; empty = none.
   virtual void any(std::string_view name, std::string& json_text, std::size_t max_bytes, std::string_view meaning) = 0;
