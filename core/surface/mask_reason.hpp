@@ -9,8 +9,7 @@ namespace fvd {
 /// Why one point is a hole: the sum of mask_reason bits. 0 = valid.
 using MaskReasons = std::uint16_t;
 
-/// Bit numbers are part of the files' format 2. Bits 12 and 13 belong to reasons that nothing finds yet: 12 outlier,
-/// 13 no tile.
+/// Bit numbers are part of the files' format 2. Bit 13 belongs to a reason that nothing finds yet: no tile.
 namespace mask_reason {
 inline constexpr MaskReasons kLowProminence = 1U << 0U;  ///< no texture: the focus curve has no peak worth the name
 inline constexpr MaskReasons kFirstSlice = 1U << 1U;     ///< sharpest at the first slice: the surface may lie beyond it
@@ -25,6 +24,7 @@ inline constexpr MaskReasons kNarrowCurve = 1U << 8U;  ///< far narrower: a pixe
 inline constexpr MaskReasons kSecondPeak = 1U << 9U;   ///< the curve has another peak of nearly the same height
 inline constexpr MaskReasons kEdgeBand = 1U << 10U;    ///< beside a wall, whose sharpness reaches across it
 inline constexpr MaskReasons kMaxSigma = 1U << 11U;    ///< the standard error is larger than the recipe allows
+inline constexpr MaskReasons kOutlier = 1U << 12U;     ///< far from its neighbours or from the fitted form
 inline constexpr MaskReasons kOutOfView = 1U << 14U;   ///< at the border, where drift was undone: not in every slice
 }  // namespace mask_reason
 
