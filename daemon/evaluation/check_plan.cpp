@@ -68,8 +68,8 @@ class Checker {
 
   void check_region_name(const std::string& pointer, const std::string& name) {
     if (plan_.regions.contains(name)) return;
-    refuse(pointer, "\"" + name + "\" is no region of /evaluation/regions" +
-                        did_you_mean(name, keys_of(plan_.regions)));
+    refuse(pointer,
+           "\"" + name + "\" is no region of /evaluation/regions" + did_you_mean(name, keys_of(plan_.regions)));
   }
 
   void check_region(const std::string& name, const PlannedRegion& region) {

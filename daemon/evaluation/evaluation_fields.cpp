@@ -113,6 +113,8 @@ void describe_filter(PlannedOperation& step, Fields& fields) {
                  "L by gaussian: keep the margin of half a nesting index, which the border distorts");
 }
 
+}  // namespace
+
 void describe(PlannedOperation& step, Fields& fields) {
   fields.variant(
       "op", step.op,
@@ -123,7 +125,7 @@ void describe(PlannedOperation& step, Fields& fields) {
         }},
        {"outliers",
         [&](Fields& in) {
-          in.integer("window_px", step.window_px, {3, 101}, "side of the window around a point, odd");
+          in.integer("window_px", step.window_px, {3, 31}, "side of the window around a point, odd");
           in.number("limit", step.limit, positive(1e3),
                     "a point further from the median of its window than so many of its deviations becomes a hole");
         }},
@@ -144,6 +146,8 @@ void describe(PlannedOperation& step, Fields& fields) {
       "the operation");
   fields.require("op");
 }
+
+namespace {
 
 void describe(PlannedSurface& surface, Fields& fields) {
   fields.text("from", surface.from, kMaxNameLength, "the surface that it is made of; measured = as the scan made it");

@@ -1,0 +1,121 @@
+#include "daemon/evaluation/evaluate_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/surface/verdict.hpp"
+#include "daemon/evaluation/measure_kinds.hpp"
+#include "daemon/evaluation/surface_chain.hpp"
+#include "daemon/evaluation/value_uncertainty.hpp"
+
+namespace fvd {
+
+namespace {
+
+using Measure = EvaluatedMeasurement (*)(const MeasurementInput& input);
+
+constexpr std::array<std::pair<std::string_view, Measure>, 6> kKinds{{{"step_height", measure_step_height},
+                                                                      {"step_between", measure_step_between},
+                                                                      {"levels", measure_levels},
+                                                                      {"areal", measure_areal},
+                                                                      {"profile", measure_profile},
+                                                                      {"cutting_edge", measure_edge}}};
+
+EvaluatedMeasurement measured_by_kind(const MeasurementInput& input) {
+  const auto kind = std::find_if(kKinds.begin(), kKinds.end(),
+                                 [&input](const auto& known) { return known.first == input.planned.kind; });
+  if (!input.surface.refused.empty()) {
+    EvaluatedMeasurement invalid;
+    invalid.reason = "the surface " + input.planned.surface + " cannot be made: " + input.surface.refused;
+    return invalid;
+  }
+  try {
+    return kind->second(input);
+  } catch (const Error& error) {
+    EvaluatedMeasurement invalid;
+    invalid.reason = error.what();
+    return invalid;
+  }
+}
+
+void add_missing(const std::vector<std::string>& names, std::vector<std::string>& list) {
+  for (const std::string& name : names) {
+    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+  }
+  std::sort(list.begin(), list.end());
+}
+
+/// Where nothing was measured, each limit is missed by the lack of a value.
+void add_invalid_values(const MeasurementInput& input, EvaluatedMeasurement& made) {
+  for (const auto& [key, limits] : input.planned.limits) {
+    if (made.values.contains(key)) continue;
+    ValueInput none;
+    none.reason = made.reason;
+    made.values[key] = judged_value(none, key, input.planned, input.plan.decision);
+  }
+}
+
+/// A measurement that is invalid as a whole has no value that passes.
+void invalidate(EvaluatedMeasurement& made) {
+  for (auto& [key, value] : made.values) {
+    if (value.limits) value.verdict = Verdict::kInvalid;
+  }
+}
+
+EvaluatedMeasurement finished(const MeasurementInput& input) {
+  EvaluatedMeasurement made = measured_by_kind(input);
+  made.kind = input.planned.kind;
+  made.surface = input.planned.surface;
+  add_missing(never_evaluated(), made.not_evaluated);
+  made.warnings.insert(made.warnings.end(), input.surface.warnings.begin(), input.surface.warnings.end());
+  if (!made.reason.empty()) {
+    add_invalid_values(input, made);
+    invalidate(made);
+    made.verdict = Verdict::kInvalid;
+    return made;
+  }
+  std::vector<Verdict> verdicts;
+  for (const auto& [key, value] : made.values) {
+    if (value.verdict) verdicts.push_back(*value.verdict);
+  }
+  made.verdict = worst_verdict(verdicts);
+  return made;
+}
+
+}  // namespace
+
+Evaluation evaluate_surface(const Surface& surface, const EvaluationPlan& plan, const EvaluationContext& context,
+                            WorkerPool* pool) {
+  SurfaceChain chain(surface, plan, pool);
+  Evaluation evaluation;
+  evaluation.rule = plan.decision.rule;
+  evaluation.probability = plan.decision.probability;
+  std::vector<Verdict> verdicts;
+  for (const auto& [name, planned] : plan.measurements) {
+    const SurfaceState& measured = chain.state(kMeasuredSurface);
+    const SurfaceState& state = chain.state(planned.surface);
+    const MeasurementInput input{plan, planned, state, measured, context, surface.lateral_period_um.value_or(0.0)};
+    EvaluatedMeasurement made = finished(input);
+    if (made.verdict) verdicts.push_back(*made.verdict);
+    evaluation.measurements.emplace(name, std::move(made));
+  }
+  for (const auto& [name, planned] : plan.surfaces) evaluation.surfaces[name] = chain.state(name).steps_json;
+  for (const std::string& name : plan.order) {
+    if (evaluation.measurements.contains(name)) evaluation.order.push_back(name);
+  }
+  for (const auto& [name, made] : evaluation.measurements) {
+    if (std::find(evaluation.order.begin(), evaluation.order.end(), name) == evaluation.order.end()) {
+      evaluation.order.push_back(name);
+    }
+  }
+  evaluation.verdict = worst_verdict(verdicts);
+  return evaluation;
+}
+
+}  // namespace fvd

@@ -1,0 +1,197 @@
+/// Cutting edges: rounding and chipping.
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/metrology/edge/cutting_edge.hpp"
+#include "daemon/evaluation/measure_kinds.hpp"
+#include "daemon/evaluation/plan_regions.hpp"
+#include "daemon/evaluation/value_uncertainty.hpp"
+
+namespace fvd {
+
+namespace {
+
+using metrology::CuttingEdge;
+using metrology::EdgeQuantity;
+using metrology::EdgeReason;
+using metrology::EdgeValue;
+using nlohmann::ordered_json;
+
+metrology::RakeSide rake_side(const std::string& name) {
+  if (name == "right") return metrology::RakeSide::kRight;
+  if (name == "above") return metrology::RakeSide::kTop;
+  if (name == "below") return metrology::RakeSide::kBottom;
+  return metrology::RakeSide::kLeft;
+}
+
+metrology::EdgeOptions options_of(const PlannedMeasurement& planned) {
+  metrology::EdgeOptions options;
+  options.rake_side = rake_side(planned.rake_side);
+  if (planned.method == "tolerance") {
+    options.method = metrology::EdgeMethod::kTolerance;
+  } else if (planned.model == "circle") {
+    options.method = metrology::EdgeMethod::kCircle;
+  }
+  options.sections_every_um = planned.sections_every_um;
+  options.flank_from_um = planned.flank_um.at(0);
+  options.flank_to_um = planned.flank_um.at(1);
+  options.tolerance_um = planned.tolerance_um;
+  if (planned.chipping) {
+    options.chipping.min_depth_um = planned.chipping->min_depth_um;
+    options.chipping.min_width_um = planned.chipping->min_width_um;
+  }
+  return options;
+}
+
+ValueInput value_input(const EdgeValue& value, int sections) {
+  ValueInput input;
+  input.value = value.median;
+  if (!value.median) input.reason = metrology::edge_reason_text(value.reason);
+  if (!value.median || !value.u) return input;
+  metrology::BudgetEntry entry;
+  entry.source = "sections";
+  entry.type = metrology::UncertaintyType::kA;
+  entry.u = *value.u;
+  // Where the points' noise is the larger part, the number of sections does not matter.
+  if (!value.u_noise || *value.u_noise < *value.u) entry.dof = std::max(1, sections - 1);
+  input.budget.entries.push_back(entry);
+  input.u_method = "jacobian";
+  return input;
+}
+
+void add_value(const MeasurementInput& input, const std::string& key, const ValueInput& value,
+               EvaluatedMeasurement& made) {
+  made.values[key] = judged_value(value, key, input.planned, input.plan.decision);
+}
+
+void add_figure(const MeasurementInput& input, const std::string& key, std::optional<double> figure,
+                const std::string& reason, EvaluatedMeasurement& made) {
+  ValueInput value;
+  value.value = figure;
+  if (!figure) value.reason = reason;
+  add_value(input, key, value, made);
+}
+
+ordered_json section_json(const metrology::EdgeSection& section) {
+  ordered_json json{{"along_um", section.along_um}, {"x_um", section.x_um}, {"y_um", section.y_um}};
+  if (section.state != EdgeReason::kNone) {
+    json["unmeasured"] = metrology::edge_reason_text(section.state);
+    return json;
+  }
+  for (std::size_t i = 0; i < metrology::kEdgeQuantityCount; ++i) {
+    if (section.values[i])
+      json[std::string(metrology::edge_quantity_key(static_cast<EdgeQuantity>(i)))] = *section.values[i];
+  }
+  return json;
+}
+
+ordered_json notch_json(const metrology::Notch& notch) {
+  return {{"along_um", notch.along_um}, {"x_um", notch.x_um},         {"y_um", notch.y_um},
+          {"depth_um", notch.depth_um}, {"width_um", notch.width_um}, {"area_um2", notch.area_um2},
+          {"open", notch.open},         {"resolved", notch.resolved}};
+}
+
+ordered_json spreads_json(const CuttingEdge& edge) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t i = 0; i < metrology::kEdgeQuantityCount; ++i) {
+    const EdgeValue& value = edge.values[i];
+    if (!value.median) continue;
+    ordered_json one = ordered_json::object();
+    if (value.standard_error) one["standard_error"] = *value.standard_error;
+    if (value.p10) one["p10"] = *value.p10;
+    if (value.p90) one["p90"] = *value.p90;
+    one["at_most"] = value.at_most;
+    json[std::string(metrology::edge_quantity_key(static_cast<EdgeQuantity>(i)))] = std::move(one);
+  }
+  return json;
+}
+
+ordered_json details_json(const CuttingEdge& edge) {
+  ordered_json json{{"direction_deg", edge.direction_deg},
+                    {"window_um", edge.window_um},
+                    {"radius_smallest_resolvable_um", edge.radius_smallest_resolvable_um},
+                    {"sections_measured", edge.sections_measured}};
+  if (edge.method == metrology::EdgeMethod::kTolerance) json["tolerance_um"] = edge.tolerance_um;
+  json["spread"] = spreads_json(edge);
+  for (const auto& section : edge.sections) json["sections"].push_back(section_json(section));
+  const metrology::ChippingResult& chipping = edge.chipping;
+  ordered_json chips{{"depth_limit_um", chipping.depth_limit_um},
+                     {"robust_sd_um", chipping.robust_sd_um},
+                     {"length_um", chipping.length_um},
+                     {"unmeasured_um", chipping.unmeasured_um},
+                     {"notches", ordered_json::array()}};
+  for (const metrology::Notch& notch : chipping.notches) chips["notches"].push_back(notch_json(notch));
+  json["chipping"] = std::move(chips);
+  return json;
+}
+
+void add_chipping(const MeasurementInput& input, const CuttingEdge& edge, EvaluatedMeasurement& made) {
+  const metrology::ChippingResult& chipping = edge.chipping;
+  const bool there = chipping.reason == EdgeReason::kNone;
+  const std::string reason(metrology::edge_reason_text(chipping.reason));
+  add_figure(input, "edge_Pt_um", chipping.edge_pt_um, reason, made);
+  add_figure(input, "edge_Rz_um", chipping.edge_rz_um, reason, made);
+  const auto when_there = [there](double value) { return there ? std::optional(value) : std::nullopt; };
+  // The edge line's scatter is what a notch's depth is uncertain by.
+  ValueInput deepest;
+  deepest.value = when_there(chipping.deepest_um());
+  if (!there) deepest.reason = reason;
+  if (there) {
+    metrology::BudgetEntry entry;
+    entry.source = "edge_line";
+    entry.type = metrology::UncertaintyType::kA;
+    entry.u = chipping.robust_sd_um;
+    deepest.budget.entries.push_back(entry);
+    deepest.u_method = "spread";
+  }
+  add_value(input, "chipping_max_um", deepest, made);
+  add_figure(input, "notches", when_there(static_cast<double>(chipping.notches.size())), reason, made);
+  add_figure(input, "unmeasured_fraction", chipping.unmeasured_fraction(), reason, made);
+  for (const metrology::Notch& notch : chipping.notches) {
+    if (notch.resolved) continue;
+    made.warnings.push_back(
+        {"notch_not_resolved", "a notch is narrower than two focus windows: it is deeper than it reads"});
+    break;
+  }
+}
+
+}  // namespace
+
+EvaluatedMeasurement measure_edge(const MeasurementInput& input) {
+  EvaluatedMeasurement made;
+  made.method = input.planned.method == "tolerance" ? "tolerance" : input.planned.model;
+  made.main_value = "radius_um";
+  made.region = input.planned.region;
+  const metrology::HeightField& field = input.surface.field;
+  const CuttingEdge edge = metrology::measure_cutting_edge(
+      field, region_points(input.plan, input.planned.region, field), options_of(input.planned));
+  if (edge.reason != EdgeReason::kNone) {
+    made.reason = metrology::edge_reason_text(edge.reason);
+    return made;
+  }
+  made.points = edge.points;
+  made.valid_fraction = edge.valid_fraction;
+  for (std::size_t i = 0; i < metrology::kEdgeQuantityCount; ++i) {
+    const std::string key(metrology::edge_quantity_key(static_cast<EdgeQuantity>(i)));
+    add_value(input, key, value_input(edge.values[i], edge.sections_measured), made);
+    if (!edge.values[i].at_most) continue;
+    made.warnings.push_back({"at_most", key + " is below what the focus window resolves: read it as at most " +
+                                            std::to_string(edge.radius_smallest_resolvable_um) + " um"});
+  }
+  if (input.planned.chipping) {
+    add_chipping(input, edge, made);
+    if (edge.chipping.unmeasured_fraction() > input.planned.chipping->max_unmeasured_fraction) {
+      made.reason = "too much of the edge could not be measured: see unmeasured_fraction";
+    }
+  }
+  if (!field.has_sigma()) made.not_evaluated.emplace_back("noise");
+  made.not_evaluated.emplace_back("slice_z");
+  made.details = details_json(edge).dump();
+  return made;
+}
+
+}  // namespace fvd

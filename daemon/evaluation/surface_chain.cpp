@@ -1,0 +1,106 @@
+#include "daemon/evaluation/surface_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "config/field_writer.hpp"
+#include "core/base/units.hpp"
+#include "daemon/evaluation/apply_operation.hpp"
+#include "daemon/evaluation/evaluation_fields.hpp"
+
+namespace fvd {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json report_json(const metrology::OperationReport& report) {
+  ordered_json json{{"points_used", report.points_used}, {"points_removed", report.points_removed}};
+  for (const metrology::NamedValue& value : report.values) {
+    ordered_json one{{"value", value.value}};
+    if (value.standard_error) one["standard_error"] = *value.standard_error;
+    json["values"][value.name] = std::move(one);
+  }
+  if (!report.warnings.empty()) json["warnings"] = report.warnings;
+  return json;
+}
+
+void note_filter(const PlannedOperation& step, SurfaceState& state) {
+  state.filters.push_back(step);
+  if (step.side == "S") {
+    state.s_nesting_um = std::max(state.s_nesting_um.value_or(0.0), step.nesting_um);
+  } else {
+    state.l_nesting_um =
+        std::min(state.l_nesting_um.value_or(std::numeric_limits<double>::infinity()), step.nesting_um);
+  }
+}
+
+bool looks_at_sigma(const PlannedOperation& step, const metrology::HeightField& field) {
+  return step.op == "mask_sigma" || (step.op == "outliers" && field.has_sigma()) || step.fit == "weighted";
+}
+
+}  // namespace
+
+SurfaceChain::SurfaceChain(const Surface& surface, const EvaluationPlan& plan, WorkerPool* pool)
+    : surface_(surface), plan_(plan), pool_(pool) {}
+
+const SurfaceState& SurfaceChain::state(const std::string& name) {
+  if (const auto found = states_.find(name); found != states_.end()) return found->second;
+  SurfaceState state = name == kMeasuredSurface ? measured() : made(plan_.surfaces.at(name));
+  return states_.emplace(name, std::move(state)).first->second;
+}
+
+SurfaceState SurfaceChain::measured() const {
+  SurfaceState state;
+  metrology::HeightField& field = state.field;
+  const auto in_um = [](const Plane<float>& metres, auto& plane) {
+    using Um = std::remove_cvref_t<decltype(plane.pixels()[0])>;
+    plane = std::remove_cvref_t<decltype(plane)>::unset(metres.width(), metres.height());
+    std::transform(metres.pixels().begin(), metres.pixels().end(), plane.pixels().begin(),
+                   [](float metre) { return static_cast<Um>(static_cast<double>(metre) / kMetresPerMicrometer); });
+  };
+  in_um(surface_.height_m, field.z_um);
+  if (surface_.has_sigma()) in_um(surface_.sigma_m, field.sigma_um);
+  field.pitch_x_um = surface_.pitch_x_um;
+  field.pitch_y_um = surface_.pitch_y_um;
+  field.kernel = surface_.kernel;
+  state.steps_json = "[]";
+  return state;
+}
+
+SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
+  const SurfaceState& source = state(planned.from);
+  SurfaceState made;
+  made.refused = source.refused;
+  if (!made.refused.empty()) return made;
+  made.field = source.field.clone();
+  made.s_nesting_um = source.s_nesting_um;
+  made.l_nesting_um = source.l_nesting_um;
+  made.filters = source.filters;
+  made.uses_sigma = source.uses_sigma;
+  made.warnings = source.warnings;
+  ordered_json steps = ordered_json::parse(source.steps_json);
+  for (PlannedOperation step : planned.steps) {
+    ordered_json json = fields_to_json([&](Fields& fields) { describe(step, fields); });
+    const metrology::OperationReport report = apply_operation(plan_, step, pool_, made.field);
+    if (report.refused) {
+      made.refused = step.op + ": " + *report.refused;
+      json["refused"] = *report.refused;
+      steps.push_back(std::move(json));
+      break;
+    }
+    if (step.op == "filter") note_filter(step, made);
+    made.uses_sigma = made.uses_sigma || looks_at_sigma(step, made.field);
+    for (const std::string& text : report.warnings) made.warnings.push_back({step.op, text});
+    json["did"] = report_json(report);
+    steps.push_back(std::move(json));
+  }
+  made.steps_json = steps.dump();
+  return made;
+}
+
+}  // namespace fvd

@@ -1,0 +1,48 @@
+#pragma once
+
+/// The surfaces of an evaluation, each made once from the one that it comes from.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/metrology/height_field.hpp"
+#include "core/runtime/worker_pool.hpp"
+#include "core/surface/surface.hpp"
+#include "daemon/evaluation/evaluation_plan.hpp"
+#include "daemon/result/evaluation_result.hpp"
+
+namespace fvd {
+
+/// A surface after its steps.
+struct SurfaceState {
+  metrology::HeightField field;
+  std::string steps_json;                 ///< list of objects: each step with its settings, and what it did
+  std::optional<double> s_nesting_um;     ///< the longest S filter on the way from the measured surface
+  std::optional<double> l_nesting_um;     ///< the shortest L filter
+  std::vector<PlannedOperation> filters;  ///< on that way, in order
+  bool uses_sigma = false;                ///< a step on that way looked at the standard errors
+  std::vector<EvaluationWarning> warnings;
+  std::string refused;  ///< why the surface cannot be made; empty = it is there
+};
+
+/// surface, plan and pool outlive it; pool may be null. context: one thread.
+class SurfaceChain {
+ public:
+  SurfaceChain(const Surface& surface, const EvaluationPlan& plan, WorkerPool* pool);
+
+  /// kMeasuredSurface or one of the plan's; the plan was checked.
+  [[nodiscard]] const SurfaceState& state(const std::string& name);
+
+ private:
+  [[nodiscard]] SurfaceState measured() const;
+  [[nodiscard]] SurfaceState made(const PlannedSurface& planned);
+
+  const Surface& surface_;
+  const EvaluationPlan& plan_;
+  WorkerPool* pool_;
+  std::map<std::string, SurfaceState> states_;
+};
+
+}  // namespace fvd

@@ -1,0 +1,117 @@
+#include "daemon/evaluation/value_uncertainty.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <vector>
+
+#include "core/focus/fit/slice_sensitivity.hpp"
+#include "core/metrology/uncertainty/decision.hpp"
+#include "daemon/evaluation/value_names.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr std::size_t kLeastSamples = 3;
+
+metrology::DecisionRule rule_of(const PlannedDecision& decision) {
+  if (decision.rule == "simple") return metrology::DecisionRule::kSimple;
+  if (decision.rule == "guard_U") return metrology::DecisionRule::kGuardU;
+  return metrology::DecisionRule::kIso14253;
+}
+
+UncertaintyLine line_of(const metrology::BudgetEntry& entry) {
+  UncertaintyLine line;
+  line.source = entry.source;
+  line.type = entry.type == metrology::UncertaintyType::kA ? "A" : "B";
+  line.u = entry.contribution();
+  if (std::isfinite(entry.dof)) line.dof = entry.dof;
+  line.points_as_one = entry.points_as_one;
+  return line;
+}
+
+void warn_of_tolerance(const EvaluatedValue& value, std::vector<EvaluationWarning>& warnings) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "u is " << *value.u << " " << value.unit << ", more than a third of the tolerance of "
+       << *value.limits->upper - *value.limits->lower << " " << value.unit
+       << ": few parts can be told to be good or bad";
+  warnings.push_back({"u_above_third_of_tolerance", text.str()});
+}
+
+}  // namespace
+
+void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Budget& budget) {
+  if (!noise) {
+    budget.not_evaluated.emplace_back("noise");
+    return;
+  }
+  metrology::BudgetEntry entry;
+  entry.source = "noise";
+  entry.type = metrology::UncertaintyType::kA;
+  entry.u = noise->u;
+  entry.points_as_one = noise->points_as_one;
+  budget.entries.push_back(entry);
+}
+
+void add_slice_z(const EvaluationContext& context, const metrology::HeightField& measured,
+                 const metrology::WeightMap& map, metrology::Budget& budget) {
+  if (context.samples.size() < kLeastSamples || !(context.curve_width_um > 0.0)) {
+    budget.not_evaluated.emplace_back("slice_z");
+    return;
+  }
+  std::vector<double> z_um;
+  std::vector<double> u_um;
+  for (const CurveSample& sample : context.samples) {
+    z_um.push_back(sample.z_um);
+    u_um.push_back(sample.u_um);
+  }
+  std::vector<WeightedHeight> heights;
+  heights.reserve(map.weights.pixels().size());
+  for (int row = 0; row < map.weights.height(); ++row) {
+    for (int column = 0; column < map.weights.width(); ++column) {
+      const double weight = map.weights.at(column, row);
+      if (weight == 0.0 || measured.is_hole(map.left + column, map.top + row)) continue;
+      heights.push_back({measured.z_um.at(map.left + column, map.top + row), weight});
+    }
+  }
+  budget.entries.push_back(metrology::slice_z_entry(slice_sensitivities(z_um, context.curve_width_um, heights), u_um));
+}
+
+EvaluatedValue judged_value(const ValueInput& input, const std::string& key, const PlannedMeasurement& planned,
+                            const PlannedDecision& decision) {
+  EvaluatedValue value;
+  value.value = input.value;
+  value.unit = unit_of_key(key);
+  value.reason = input.reason;
+  std::optional<metrology::CombinedUncertainty> uncertainty;
+  if (input.value) uncertainty = metrology::combined(input.budget);
+  if (uncertainty) {
+    value.u = uncertainty->u;
+    value.expanded_u = uncertainty->expanded;
+    value.k = uncertainty->k;
+    if (std::isfinite(uncertainty->dof)) value.dof = uncertainty->dof;
+    value.u_method = input.u_method;
+    for (const metrology::BudgetEntry& entry : input.budget.entries) value.budget.push_back(line_of(entry));
+  }
+  const auto limits = planned.limits.find(key);
+  if (limits == planned.limits.end()) return value;
+  value.limits = limits->second;
+  const metrology::Decision decided = metrology::decide(input.value, uncertainty, limits->second,
+                                                        {rule_of(decision), decision.probability}, input.below_noise);
+  value.verdict = decided.verdict;
+  value.probability = decided.conformity;
+  if (decided.u_above_third_of_tolerance) warn_of_tolerance(value, value.warnings);
+  if (decided.held_back_below_noise) {
+    value.warnings.push_back({"below_noise", "is below twice the noise floor, so that a lower limit cannot pass"});
+  }
+  if (input.value && !uncertainty && decision.rule != "simple") {
+    value.warnings.push_back({"no_uncertainty", "U is not known, so that limits cannot be judged"});
+  }
+  return value;
+}
+
+std::vector<std::string> never_evaluated() { return {"alpha_z", "flatness", "l_z", "temperature"}; }
+
+}  // namespace fvd

@@ -1,0 +1,43 @@
+#pragma once
+
+/// From a number and what is known of its errors to a value with U and verdict.
+
+#include <optional>
+#include <string>
+
+#include "core/metrology/height_field.hpp"
+#include "core/metrology/uncertainty/budget.hpp"
+#include "core/metrology/uncertainty/linear_noise.hpp"
+#include "core/metrology/uncertainty/weight_map.hpp"
+#include "daemon/evaluation/evaluation_context.hpp"
+#include "daemon/evaluation/evaluation_plan.hpp"
+#include "daemon/result/evaluation_result.hpp"
+
+namespace fvd {
+
+/// Everything that a value's uncertainty and verdict follow from.
+struct ValueInput {
+  std::optional<double> value;
+  std::string reason;        ///< why there is no value
+  metrology::Budget budget;  ///< without entries: U is not known
+  std::string u_method;      ///< "linear", "monte_carlo", "jacobian", "spread"
+  bool below_noise = false;  ///< of a texture value
+};
+
+/// Adds noise to the budget, or "noise" to what is not evaluated where the field has no standard errors.
+void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Budget& budget);
+
+/// Adds the errors of the slices' z, which whole plateaus share. weights: of the value, on the measured field, whose
+/// heights tell which slices each point rests on. "slice_z" is not evaluated where the context does not know the
+/// slices.
+void add_slice_z(const EvaluationContext& context, const metrology::HeightField& measured,
+                 const metrology::WeightMap& weights, metrology::Budget& budget);
+
+/// key: of the value in `planned`, whose limits and `decision` make the verdict.
+[[nodiscard]] EvaluatedValue judged_value(const ValueInput& input, const std::string& key,
+                                          const PlannedMeasurement& planned, const PlannedDecision& decision);
+
+/// What no measurement's budget contains as long as nothing is known of it.
+[[nodiscard]] std::vector<std::string> never_evaluated();
+
+}  // namespace fvd
