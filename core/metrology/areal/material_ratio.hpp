@@ -25,9 +25,10 @@ struct CoreParameters {
 };
 
 /// Height over material ratio. Own definition for sampled surfaces: point i of n in descending order, i from 0, stands
-/// at the ratio (i + 0.5) / n, so that figures of a smooth surface are right to O(1/n^2). Equal heights stand at the
-/// middle of their ratios, or, where they are more than 5 % of all, form a level stretch. The curve is straight between
-/// points, and level from the first to 0 % and from the last to 100 %. Results depend on the multiset of heights only.
+/// at the ratio (i + 0.5) / n, so that figures of a smooth surface are right to O(1/n^2). Equal heights (to 1e-12 of
+/// the range) stand at the middle of their ratios, or, where they are more than 5 % of all, form a level stretch. The
+/// curve is straight between points, and level from the first to 0 % and from the last to 100 %. Results depend on the
+/// multiset of heights only.
 class MaterialRatioCurve {
  public:
   /// descending: at least one finite height, sorted_descending().
@@ -35,7 +36,8 @@ class MaterialRatioCurve {
 
   /// c(p): the height at a ratio of 0 to 100 %. ISO 25178-2:2021 Smc(p), ISO 21920-2:2021 Rcm(p).
   [[nodiscard]] double height_at_um(double ratio_percent) const;
-  /// p(c) on the curve; 0 from its top on, 100 at its bottom and below. See material_ratio_percent() for Smr(c).
+  /// p(c): the last ratio at which the curve is at the height or above; 0 above its top, 100 at its bottom and below.
+  /// ISO 21920-2:2021 Rmr(c) on the curve; see material_ratio_percent() for the exact count.
   [[nodiscard]] double ratio_at_percent(double height_um) const;
   /// Vm(p): material above c(p), um3/um2. ISO 25178-2:2021.
   [[nodiscard]] double material_volume_um(double ratio_percent) const;
@@ -52,7 +54,10 @@ class MaterialRatioCurve {
     double height_um;
   };
 
+  [[nodiscard]] static double ratio_between(const Knot& from, const Knot& to, double height_um);
   [[nodiscard]] double height_of(double ratio) const;
+  [[nodiscard]] double first_ratio_of(double height_um) const;  // the curve is at the height or below from here on
+  [[nodiscard]] double last_ratio_of(double height_um) const;   // the curve is at the height or above up to here
   [[nodiscard]] double area_above(double ratio, double height_um) const;
   [[nodiscard]] double area_below(double ratio, double height_um) const;
 
