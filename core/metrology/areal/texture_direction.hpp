@@ -12,8 +12,8 @@ namespace fvd::metrology {
 /// definition of the spectrum: heights about their weighted mean, holes as 0, Hann window over the region's rectangle;
 /// the power of a bin is spread over the angle that the bin takes as seen from 0, in steps of half a degree;
 /// frequencies up to the smaller Nyquist frequency. The value is the mean direction of the greatest peak above half of
-/// its height. tie: another peak is as great to 1e-6. Absent, with a reason, below 8 columns or rows or without any
-/// power.
+/// its height. tie: another peak is as great to 1e-6; the least angle is taken. Absent, with a reason, below 8 columns
+/// or rows, without any power, and where no direction has twice the mean power of all, as on a surface without a lay.
 [[nodiscard]] ArealValue texture_direction_deg(const RegionHeights& heights);
 
 }  // namespace fvd::metrology
