@@ -40,9 +40,10 @@ WedgeSection::WedgeSection(const CuttingEdge& edge, double lean_deg) {
   if (edge.rounding == Rounding::kSharp) return;
   truth_.k = truth_.s_gamma_um / truth_.s_alpha_um;
   find_nearest();
+  // Into the body the line leans towards the clearance by as much as it leans towards the rake out of it.
   const SectionPoint bisector{std::sin(lean), -std::cos(lean)};
   const double towards_clearance = towards_nearest_.h_um * bisector.s_um - towards_nearest_.s_um * bisector.h_um;
-  truth_.phi_deg = degrees(std::atan2(-towards_clearance, dot(towards_nearest_, bisector)));
+  truth_.phi_deg = degrees(std::atan2(towards_clearance, dot(towards_nearest_, bisector))) + 0.0;  // no -0
 }
 
 SectionPoint WedgeSection::rounding(double t) const {

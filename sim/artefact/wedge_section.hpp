@@ -27,7 +27,8 @@ struct WedgeTruth {
   std::optional<double> k;          ///< S_gamma / S_alpha; a sharp edge has none
   std::optional<double> radius_um;  ///< of a circle, 0 if sharp; a conic has none
   double delta_r_um = 0.0;          ///< least distance from apex to contour
-  std::optional<double> phi_deg;    ///< its direction against the bisector, positive towards the rake
+  std::optional<double> phi_deg;    ///< its direction out of the contour against the bisector, positive towards
+                                    ///< the rake: so it is where K is above 1
   double r_min_um = 0.0;            ///< least radius of curvature
 };
 
