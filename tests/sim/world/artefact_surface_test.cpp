@@ -7,7 +7,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "core/focus/sharpness/sharpness_reference.hpp"
+#include "core/focus/measure/sharpness_rows.hpp"
 #include "gtest/gtest.h"
 #include "sim/world/sim_world.hpp"
 #include "sim/world/world_config.hpp"
@@ -118,7 +118,8 @@ TEST(ArtefactSurface, IsPolishedWhereRegionsAndPictureSay) {
   EXPECT_EQ(surface.contrast.at(21, 10), 1.0F);
   EXPECT_EQ(surface.contrast.at(40, 30), 0.5F);
   EXPECT_EQ(surface.contrast.at(39, 30), 1.0F) << "left of it";
-  EXPECT_EQ(surface.contrast.at(69, 59), 0.5F);
+  EXPECT_EQ(surface.contrast.at(69, 33), 0.5F);
+  EXPECT_EQ(surface.contrast.at(70, 33), 1.0F) << "right of it";
   EXPECT_EQ(surface.contrast.at(40, 29), 1.0F) << "above it";
   EXPECT_EQ(surface.contrast.at(60, 35), 0.03F) << "the last one counts";
   EXPECT_EQ(surface.poor.at(60, 35), 1);
@@ -167,7 +168,7 @@ TEST(ArtefactSurface, HasATiltedBallThatStaysRound) {
 
 TEST(ArtefactSurface, ReportsEveryMistakeAtOnce) {
   const test::ScratchDir scratch;
-  const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
+  const auto refused = [&](const std::string& text, std::initializer_list<std::string> words) {
     test::write_text(scratch / "world.json", text);
     test::expect_error(ErrorCode::kBadConfig, words, [&] { (void)load_world(scratch / "world.json"); });
   };
@@ -182,8 +183,8 @@ TEST(ArtefactSurface, ReportsEveryMistakeAtOnce) {
           {"/edge/rounding/S_gamma_um: unknown key", "/edge/beta_deg: 5"});
   refused(R"({"surface": "edge", "edge": {"rounding": {"kind": "blunt"}}})",
           {"/edge/rounding/kind", "\"sharp\", \"circle\", \"conic\""});
-  refused(R"({"surface": "edge", "edge": {"bend_radius_um": 100, "notches": [{"depth": 3}]}})",
-          {"/edge/notches/0/depth", "'depth_um'"});
+  refused(R"({"surface": "edge", "edge": {"bend_radius_um": 100, "notches": [{"dept_um": 3}]}})",
+          {"/edge/notches/0/dept_um", "'depth_um'"});
   refused(R"({"surface": "edge", "tilt": {"slope_x": 0.1}, "edge": {"bend_radius_um": 100}})",
           {"/tilt: ", "/edge/bend_radius_um: "});
   refused(R"({"surface": "stairs", "stairs": {"treads": [{"width_um": 3}]}})", {"/stairs/treads", "2..64"});
