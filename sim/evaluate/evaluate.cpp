@@ -68,6 +68,9 @@ cv::Mat read_image(const std::filesystem::path& file, int type, const Surface& s
 Figures compare(const Surface& surface, const std::filesystem::path& file) {
   const cv::Mat heights = read_image(file, CV_32F, surface);
   Figures figures;
+  for (int region = 0; region <= static_cast<int>(Region::kSurface); ++region) {
+    figures[static_cast<Region>(region)];  // also those that the world has not
+  }
   for (int y = 0; y < heights.rows; ++y) {
     for (int x = 0; x < heights.cols; ++x) {
       figures[static_cast<Region>(surface.region.at(x, y))].add(heights.at<float>(y, x), surface.height_um.at(x, y));
