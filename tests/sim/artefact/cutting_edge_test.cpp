@@ -81,6 +81,19 @@ TEST(EdgeSurface, KeepsItsRadiusWhenTilted) {
   EXPECT_NEAR(distance(0, 1) * distance(1, 2) * distance(2, 0) / (2.0 * std::abs(area)), 10.0, 1e-9);
 }
 
+TEST(EdgeSurface, RisesToTheClearanceIfItsTiltDoes) {
+  CuttingEdge edge;
+  edge.direction_deg = 90.0;
+  const EdgeSurface tilted(edge, {.slope_x = 0.1});
+  const double turn = std::atan(0.1);
+
+  const double clearance = tilted.height_um({101.0, 0.0}) - tilted.height_um({100.0, 0.0});
+  const double rake = tilted.height_um({-100.0, 0.0}) - tilted.height_um({-101.0, 0.0});
+
+  EXPECT_NEAR(clearance, std::tan(-std::numbers::pi / 4.0 + turn), 1e-10);
+  EXPECT_NEAR(rake, std::tan(std::numbers::pi / 4.0 + turn), 1e-10);
+}
+
 TEST(EdgeSurface, HasTheSameSectionEverywhereAlongABend) {
   for (const double radius_um : {900.0, -900.0}) {
     CuttingEdge edge = trumpet(30.0);
@@ -93,6 +106,10 @@ TEST(EdgeSurface, HasTheSameSectionEverywhereAlongABend) {
         EXPECT_NEAR(bent.height_um(place), bent.section().height_um(across), 1e-9) << along << ", " << across;
       }
     }
+    edge.notches = {{.position_um = 130.0, .width_um = 20.0, .depth_um = 5.0}};
+    const EdgeSurface notched(edge, {});
+    EXPECT_NEAR(notched.height_um(bent.place(120.0, 0.0)), bent.section().height_um(0.0, 2.5), 1e-9)
+        << "half the depth half the width away";
     const double sagitta = Directed(30.0).across(bent.place(200.0, 0.0));
     EXPECT_NEAR(sagitta, radius_um * (1.0 - std::cos(200.0 / 900.0)), 1e-9);
   }
