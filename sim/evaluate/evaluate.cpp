@@ -1,6 +1,7 @@
 #include "sim/evaluate/evaluate.hpp"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -13,6 +14,7 @@
 
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
+#include "sim/evaluate/truth_file.hpp"
 #include "sim/world/surface.hpp"
 
 namespace fvd::sim {
@@ -66,6 +68,9 @@ cv::Mat read_image(const std::filesystem::path& file, int type, const Surface& s
 Figures compare(const Surface& surface, const std::filesystem::path& file) {
   const cv::Mat heights = read_image(file, CV_32F, surface);
   Figures figures;
+  for (int region = 0; region <= static_cast<int>(Region::kSurface); ++region) {
+    figures[static_cast<Region>(region)];  // also those that the world has not
+  }
   for (int y = 0; y < heights.rows; ++y) {
     for (int x = 0; x < heights.cols; ++x) {
       figures[static_cast<Region>(surface.region.at(x, y))].add(heights.at<float>(y, x), surface.height_um.at(x, y));
@@ -84,6 +89,13 @@ ordered_json rounded(double value, int decimals) {
   if (!std::isfinite(value)) return nullptr;
   const double scale = std::pow(10.0, decimals);
   return std::round(value * scale) / scale;
+}
+
+/// The shortest decimal form that reads back.
+std::string metres(double um) {
+  char text[32];
+  const auto end = std::to_chars(std::begin(text), std::end(text), um / 1e6).ptr;
+  return {std::begin(text), end};
 }
 
 /// One evaluation: the world's surface, the result's record, a height map per method.
@@ -199,8 +211,12 @@ class Evaluation {
 
 void write_truth(const WorldParameters& world, const std::filesystem::path& folder) {
   const Surface surface = make_surface(world);
-  std::string header = "Gwyddion Simple Field 1.0\nXRes = " + std::to_string(surface.height_um.width()) +
-                       "\nYRes = " + std::to_string(surface.height_um.height()) + "\nZUnits = m\nTitle = truth\n";
+  const int width = surface.height_um.width();
+  const int height = surface.height_um.height();
+  std::string header = "Gwyddion Simple Field 1.0\nXRes = " + std::to_string(width) +
+                       "\nYRes = " + std::to_string(height) + "\nXReal = " + metres(width * world.pixel_pitch_um) +
+                       "\nYReal = " + metres(height * world.pixel_pitch_um) +
+                       "\nXYUnits = m\nZUnits = m\nTitle = truth\n";
   header.append(4 - header.size() % 4, '\0');
   std::ofstream out(folder / "truth.gsf", std::ios::binary);
   out << header;
@@ -214,6 +230,10 @@ void write_truth(const WorldParameters& world, const std::filesystem::path& fold
   if (!out || !cv::imwrite((folder / "regions.png").string(), regions)) {
     throw Error(ErrorCode::kStorageWrite, "cannot write the truth into " + folder.string());
   }
+  WorldParameters sized = world;  // a height map brings its own size
+  sized.width_px = width;
+  sized.height_px = height;
+  write_truth_file(sized, folder);
 }
 
 void evaluate(const WorldParameters& world, const std::filesystem::path& result_dir, bool with_json,

@@ -9,7 +9,8 @@
 
 namespace fvd::sim {
 
-/// Writes truth.gsf (heights in metres) and regions.png (labels of surface.hpp) into an existing folder.
+/// Writes truth.gsf (heights in metres), regions.png (labels of surface.hpp) and truth.json (truth_file.hpp) into an
+/// existing folder.
 /// Throws Error kStorageWrite.
 void write_truth(const WorldParameters& world, const std::filesystem::path& folder);
 

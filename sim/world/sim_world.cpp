@@ -10,9 +10,8 @@ std::unique_ptr<SliceRenderer> make_renderer(const WorldParameters& world, const
   if (world.surface == SurfaceKind::kLayered) return std::make_unique<LayeredRenderer>(world);
   const RendererOptions options{
       .defocus_px_per_um = world.defocus_px_per_um, .readout_noise = world.readout_noise, .seed = world.seed};
-  return std::make_unique<DefocusRenderer>(
-      make_texture(world.texture, surface.poor, world.contrast, world.poor_contrast, world.seed), surface.height_um,
-      options);
+  return std::make_unique<DefocusRenderer>(make_texture(world.texture, surface.contrast, world.contrast, world.seed),
+                                           surface.height_um, options);
 }
 
 SimWorld::SimWorld(const WorldParameters& parameters, const AxisModel& axis)

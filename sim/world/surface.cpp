@@ -7,6 +7,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/error.hpp"
+#include "sim/artefact/stepped_artefacts.hpp"
+#include "sim/world/artefact_surface.hpp"
+#include "sim/world/contrast_map.hpp"
 #include "sim/world/gsf_reader.hpp"
 #include "sim/world/layered_renderer.hpp"
 
@@ -28,7 +31,8 @@ void fill(Plane<std::uint8_t>& plane, const Rectangle& r, std::uint8_t value) {
 Rectangle grown(const Rectangle& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by, r.height + 2 * by}; }
 
 Surface blank(int width, int height) {
-  return {Plane<float>(width, height), Plane<std::uint8_t>(width, height), Plane<std::uint8_t>(width, height)};
+  return {Plane<float>(width, height), Plane<float>(width, height, 1.0F), Plane<std::uint8_t>(width, height),
+          Plane<std::uint8_t>(width, height)};
 }
 
 /// The whole image but its margin is one region.
@@ -67,6 +71,9 @@ Surface chapter(const WorldParameters& world) {
   fill(surface.region, grown(poor, kRegionMargin_px), static_cast<std::uint8_t>(Region::kNone));
   fill(surface.region, poor, static_cast<std::uint8_t>(Region::kPoor));
   fill(surface.poor, poor, 1);
+  for (int y = poor.y; y < poor.y + poor.height; ++y) {
+    std::fill_n(surface.contrast.row(y) + poor.x, poor.width, static_cast<float>(world.poor_contrast));
+  }
   return surface;
 }
 
@@ -82,16 +89,21 @@ Surface tilted(const WorldParameters& world) {
   return surface;
 }
 
+/// A ball in a plane, which may be tilted: the ball's centre lies on the plane's normal in the middle of the image.
 Surface sphere(const WorldParameters& world) {
   Surface surface = blank(world.width_px, world.height_px);
-  const double centre_um = world.base_um + world.cap_height_um - world.radius_um;
+  const Tilt& tilt = world.artefacts.tilt;
+  const double up = (world.cap_height_um - world.radius_um) / std::hypot(tilt.slope_x, tilt.slope_y, 1.0);
+  const PixelGrid grid = grid_of(world);
   for (int y = 0; y < world.height_px; ++y) {
     for (int x = 0; x < world.width_px; ++x) {
-      const double dx = (x - 0.5 * (world.width_px - 1)) * world.pixel_pitch_um;
-      const double dy = (y - 0.5 * (world.height_px - 1)) * world.pixel_pitch_um;
+      const Place place = grid.centre(x, y);
+      const double dx = place.x_um + up * tilt.slope_x;
+      const double dy = place.y_um + up * tilt.slope_y;
       const double square = world.radius_um * world.radius_um - dx * dx - dy * dy;
-      const double height = square > 0 ? centre_um + std::sqrt(square) : world.base_um;
-      surface.height_um.at(x, y) = static_cast<float>(std::max(height, world.base_um));
+      const double plane = world.base_um + plane_um(tilt, place);
+      const double height = square > 0 ? world.base_um + up + std::sqrt(square) : plane;
+      surface.height_um.at(x, y) = static_cast<float>(std::max(height, plane));
     }
   }
   return surface;
@@ -139,11 +151,46 @@ Surface layered(const WorldParameters& world) {
 }
 
 Surface from_file(const WorldParameters& world) {
-  Surface surface;
-  surface.height_um = read_gsf_um(world.height_map_file);
-  surface.poor = Plane<std::uint8_t>(surface.height_um.width(), surface.height_um.height());
-  surface.region = Plane<std::uint8_t>(surface.height_um.width(), surface.height_um.height());
+  Plane<float> height_um = read_gsf_um(world.height_map_file);
+  Surface surface = blank(height_um.width(), height_um.height());
+  surface.height_um = std::move(height_um);
   return surface;
+}
+
+void add_plane(const WorldParameters& world, Surface& surface) {
+  const PixelGrid grid{surface.height_um.width(), surface.height_um.height(), world.pixel_pitch_um};
+  for (int y = 0; y < grid.height_px; ++y) {
+    for (int x = 0; x < grid.width_px; ++x) {
+      surface.height_um.at(x, y) += static_cast<float>(plane_um(world.artefacts.tilt, grid.centre(x, y)));
+    }
+  }
+}
+
+/// Takes out of the regions what lies within the margin of another label.
+void leave_borders_of(Plane<std::uint8_t>& labels, Plane<std::uint8_t>& region) {
+  const cv::Mat of(labels.height(), labels.width(), CV_8U, labels.row(0));
+  const cv::Mat window = cv::Mat::ones(2 * kRegionMargin_px + 1, 2 * kRegionMargin_px + 1, CV_8U);
+  cv::Mat least;
+  cv::Mat most;
+  cv::erode(of, least, window);
+  cv::dilate(of, most, window);
+  for (int y = 0; y < region.height(); ++y) {
+    for (int x = 0; x < region.width(); ++x) {
+      const bool alone = least.at<std::uint8_t>(y, x) == most.at<std::uint8_t>(y, x);
+      if (!alone || labels.at(x, y) == kWall) region.at(x, y) = static_cast<std::uint8_t>(Region::kNone);
+    }
+  }
+}
+
+/// The contrast map, and what of the surface counts as poor in texture.
+void polish(const WorldParameters& world, Surface& surface) {
+  surface.contrast = make_contrast(world, surface.height_um.width(), surface.height_um.height());
+  std::ranges::transform(surface.contrast.pixels(), surface.poor.pixels().begin(),
+                         [](float share) { return static_cast<std::uint8_t>(share < kPoorShare ? 1 : 0); });
+  leave_borders_of(surface.poor, surface.region);
+  for (std::size_t i = 0; i < surface.poor.pixels().size(); ++i) {
+    if (surface.poor.pixels()[i] != 0) surface.region.pixels()[i] = static_cast<std::uint8_t>(Region::kPoor);
+  }
 }
 
 }  // namespace
@@ -152,6 +199,7 @@ Surface make_surface(const WorldParameters& world) {
   if (world.surface == SurfaceKind::kChapter) return chapter(world);
   if (world.surface == SurfaceKind::kLayered) return layered(world);
   Surface surface;
+  Plane<std::uint8_t> level;
   switch (world.surface) {
     case SurfaceKind::kTilted:
       surface = tilted(world);
@@ -161,15 +209,21 @@ Surface make_surface(const WorldParameters& world) {
       break;
     case SurfaceKind::kRough:
       surface = rough(world);
+      add_plane(world, surface);
       break;
     case SurfaceKind::kHeightMap:
       surface = from_file(world);
+      add_plane(world, surface);
       break;
-    case SurfaceKind::kChapter:
-    case SurfaceKind::kLayered:
-      break;
+    default:
+      surface = blank(world.width_px, world.height_px);
+      ArtefactSurface artefact = make_artefact(world);
+      surface.height_um = std::move(artefact.height_um);
+      level = std::move(artefact.level);
   }
   mark_surface(surface);
+  if (!level.empty()) leave_borders_of(level, surface.region);
+  polish(world, surface);
   return surface;
 }
 

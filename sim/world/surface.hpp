@@ -24,6 +24,7 @@ inline constexpr int kRegionMargin_px = 12;
 
 struct Surface {
   Plane<float> height_um;      ///< [height][width]
+  Plane<float> contrast;       ///< share of the texture's contrast, 0..1
   Plane<std::uint8_t> poor;    ///< 1 where there is hardly any texture, or none
   Plane<std::uint8_t> region;  ///< Region of each pixel
 };

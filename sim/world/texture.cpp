@@ -46,10 +46,9 @@ double sample_sd(const Plane<float>& plane) {
 
 }  // namespace
 
-Plane<float> make_texture(TextureKind kind, const Plane<std::uint8_t>& poor, double contrast, double poor_contrast,
-                          std::uint64_t seed) {
-  const int width = poor.width();
-  const int height = poor.height();
+Plane<float> make_texture(TextureKind kind, const Plane<float>& share, double contrast, std::uint64_t seed) {
+  const int width = share.width();
+  const int height = share.height();
   Plane<float> texture(width, height);
   std::mt19937_64 random(seed);
   std::normal_distribution<float> normal;
@@ -65,11 +64,17 @@ Plane<float> make_texture(TextureKind kind, const Plane<std::uint8_t>& poor, dou
   const auto scale = static_cast<float>(sd > 0 ? contrast / sd : 0.0);
   const auto limit = static_cast<float>(4.0 * contrast);
   for (std::size_t i = 0; i < texture.pixels().size(); ++i) {
-    float level = std::clamp(texture.pixels()[i] * scale, -limit, limit);
-    if (poor.pixels()[i] != 0) level *= static_cast<float>(poor_contrast);
-    texture.pixels()[i] = 128.0F + level;
+    texture.pixels()[i] = 128.0F + share.pixels()[i] * std::clamp(texture.pixels()[i] * scale, -limit, limit);
   }
   return texture;
+}
+
+Plane<float> make_texture(TextureKind kind, const Plane<std::uint8_t>& poor, double contrast, double poor_contrast,
+                          std::uint64_t seed) {
+  Plane<float> share(poor.width(), poor.height());
+  std::ranges::transform(poor.pixels(), share.pixels().begin(),
+                         [&](std::uint8_t is_poor) { return is_poor != 0 ? static_cast<float>(poor_contrast) : 1.0F; });
+  return make_texture(kind, share, contrast, seed);
 }
 
 }  // namespace fvd::sim

@@ -5,12 +5,15 @@
 
 #include "config/field_reader.hpp"
 #include "config/strict_json.hpp"
+#include "sim/world/artefact_config.hpp"
+#include "sim/world/artefact_surface.hpp"
 
 namespace fvd::sim {
 
 namespace {
 
-const std::vector<std::string> kSurfaces{"chapter", "tilted", "sphere", "rough", "height_map", "layered"};
+const std::vector<std::string> kSurfaces{"chapter", "tilted", "sphere",   "rough", "height_map", "layered",  "flat",
+                                         "groove",  "stairs", "sinusoid", "star",  "cross_grid", "letter_f", "edge"};
 const std::vector<std::string> kTextures{"granite", "fine", "white"};
 const std::vector<std::string> kFeedbacks{"motor_encoder", "linear_scale"};
 
@@ -23,10 +26,11 @@ void describe(WorldParameters& world, Fields& fields) {
   fields.integer("height_px", world.height_px, {16, 8192}, "sensor height");
   fields.number("tilt_x_um_per_px", world.tilt_x_um_per_px, {-10.0, 10.0}, "tilted: rise per pixel");
   fields.number("tilt_y_um_per_px", world.tilt_y_um_per_px, {-10.0, 10.0}, "tilted: rise per pixel");
-  fields.number("base_um", world.base_um, {-10000.0, 10000.0}, "height of the centre, the (far) plane, or the mean");
+  fields.number("base_um", world.base_um, {-10000.0, 10000.0},
+                "height of the centre, the (far) plane, the mean, or an artefact's 0");
   fields.number("radius_um", world.radius_um, positive(1e6), "sphere: radius");
   fields.number("cap_height_um", world.cap_height_um, positive(1e6), "sphere: apex above the plane");
-  fields.number("pixel_pitch_um", world.pixel_pitch_um, positive(1000.0), "sphere: lateral scale");
+  fields.number("pixel_pitch_um", world.pixel_pitch_um, positive(1000.0), "lateral scale of sphere and artefacts");
   fields.number("sq_um", world.sq_um, {0.0, 1000.0}, "rough: root mean square height");
   fields.number("correlation_px", world.correlation_px, positive(1000.0), "rough: smoothing");
   fields.text("height_map_file", file, 4096, "height_map: a GSF file");
@@ -46,6 +50,7 @@ void describe(WorldParameters& world, Fields& fields) {
   fields.integer("seed", world.seed, {0, INT64_MAX}, "of texture, surface and noise");
   world.surface = static_cast<SurfaceKind>(std::find(kSurfaces.begin(), kSurfaces.end(), surface) - kSurfaces.begin());
   world.height_map_file = file;
+  describe_artefact(world, fields);
 }
 
 void describe(AxisParameters& plant, Fields& fields) {
@@ -76,25 +81,35 @@ void describe(AxisParameters& plant, Fields& fields) {
 }
 
 template <typename Parameters>
-Parameters load(const std::filesystem::path& file) {
+Parameters read(const std::filesystem::path& file, Problems& problems) {
   Parameters parameters;
-  Problems problems;
   read_document(
       read_text_file(file), [&](Fields& fields) { describe(parameters, fields); }, problems);
-  throw_if_any(problems, ErrorCode::kBadConfig, file.string());
   return parameters;
 }
 
 }  // namespace
 
 WorldParameters load_world(const std::filesystem::path& file) {
-  auto world = load<WorldParameters>(file);
+  Problems problems;
+  auto world = read<WorldParameters>(file, problems);
+  if (problems.empty()) {  // else a refused value's default might not go with the others
+    for (const BadParameter& bad : bad_parameters(world)) problems.push_back({bad.pointer, bad.message});
+  }
+  throw_if_any(problems, ErrorCode::kBadConfig, file.string());
   if (world.surface == SurfaceKind::kHeightMap && world.height_map_file.is_relative()) {
     world.height_map_file = file.parent_path() / world.height_map_file;
   }
+  std::filesystem::path& picture = world.artefacts.contrast.picture_file;
+  if (!picture.empty() && picture.is_relative()) picture = file.parent_path() / picture;
   return world;
 }
 
-AxisParameters load_plant(const std::filesystem::path& file) { return load<AxisParameters>(file); }
+AxisParameters load_plant(const std::filesystem::path& file) {
+  Problems problems;
+  const auto plant = read<AxisParameters>(file, problems);
+  throw_if_any(problems, ErrorCode::kBadConfig, file.string());
+  return plant;
+}
 
 }  // namespace fvd::sim

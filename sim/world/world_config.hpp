@@ -9,8 +9,8 @@
 
 namespace fvd::sim {
 
-/// A height map's file name is relative to the world's file. Throws Error kBadConfig with every problem, kBadInput if
-/// the file cannot be read.
+/// File names of a height map and of a contrast picture are relative to the world's file. Throws Error kBadConfig with
+/// every problem, kBadInput if the file cannot be read.
 [[nodiscard]] WorldParameters load_world(const std::filesystem::path& file);
 [[nodiscard]] AxisParameters load_plant(const std::filesystem::path& file);
 

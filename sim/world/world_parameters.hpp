@@ -6,9 +6,29 @@
 #include <filesystem>
 #include <string>
 
+#include "sim/artefact/artefact_parameters.hpp"
+
 namespace fvd::sim {
 
-enum class SurfaceKind { kChapter, kTilted, kSphere, kRough, kHeightMap, kLayered };
+enum class SurfaceKind {
+  kChapter,
+  kTilted,
+  kSphere,
+  kRough,
+  kHeightMap,
+  kLayered,
+  kFlat,
+  kGroove,
+  kStairs,
+  kSinusoid,
+  kStar,
+  kCrossGrid,
+  kLetterF,
+  kEdge
+};
+
+/// The surfaces of sim/artefact.
+[[nodiscard]] constexpr bool is_artefact(SurfaceKind kind) { return kind >= SurfaceKind::kFlat; }
 
 enum class TextureKind {
   kGranite,  ///< grains of 0.6, 1.2, 3 and 8 pixels
@@ -30,13 +50,16 @@ struct WorldParameters {
   double tilt_x_um_per_px = 0.05;  ///< kTilted: rise per pixel
   double tilt_y_um_per_px = 0.0;
   double base_um = 50.0;         ///< kTilted: height of the centre; kSphere: of the plane it stands on; kRough: mean;
-                                 ///< kLayered: of the far plane
+                                 ///< kLayered: of the far plane; artefacts: their height 0 in the middle
   double radius_um = 1000.0;     ///< kSphere
   double cap_height_um = 80.0;   ///< kSphere: apex above the plane
-  double pixel_pitch_um = 1.0;   ///< lateral scale of the sphere
+  double pixel_pitch_um = 1.0;   ///< lateral scale of sphere and artefacts
   double sq_um = 3.0;            ///< kRough: root mean square height, exact
   double correlation_px = 12.0;  ///< kRough: standard deviation of the smoothing
   std::filesystem::path height_map_file;  ///< kHeightMap: GSF
+
+  Artefacts artefacts;  ///< of one, what `surface` names; tilt: not of kChapter, kTilted, kLayered; contrast: not of
+                        ///< kChapter, kLayered
 
   double layer_gap_um = 300.0;  ///< kLayered: from the far plane up to the near one
   double edge_radius_px = 0.0;  ///< kLayered: 0: the near plane is the left half; else a disc in the middle

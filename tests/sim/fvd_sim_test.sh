@@ -58,7 +58,7 @@ worlds=$(dirname "${BASH_SOURCE[0]}")/../../sim/worlds
 "$fvd_sim" render "$worlds/layered_equal.json" "$work/stack" --start-um 300 --step-um 30 --slices 3 --seed 4 --format pgm >"$work/log"
 grep -q '3 slices from 300 to 360 um' "$work/log" || fail "it does not say what it rendered"
 [ "$(tail -n 3 "$work/stack/z.txt" | tr '\n' ' ')" = "300 330 360 " ] || fail "z.txt"
-for file in slice_0000.pgm slice_0002.pgm truth/truth.gsf truth/regions.png; do
+for file in slice_0000.pgm slice_0002.pgm truth/truth.gsf truth/truth.json truth/regions.png; do
   [ -s "$work/stack/$file" ] || fail "no $file"
 done
 # refused STATUS WORD ARGUMENT...

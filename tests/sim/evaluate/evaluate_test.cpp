@@ -80,6 +80,19 @@ TEST(Evaluate, RefusesResultsThatAreNone) {
   EXPECT_THROW(evaluate({}, folder.path(), true, out), Error);
 }
 
+TEST(Evaluate, HasNoFiguresWhereAWorldHasNoInterior) {
+  const test::ScratchDir folder;
+  write_result(folder.path(), [](int, int) { return 0.0; });
+  WorldParameters world;
+  world.surface = SurfaceKind::kCrossGrid;
+  world.artefacts.cross_grid = {.pitch_x_um = 20.0, .pitch_y_um = 20.0, .line_width_um = 10.0};
+  std::ostringstream out;
+
+  evaluate(world, folder.path(), true, out);
+
+  EXPECT_NE(out.str().find("\"rms_um\":null,\"bias_um\":null"), std::string::npos) << out.str();
+}
+
 TEST(Truth, IsReadBackAsTheSurface) {
   const test::ScratchDir folder;
   write_truth({}, folder.path());
