@@ -211,7 +211,10 @@ class Pass {
     reconstruct(focus_, recipe_, data);
     data.times.finish_ms += milliseconds_since(finish_start);
   }
-  void further(ResultData& data) { reconstruct_further(focus_, recipe_, pool_, data); }
+  void further(ResultData& data) {
+    reconstruct_further(focus_, recipe_, pool_, data);
+    evaluate_as_asked(recipe_, pool_, data);
+  }
 
  private:
   const Recipe& recipe_;

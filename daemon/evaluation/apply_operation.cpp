@@ -45,11 +45,11 @@ OperationReport level(const EvaluationPlan& plan, const PlannedOperation& step, 
 }
 
 OperationReport form(const EvaluationPlan& plan, const PlannedOperation& step, HeightField& field) {
-  constexpr std::array kKinds{std::pair<std::string_view, FormKind>{"plane", FormKind::kPlane},
-                              {"polynomial", FormKind::kPolynomial},
-                              {"sphere", FormKind::kSphere},
-                              {"cylinder", FormKind::kCylinder},
-                              {"cone", FormKind::kCone}};
+  constexpr std::array<std::pair<std::string_view, FormKind>, 5> kKinds{{{"plane", FormKind::kPlane},
+                                                                         {"polynomial", FormKind::kPolynomial},
+                                                                         {"sphere", FormKind::kSphere},
+                                                                         {"cylinder", FormKind::kCylinder},
+                                                                         {"cone", FormKind::kCone}}};
   metrology::FormSettings settings;
   settings.degree = step.degree;
   for (const auto& [name, kind] : kKinds) {

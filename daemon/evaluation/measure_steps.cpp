@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/metrology/step/groove.hpp"
-#include "core/metrology/step/region_steps.hpp"
+#include "core/metrology/step/groove_step.hpp"
+#include "core/metrology/step/region_step.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
 #include "daemon/evaluation/value_names.hpp"

@@ -30,7 +30,6 @@ ordered_json report_json(const metrology::OperationReport& report) {
 }
 
 void note_filter(const PlannedOperation& step, SurfaceState& state) {
-  state.filters.push_back(step);
   if (step.side == "S") {
     state.s_nesting_um = std::max(state.s_nesting_um.value_or(0.0), step.nesting_um);
   } else {
@@ -80,7 +79,6 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
   made.field = source.field.clone();
   made.s_nesting_um = source.s_nesting_um;
   made.l_nesting_um = source.l_nesting_um;
-  made.filters = source.filters;
   made.uses_sigma = source.uses_sigma;
   made.warnings = source.warnings;
   ordered_json steps = ordered_json::parse(source.steps_json);

@@ -18,11 +18,10 @@ namespace fvd {
 /// A surface after its steps.
 struct SurfaceState {
   metrology::HeightField field;
-  std::string steps_json;                 ///< list of objects: each step with its settings, and what it did
-  std::optional<double> s_nesting_um;     ///< the longest S filter on the way from the measured surface
-  std::optional<double> l_nesting_um;     ///< the shortest L filter
-  std::vector<PlannedOperation> filters;  ///< on that way, in order
-  bool uses_sigma = false;                ///< a step on that way looked at the standard errors
+  std::string steps_json;              ///< list of objects: each step with its settings, and what it did
+  std::optional<double> s_nesting_um;  ///< the longest S filter on the way from the measured surface
+  std::optional<double> l_nesting_um;  ///< the shortest L filter
+  bool uses_sigma = false;             ///< a step on that way looked at the standard errors
   std::vector<EvaluationWarning> warnings;
   std::string refused;  ///< why the surface cannot be made; empty = it is there
 };

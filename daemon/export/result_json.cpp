@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/field_writer.hpp"
 #include "daemon/export/json_values.hpp"
 
 namespace fvd {
@@ -178,6 +179,13 @@ Json steps(const StepSummary& summary) {
           {"move_max_ms", ms(summary.move_max_ms)}};
 }
 
+/// With the resolution of the positions, which their uncertainty needs.
+Json steps(const Result& result) {
+  Json json = steps(result.steps);
+  if (result.encoder_resolution_um) json["encoder_resolution_um"] = *result.encoder_resolution_um;
+  return json;
+}
+
 Json stage(const Result::Stage& stage) {
   return {{"corrected", stage.corrected},
           {"reason", text_or_null(stage.reason)},
@@ -225,12 +233,16 @@ std::string result_json_text(const Result& result) {
   json["recipe"] = {{"id", text_or_null(result.recipe.id)}, {"sha256", text_or_null(result.recipe.sha256)}};
   json["verdict"] = result.verdict ? Json(verdict_name(*result.verdict)) : Json(nullptr);
   json["measurements"] = measurements(result.measurements);
+  if (result.evaluation) {
+    Evaluation evaluation = *result.evaluation;
+    json["evaluation"] = fields_to_json([&](Fields& fields) { describe(evaluation, fields); });
+  }
   json["warnings"] = warnings(result.warnings);
   json["values"] = values(result);
   json["focus"] = focus(result.focus);
   json["frames"] = frames(result.frames);
   json["slices"] = slices(result.slices);
-  json["steps"] = steps(result.steps);
+  json["steps"] = steps(result);
   json["stage_in_curves"] = stage(result.stage);
   json["times"] = times(result.times);
   json["provenance"] = provenance(result);

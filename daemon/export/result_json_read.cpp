@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/field_reader.hpp"
 #include "core/base/error.hpp"
 #include "core/focus/lateral_period.hpp"
 #include "daemon/export/json_values.hpp"
@@ -29,6 +30,7 @@ class Node {
     throw Error(ErrorCode::kBadInput, "result.json: " + (pointer_.empty() ? "/" : pointer_) + ": expected " + expected);
   }
 
+  [[nodiscard]] const Json& json() const { return *json_; }
   [[nodiscard]] bool has(const char* key) const { return json_->is_object() && json_->contains(key); }
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
 
@@ -103,7 +105,7 @@ class Node {
   std::string pointer_;
 };
 
-Verdict verdict(const Node& node) { return node.named(verdict_from_name, "pass, fail or invalid"); }
+Verdict verdict(const Node& node) { return node.named(verdict_from_name, "pass, fail, uncertain or invalid"); }
 PeakMethod peak(const Node& node) { return node.named(peak_method_from_name, "the name of a peak method"); }
 
 MeasuredValue measurement(const std::string& name, const Node& node) {
@@ -264,6 +266,17 @@ ResultFile file(const Node& node) {
   return file;
 }
 
+Evaluation evaluation(const Node& node) {
+  Evaluation evaluation;
+  Problems problems;
+  const nlohmann::json members = node.json();
+  FieldReader reader(members, problems, "/evaluation");
+  describe(evaluation, reader);
+  reader.finish();
+  if (!problems.empty()) throw Error(ErrorCode::kBadInput, to_text(problems, "result.json"));
+  return evaluation;
+}
+
 }  // namespace
 
 Result read_result_json(std::string_view text) {
@@ -294,6 +307,10 @@ Result read_result_json(std::string_view text) {
   result.frames = frames(root.at("frames"));
   result.slices = slices(root.at("slices"));
   result.steps = steps(root.at("steps"));
+  if (root.at("steps").has("encoder_resolution_um")) {
+    result.encoder_resolution_um = root.at("steps").at("encoder_resolution_um").number();
+  }
+  if (root.has("evaluation")) result.evaluation = evaluation(root.at("evaluation"));
   const Node stage = root.at("stage_in_curves");
   result.stage = {stage.at("corrected").boolean(), stage.at("reason").text_or_empty(),
                   stage.at("offsets_rms_um").number(), stage.at("offset_error_um").number()};

@@ -89,6 +89,7 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   result.source = describe(camera, stage);
   result.simulated = result.simulated || camera.simulated || stage.simulated;
   result.slices_planned = recipe.slices;
+  if (stage.feedback_resolution.value > 0.0) result.encoder_resolution_um = stage.feedback_resolution.value;
   result.scan_mode = recipe.mode;
   result.speed_um_per_s = recipe.mode == ScanMode::kContinuous ? recipe.speed_um_per_s : 0.0;
   const CameraSettings settings = deps.camera.configure(recipe.camera);
@@ -115,6 +116,7 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   reconstruct(stack, recipe, result);
   result.times.finish_ms = milliseconds_since(deps.clock, told);
   reconstruct_further(stack, recipe, deps.pool, result);
+  evaluate_as_asked(recipe, deps.pool, result);
 }
 
 }  // namespace fvd

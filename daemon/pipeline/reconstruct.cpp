@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "core/focus/fit/smooth_heights.hpp"
+#include "daemon/evaluation/evaluate_surface.hpp"
+#include "daemon/pipeline/evaluation_input.hpp"
 
 namespace fvd {
 
@@ -103,6 +105,11 @@ void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultD
        << " of the focus curve's width of " << data.map.curve_width_um << " um, which nothing had told before: bins of "
        << wanted << " slices would make less error; the next scan of the recipe has them, or say curve_width_um";
   data.warnings.push_back({"bins_unknown", text.str()});
+}
+
+void evaluate_as_asked(const Recipe& recipe, WorkerPool& pool, ResultData& data) {
+  if (recipe.evaluation.empty()) return;
+  data.evaluation = evaluate_surface(evaluated_surface(data), recipe.evaluation, evaluation_context(data), &pool);
 }
 
 void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data) {

@@ -11,6 +11,7 @@
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
 #include "core/scan/scan_plan.hpp"
+#include "daemon/evaluation/evaluation_plan.hpp"
 
 namespace fvd {
 
@@ -55,7 +56,8 @@ struct Recipe {
   double min_valid_fraction = 0.0;  ///< 0..1; fewer valid points fail the job
   /// Names of exporters whose files a result has beside result.json; nothing = all there are.
   std::optional<std::vector<std::string>> exports;
-  bool keep_slices = false;  ///< also keep the slices (PGM) and their z in the result's folder slices/
+  EvaluationPlan evaluation;  ///< what is measured on the heights; empty = nothing
+  bool keep_slices = false;   ///< also keep the slices (PGM) and their z in the result's folder slices/
 };
 
 /// Whether the bins follow from a width that the document does not tell.

@@ -11,6 +11,7 @@
 #include "config/field_reader.hpp"
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
+#include "daemon/evaluation/check_plan.hpp"
 #include "daemon/export/exporter_table.hpp"
 
 namespace fvd {
@@ -40,6 +41,16 @@ std::string names_of_single_files() {
   for (const Exporter& exporter : exporter_table()) {
     if (exporter.need == ExportNeed::kResult) names += (names.empty() ? "" : ", ") + std::string(exporter.name);
   }
+  return names;
+}
+
+/// The names of the measurements as the document has them: objects that were read have lost the order of their keys.
+std::vector<std::string> measurement_order(std::string_view json_text) {
+  const auto document = nlohmann::ordered_json::parse(json_text, nullptr, false, true);
+  const nlohmann::ordered_json::json_pointer place("/evaluation/measurements");
+  std::vector<std::string> names;
+  if (document.is_discarded() || !document.contains(place) || !document.at(place).is_object()) return names;
+  for (const auto& [name, measurement] : document.at(place).items()) names.push_back(name);
   return names;
 }
 
@@ -117,6 +128,8 @@ Recipe read_recipe(std::string_view json_text, const std::string& id, Problems& 
     reader.finish();
     recipe.format = format_1 ? 1 : 2;
     check_together(recipe, format_1 ? kFormat1Places : kFormat2Places, problems);
+    check_plan(recipe.evaluation, "/evaluation", problems);
+    recipe.evaluation.order = measurement_order(json_text);
     if (format_1) recipe.notes.emplace_back("has format 1, read as format 2; 'fvdctl recipe convert FILE' writes that");
   }
   // Frames wait for their position, and for those before them to be complete, while the camera goes on.

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "config/field_writer.hpp"
+#include "daemon/evaluation/evaluation_fields.hpp"
 #include "daemon/export/exporter_table.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 
@@ -201,6 +202,8 @@ void describe(Recipe& recipe, Fields& fields) {
     });
     describe_min_valid_fraction(recipe, in);
   });
+  fields.group("evaluation", "what is measured on the heights, and how it is judged",
+               [&](Fields& in) { describe(recipe.evaluation, in); });
   fields.optional("export", recipe.exports, [](Fields& in, std::vector<std::string>& names) {
     in.choices("export", names, exporter_names(), "files of a result beside result.json; absent = all");
   });

@@ -234,12 +234,15 @@ std::vector<Warning> warnings_of(const Result& result, const ResultData& data) {
   return warnings;
 }
 
-std::optional<Verdict> verdict_of(const std::vector<MeasuredValue>& measurements) {
+std::optional<Verdict> verdict_of(const Result& result) {
   std::vector<Verdict> verdicts;
-  for (const MeasuredValue& value : measurements) {
+  for (const MeasuredValue& value : result.measurements) {
     if (value.verdict) verdicts.push_back(*value.verdict);
   }
-  return joined_verdict(verdicts);
+  const std::optional<Verdict> of_map = joined_verdict(verdicts);
+  if (!result.evaluation || !result.evaluation->verdict) return of_map;
+  if (!of_map) return result.evaluation->verdict;
+  return worst_verdict(std::vector{*of_map, *result.evaluation->verdict});
 }
 
 }  // namespace
@@ -255,12 +258,14 @@ Result evaluate(const ResultData& data, const HeightSummary& summary) {
   result.frames = data.frames;
   result.slices = slices_of(data);
   result.steps = data.step_summary;
+  result.encoder_resolution_um = data.encoder_resolution_um;
   result.stage = {data.map.stage.applied, data.map.stage.reason, data.map.stage.rms_um,
                   data.map.stage.standard_error_um};
   result.times = data.times;
   result.provenance = {data.software_version, data.simulated, data.created, data.source};
   result.measurements = measurements_of(data, summary);
-  result.verdict = verdict_of(result.measurements);
+  result.evaluation = data.evaluation;
+  result.verdict = verdict_of(result);
   result.warnings = warnings_of(result, data);
   return result;
 }

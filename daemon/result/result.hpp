@@ -18,6 +18,7 @@
 #include "core/stage/stage_accuracy.hpp"
 #include "core/surface/statistics.hpp"
 #include "core/surface/verdict.hpp"
+#include "daemon/result/evaluation_result.hpp"
 
 namespace fvd {
 
@@ -171,6 +172,7 @@ struct Result {
   Recipe recipe;
   std::optional<Verdict> verdict;  ///< absent = nothing was judged; says nothing about how the job ended
   std::vector<MeasuredValue> measurements;
+  std::optional<Evaluation> evaluation;  ///< where the recipe asks for one
   std::vector<Warning> warnings;
   std::size_t points = 0;
   std::size_t valid_points = 0;
@@ -179,6 +181,7 @@ struct Result {
   FrameCounts frames;
   Slices slices;
   StepSummary steps;
+  std::optional<double> encoder_resolution_um;  ///< smallest step of the measured positions; absent = not known
   Stage stage;
   PhaseTimes times;
   Provenance provenance;

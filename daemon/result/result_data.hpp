@@ -18,6 +18,7 @@
 #include "core/scan/scan_plan.hpp"
 #include "core/stage/stage_accuracy.hpp"
 #include "core/stage/step_log.hpp"
+#include "daemon/result/evaluation_result.hpp"
 #include "daemon/result/result.hpp"
 
 namespace fvd {
@@ -55,15 +56,17 @@ struct ResultData {
   FrameCounts frames;
   StepLog steps;
   StepSummary step_summary;
-  std::vector<SuspectSlice> suspects;  ///< in the order of the scan
-  double flicker_percent = 0.0;        ///< see SliceJudge
-  std::optional<DriftFigures> drift;   ///< of the slices as they came
+  std::optional<double> encoder_resolution_um;  ///< smallest step of the measured positions; absent = not known
+  std::vector<SuspectSlice> suspects;           ///< in the order of the scan
+  double flicker_percent = 0.0;                 ///< see SliceJudge
+  std::optional<DriftFigures> drift;            ///< of the slices as they came
   DriftUndone drift_undone = DriftUndone::kNothing;
   double drift_undone_x_px_per_um = 0.0;  ///< kRecipe: what was undone
   double drift_undone_y_px_per_um = 0.0;
   HiddenBorder hidden_border;  ///< by undoing the drift
   PhaseTimes times;
-  std::vector<Warning> warnings;  ///< noted on the way; evaluation adds its own
+  std::optional<Evaluation> evaluation;  ///< where the recipe asks for one
+  std::vector<Warning> warnings;         ///< noted on the way; evaluation adds its own
 };
 
 }  // namespace fvd

@@ -1,0 +1,143 @@
+/// Areal texture.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/metrology/areal/evaluate_areal.hpp"
+#include "core/metrology/areal/height_weights.hpp"
+#include "core/metrology/uncertainty/monte_carlo.hpp"
+#include "daemon/evaluation/measure_kinds.hpp"
+#include "daemon/evaluation/noise_floor.hpp"
+#include "daemon/evaluation/plan_regions.hpp"
+#include "daemon/evaluation/value_names.hpp"
+#include "daemon/evaluation/value_uncertainty.hpp"
+
+namespace fvd {
+
+namespace {
+
+using metrology::ArealEvaluation;
+using metrology::ArealParameter;
+using metrology::HeightField;
+using metrology::Region;
+using nlohmann::ordered_json;
+
+constexpr int kGradientMargin_px = 3;
+constexpr std::uint64_t kSeed = 1;
+
+std::vector<ArealParameter> parameters_of(const PlannedMeasurement& planned) {
+  std::vector<ArealParameter> parameters;
+  for (const std::string& name : planned.parameters)
+    parameters.push_back(metrology::find_areal_parameter(name).value());
+  return parameters;
+}
+
+/// Parameters whose noise no derivative tells, and that a limit makes worth 200 draws.
+std::vector<ArealParameter> drawn_parameters(const MeasurementInput& input, const std::vector<ArealParameter>& all) {
+  std::vector<ArealParameter> drawn;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool limited = input.planned.limits.contains(areal_value_key(input.planned.parameters[i]));
+    const bool linear = all[i] <= ArealParameter::kSz;
+    if (limited && !linear) drawn.push_back(all[i]);
+  }
+  return drawn;
+}
+
+class ArealUncertainty {
+ public:
+  ArealUncertainty(const MeasurementInput& input, const Region& region, const metrology::ArealSettings& settings,
+                   const std::vector<ArealParameter>& all)
+      : input_(input), region_(region), drawn_(drawn_parameters(input, all)) {
+    if (drawn_.empty() || !input.surface.field.has_sigma()) return;
+    metrology::MonteCarloSettings monte_carlo;
+    monte_carlo.seed = kSeed;
+    monte_carlo.margin_px = kGradientMargin_px;
+    const auto values = [&](const HeightField& field, const Region& of) {
+      std::vector<std::optional<double>> made;
+      for (const auto& value : metrology::evaluate_areal(field, of, drawn_, settings).values) {
+        made.push_back(value.value);
+      }
+      return made;
+    };
+    draws_ = metrology::monte_carlo(input.surface.field, region, monte_carlo, values);
+  }
+
+  void add_to(ValueInput& value, ArealParameter parameter) const {
+    const HeightField& field = input_.surface.field;
+    if (const auto weights = metrology::height_weights(field, region_, parameter)) {
+      value.u_method = "linear";
+      add_noise(field.has_sigma() ? metrology::linear_noise(field, *weights) : std::nullopt, value.budget);
+      if (field.has_sigma()) add_slice_z(input_.context, input_.measured.field, *weights, value.budget);
+      return;
+    }
+    const auto place = std::find(drawn_.begin(), drawn_.end(), parameter);
+    if (!draws_ || place == drawn_.end()) return;
+    const auto& drawn = draws_->values[static_cast<std::size_t>(place - drawn_.begin())];
+    if (!drawn.u) return;
+    metrology::BudgetEntry entry;
+    entry.source = "noise";
+    entry.type = metrology::UncertaintyType::kA;
+    entry.u = *drawn.u;
+    entry.dof = drawn.draws - 1;
+    value.budget.entries.push_back(entry);
+    value.u_method = "monte_carlo";
+  }
+
+  [[nodiscard]] ordered_json json() const {
+    if (!draws_) return nullptr;
+    return {{"draws", draws_->draws}, {"seed", draws_->seed}};
+  }
+
+ private:
+  const MeasurementInput& input_;
+  const Region& region_;
+  std::vector<ArealParameter> drawn_;
+  std::optional<metrology::MonteCarlo> draws_;
+};
+
+}  // namespace
+
+EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
+  EvaluatedMeasurement made;
+  made.region = input.planned.region;
+  const HeightField& field = input.surface.field;
+  const Region region = region_points(input.plan, input.planned.region, field);
+  const NoiseFloor floor = noise_floor(field, region);
+  metrology::ArealSettings settings;
+  settings.noise_floor_um = floor.sq_um;
+  std::vector<ArealParameter> parameters = parameters_of(input.planned);
+  parameters.push_back(ArealParameter::kSq);
+  const ArealEvaluation found = metrology::evaluate_areal(field, region, parameters, settings);
+  parameters.pop_back();
+  made.points = static_cast<std::int64_t>(found.points);
+  made.valid_fraction = found.valid_fraction();
+  made.reason = too_few_valid(found.valid_fraction(), input.planned);
+  const std::optional<double> sq_um = found.values.back().value;
+  const bool below_noise = is_below_noise(sq_um, floor);
+  const ArealUncertainty uncertainty(input, region, settings, parameters);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string key = areal_value_key(input.planned.parameters[i]);
+    ValueInput value;
+    value.value = found.values[i].value;
+    value.reason = found.values[i].reason;
+    value.below_noise = below_noise;
+    if (value.value) uncertainty.add_to(value, parameters[i]);
+    EvaluatedValue judged = judged_value(value, key, input.planned, input.plan.decision);
+    if (found.values[i].tie) judged.warnings.push_back({"tie", "two candidates are equal; the first was taken"});
+    made.values[key] = std::move(judged);
+  }
+  made.not_evaluated = texture_not_evaluated(input);
+  if (below_noise) warn_below_noise(*sq_um, floor, made);
+  ordered_json details = texture_conditions(input, floor);
+  details["mean_um"] = found.mean_um;
+  details["monte_carlo"] = uncertainty.json();
+  made.details = details.dump();
+  return made;
+}
+
+}  // namespace fvd
