@@ -38,6 +38,9 @@ constexpr const char* kRecordedHeights = "z.txt";
 ZSource z_source(const ProcessArguments& arguments, const Recipe& recipe, const SliceList& slices) {
   if (!arguments.z_file.empty())
     return ZFile{arguments.z_file, *length_unit_from_name(arguments.z_unit.value_or("um"))};
+  if (arguments.recipe.empty() && arguments.z_start_um && !arguments.z_step_um) {
+    throw UsageError("--z-start-um says nothing without --z-step-um or --recipe");
+  }
   const bool named = !slices.z_um.empty() && !arguments.z_step_um && !arguments.z_start_um;
   if (arguments.recipe.empty() && !arguments.z_step_um && !named) {
     throw UsageError(
@@ -128,6 +131,7 @@ Overrides apply(const ProcessArguments& arguments, Recipe& recipe) {
 
 ProcessOptions options_of(const ProcessArguments& arguments) {
   if (arguments.z_step_um == 0.0) throw UsageError("--z-step-um must not be 0: slices at one z make no height map");
+  if (arguments.out.empty()) throw UsageError("--out is empty: it must name a directory to make");
   ProcessOptions options;
   options.source = arguments.source;
   options.out = arguments.out;
@@ -248,8 +252,8 @@ void add_z_options(CLI::App& command, ProcessArguments& a) {
 
 void add_choice_options(CLI::App& command, StackChoice& choice) {
   command.add_option("--pattern", choice.pattern,
-                     "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um} or {z_mm} z with sign and "
-                     "decimals, * any text; default: by the names themselves");
+                     "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um}, {z_mm} or {z_nm} z with "
+                     "sign and decimals, * any text; default: by the names themselves");
   command.add_option("--channel", choice.channel, "of the pages of a TIFF that has several, from 1")
       ->check(CLI::PositiveNumber);
   command.add_option("--time", choice.time, "of the pages of a TIFF that has several times, from 1")

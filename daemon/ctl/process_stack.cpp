@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/focus/fit/smooth_heights.hpp"
 #include "core/focus/judge/slice_gate.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/runtime/worker_pool.hpp"
@@ -42,11 +43,15 @@ void check_options(const ProcessOptions& options) {
     throw Error(ErrorCode::kBadInput,
                 "a pixel pitch of " + std::to_string(pitch_um) + " um: it must be finite and above 0");
   }
+  const auto& smooth_px = options.recipe.smooth_px;
+  if (smooth_px && !(*smooth_px >= kMinSmoothPx && *smooth_px <= kMaxSmoothPx)) {
+    throw Error(ErrorCode::kBadInput, "smoothing over " + std::to_string(*smooth_px) + " px: must be within 1..16 px");
+  }
   const std::filesystem::path parent = named_path(options.out).parent_path();
   if (!std::filesystem::is_directory(parent)) {
     throw Error(ErrorCode::kStorageWrite, "there is no folder " + parent.string() + " to make the result in");
   }
-  if (std::filesystem::exists(options.out)) {
+  if (std::filesystem::exists(std::filesystem::symlink_status(options.out))) {  // a link to nothing, too
     throw Error(ErrorCode::kStorageWrite, options.out.string() + " exists already: give another name, or move it away");
   }
 }

@@ -60,6 +60,10 @@ Evidence look_at(const std::filesystem::path& source, const StackChoice& choice)
     throw Error(ErrorCode::kBadInput, "there is no file or folder " + source.string());
   }
   if (std::filesystem::is_directory(source) || tiff_content(source).size() > 1) return look_at_stack(source, choice);
+  if (!choice.pattern.empty() || choice.channel || choice.time) {
+    throw Error(ErrorCode::kBadInput, source.string() + " is one image: --pattern, --channel and --time choose among " +
+                                          "the files or pages of a stack");
+  }
   SliceImage slice;
   read_slice({source, std::nullopt}, slice);
   return {suggest_focus(slice.view()), std::nullopt};

@@ -13,6 +13,9 @@ namespace fvd {
 
 namespace {
 
+/// The field of --pattern for z in a unit.
+std::string z_field(double unit_um) { return unit_um == 1e3 ? "{z_mm}" : unit_um == 1e-3 ? "{z_nm}" : "{z_um}"; }
+
 bool is_zero(const NameNumber& number) { return compare(number, {'\0', "0", ""}) == 0; }
 
 /// Names are rounded to their last digit.
@@ -116,7 +119,8 @@ void NameColumns::ask(const std::string& why, const std::vector<std::size_t>& co
   std::vector<std::string> patterns;
   std::vector<std::string> all;
   for (const std::size_t column : columns) {
-    const std::string field = unit_um(column) ? "{z_um}" : "{n}";
+    const std::optional<double> unit = unit_um(column);
+    const std::string field = unit ? z_field(*unit) : "{n}";
     all.push_back(pattern({column}, field));
     if (rows_beside_first(column) >= kLeastSlices) {
       patterns.push_back(all.back());
@@ -144,7 +148,7 @@ void NameColumns::resolve_sign(std::size_t column) {
   const auto unit = leading_unit_um(fields_.front().texts[column + 1]);
   const bool means_z = unit || after_letter(column, 'z');
   if (constant || zero || !means_z || (padded && !unit)) return separate_sign(column);
-  const std::string field = unit == 1e3 ? "{z_mm}" : "{z_um}";
+  const std::string field = z_field(unit.value_or(1.0));
   const std::string as_sign = pattern({column}, field);
   separate_sign(column);
   ask_for_pattern("the '-' before the number of all names, such as " + names_.front() +

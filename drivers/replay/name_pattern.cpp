@@ -49,12 +49,12 @@ NamePattern::NamePattern(std::string text) : text_(std::move(text)) {
     } else if (c == '{') {
       const std::size_t end = pattern.find('}', at);
       const std::string field = end == std::string::npos ? "" : pattern.substr(at + 1, end - at - 1);
-      const bool is_z = field == "z_um" || field == "z_mm";
-      if (!is_z && field != "n") refuse(text_, "a field is one of {n}, {z_um}, {z_mm}");
+      const bool is_z = field == "z_um" || field == "z_mm" || field == "z_nm";
+      if (!is_z && field != "n") refuse(text_, "a field is one of {n}, {z_um}, {z_mm}, {z_nm}");
       std::size_t& group = is_z ? z_group_ : count_group_;
       if (group != 0) refuse(text_, is_z ? "z stands in it twice" : "{n} stands in it twice");
       group = ++groups;
-      if (is_z) z_unit_um_ = field == "z_mm" ? 1e3 : 1.0;
+      if (is_z) z_unit_um_ = field == "z_mm" ? 1e3 : field == "z_nm" ? 1e-3 : 1.0;
       expression_ += is_z ? "([-+]?[0-9]+(?:[.,][0-9]+)?)" : "([0-9]+)";
       at = end;
     } else {
@@ -62,7 +62,8 @@ NamePattern::NamePattern(std::string text) : text_(std::move(text)) {
       expression_ += c;
     }
   }
-  if (groups == 0) refuse(text_, "it needs {n}, {z_um} or {z_mm} in the place of the number that gives the order");
+  if (groups == 0)
+    refuse(text_, "it needs {n}, {z_um}, {z_mm} or {z_nm} in the place of the number that gives the order");
 }
 
 bool NamePattern::matches(const std::string& name) const {

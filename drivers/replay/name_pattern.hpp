@@ -10,8 +10,8 @@
 
 namespace fvd {
 
-/// A pattern of whole file names. {n}: a count, digits. {z_um}, {z_mm}: z, a decimal number with a sign or without.
-/// `*`: any text. All other characters stand for themselves, the extension in either case.
+/// A pattern of whole file names. {n}: a count, digits. {z_um}, {z_mm}, {z_nm}: z, a decimal number with a sign or
+/// without. `*`: any text. All other characters stand for themselves, the extension in either case.
 class NamePattern {
  public:
   /// Throws Error kBadInput for a pattern without {n} or z, with a field twice, with an unknown field or a folder.

@@ -1,6 +1,7 @@
 #include "core/focus/judge/suspect_slice.hpp"
 
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "core/base/error.hpp"
@@ -39,17 +40,27 @@ Words words(SuspectReason reason) noexcept {
   return {};
 }
 
+/// Two figures, without an exponent.
+std::string rounded(double value) {
+  std::ostringstream text;
+  if (std::abs(value) >= 10.0) {
+    text << std::lround(value);
+  } else {
+    text << std::setprecision(2) << std::round(100.0 * value) / 100.0;
+  }
+  return text.str();
+}
+
 /// What the figure says to people; empty where it says them nothing.
 std::string figure_words(const SuspectSlice& slice) {
   std::ostringstream text;
-  text.precision(2);
-  const double percent = 100.0 * slice.figure;
+  const std::string percent = rounded(100.0 * std::abs(slice.figure));
   switch (slice.reason) {
     case SuspectReason::kDark:
       text << "its brightness is " << percent << " % of its neighbours', or of full scale where it has none";
       break;
     case SuspectReason::kBrighter:
-      text << "its brightness is " << slice.figure << " times its neighbours'";
+      text << "its brightness is " << rounded(slice.figure) << " times its neighbours'";
       break;
     case SuspectReason::kConstant:
       text << "the level is " << percent << " % of full scale";
@@ -66,7 +77,8 @@ std::string figure_words(const SuspectSlice& slice) {
       text << "it changed by " << percent << " % of what slices change by there";
       break;
     case SuspectReason::kVibration:  // a logarithm of sharpness, which is a square of differences
-      text << "its fine detail differs from its neighbours' by a factor of " << std::exp(0.5 * std::abs(slice.figure));
+      text << "its fine detail differs from its neighbours' by a factor of "
+           << rounded(std::exp(0.5 * std::abs(slice.figure)));
       break;
   }
   return text.str();

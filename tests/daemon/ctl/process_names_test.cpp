@@ -103,6 +103,12 @@ TEST_F(SlicesOfAPlane, NeedTheUnitOfZInNamesOrPattern) {
   expect_height_um(20);
 }
 
+TEST_F(SlicesOfAPlane, AreNotMovedByAStartAlone) {
+  write(names("z#um.png", -20, 10));
+  EXPECT_EQ(run({"--z-start-um", "5"}), kExitUsage);
+  EXPECT_THAT(err_, HasSubstr("--z-start-um says nothing without --z-step-um or --recipe"));
+}
+
 TEST_F(SlicesOfAPlane, MayBeCountedOverTheEndOfTheCounter) {
   Names rolling = names("DSC_#.png", 9995, 1);
   for (int i = 5; i < kSlices; ++i) rolling[static_cast<std::size_t>(i)] = "DSC_000" + std::to_string(i - 4) + ".png";

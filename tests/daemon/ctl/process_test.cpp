@@ -286,7 +286,17 @@ TEST(Process, RefusesWhatItWouldOnlyFindOutLater) {
   EXPECT_EQ(twice.code, kExitUsage);
   EXPECT_THAT(twice.err, HasSubstr("--extra-peak parabola is the peak of height.tiff already"));
   EXPECT_EQ(process({scratch / "in", "--z-step-um", "1e-9", "--out", scratch / "out"}).code, kExitBadData);
+  const test::Outcome unnamed = with({"--out", ""});
+  EXPECT_EQ(unnamed.code, kExitUsage);
+  EXPECT_THAT(unnamed.err, HasSubstr("--out is empty"));
   EXPECT_THAT(scratch.entries(), testing::ElementsAre("in"));
+  const test::Outcome unsmooth = with({"--out", scratch / "out", "--smooth", "nan"});
+  EXPECT_EQ(unsmooth.code, kExitBadData);
+  EXPECT_THAT(unsmooth.err, ::testing::StartsWith("fvdctl: smoothing over nan px")) << "before the first one is read";
+  fs::create_symlink("nothing", scratch / "link");
+  const test::Outcome link = with({"--out", scratch / "link"});
+  EXPECT_EQ(link.code, kExitIo);
+  EXPECT_THAT(link.err, ::testing::StartsWith("fvdctl: " + (scratch / "link").string() + " exists already"));
 }
 
 }  // namespace

@@ -36,6 +36,9 @@ TEST(Suggest, PrintsSettingsForARecipeAndRefusesWhatItCannotRead) {
   const Outcome bad = suggest((scratch / "in/s9.png").string());
   EXPECT_NE(bad.code, kExitOk);
   EXPECT_THAT(bad.err, HasSubstr("there is no file or folder " + (scratch / "in/s9.png").string()));
+  const Outcome chosen = test::run_command({"suggest", scratch / "in/s2.png", "--channel", "2"});
+  EXPECT_EQ(chosen.code, kExitBadData);
+  EXPECT_THAT(chosen.err, HasSubstr("s2.png is one image"));
 }
 
 TEST(Suggest, LooksAtAWholeStack) {

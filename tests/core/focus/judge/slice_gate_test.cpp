@@ -23,6 +23,7 @@ using test::Judged;
 using test::Scene;
 using test::SceneSettings;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 struct Kind {
@@ -316,6 +317,20 @@ TEST(SliceGate, RefusesOneSuspectMoreThanIsAllowedAndNamesIt) {
   EXPECT_EQ(judge_scene(scene, 2).suspects.size(), 2U);
   test::expect_error(ErrorCode::kBadSlice, {"slice 9 at 90 um", "same grey level", "allowed_lost_slices"},
                      [&] { (void)judge_scene(scene, 1); });
+}
+
+TEST(SliceGate, TellsFiguresOfASuspectAsPeopleWriteThem) {
+  const auto text = [](SuspectReason reason, double figure) {
+    SuspectSlice slice;
+    slice.reason = reason;
+    slice.figure = figure;
+    return suspect_text(slice);
+  };
+  EXPECT_THAT(text(SuspectReason::kConstant, 1.0), HasSubstr("the level is 100 % of full scale"));
+  EXPECT_THAT(text(SuspectReason::kBrighter, 250.0), HasSubstr("is 250 times its neighbours'"));
+  EXPECT_THAT(text(SuspectReason::kBrighter, 2.64), HasSubstr("is 2.6 times its neighbours'"));
+  EXPECT_THAT(text(SuspectReason::kStandstill, -0.012), HasSubstr("changed by 1.2 % of"));
+  EXPECT_THAT(text(SuspectReason::kStandstill, 1e-7), HasSubstr("changed by 0 % of"));
 }
 
 TEST(SliceGate, HoldsNoMoreThanItSays) {
