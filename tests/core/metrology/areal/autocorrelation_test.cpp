@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "areal_surfaces.hpp"
+#include "core/metrology/areal/texture_direction.hpp"
 
 namespace fvd::metrology::testing {
 namespace {
@@ -169,16 +170,26 @@ TEST(AutocorrelationLengths, TellTheDirectionAsItIsSeen) {
 }
 
 TEST(TextureDirection, IsThatOfTheLayAsItIsSeen) {
-  for (const double deg : {0.3, 17.0, 45.0, 90.0, 123.4, 178.0}) {
-    // Along the lay x grows and y falls, for y goes down.
-    const double across_x = std::sin(deg * kPi / 180.0);
-    const double across_y = std::cos(deg * kPi / 180.0);
-    const HeightField field = make_field(300, 260, 0.8, 1.1, [&](double x, double y) {
-      return x > 100.0 && x < 110.0 ? kHole : std::sin((across_x * x + across_y * y) / 2.5);
-    });
+  for (const double wavelength_um : {4.0, 16.0}) {
+    for (const double deg : {0.3, 17.0, 45.0, 90.0, 123.4, 178.0}) {
+      // Along the lay x grows and y falls, for y goes down.
+      const double across_x = std::sin(deg * kPi / 180.0);
+      const double across_y = std::cos(deg * kPi / 180.0);
+      const HeightField field = make_field(300, 260, 0.8, 1.1, [&](double x, double y) {
+        return std::sin(2.0 * kPi * (across_x * x + across_y * y) / wavelength_um);
+      });
 
-    EXPECT_NEAR(AllValues(field).number(kStd), deg, 0.1) << deg;
+      EXPECT_NEAR(texture_direction_deg(cut_region(field, {})).value.value_or(kHole), deg, 0.02) << deg;
+    }
   }
+}
+
+TEST(TextureDirection, BearsHoles) {
+  const HeightField field = make_field(300, 260, 0.8, 1.1, [&](double x, double y) {
+    return x > 100.0 && x < 110.0 ? kHole : std::sin(0.4 * x + 0.3 * y);
+  });
+
+  EXPECT_NEAR(AllValues(field).number(kStd), 180.0 / kPi * std::atan2(0.4, 0.3), 0.3);
 }
 
 TEST(TextureDirection, SaysThatTwoDirectionsTie) {
