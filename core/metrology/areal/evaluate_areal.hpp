@@ -14,11 +14,12 @@ namespace fvd::metrology {
 
 /// Ratios are shares of the valid points, 0 to 100 %. The defaults are those of ISO 25178-3 and of the definitions.
 struct ArealSettings {
-  std::optional<double> noise_floor_um;  ///< >= 0; Ssk and Sku are not given where Sq is below it
-  double acf_threshold = 0.2;            ///< above 0, below 1; for Sal and Str
-  std::optional<double> smr_height_um;   ///< the height of Smr, about the mean; Smr is not given without it
-  double smc_ratio_percent = 10.0;       ///< the ratio of Smc
-  double sxp_upper_percent = 2.5;        ///< Sxp = Smc(upper) - Smc(lower)
+  std::optional<double> noise_floor_um = std::nullopt;  ///< >= 0; Ssk and Sku are not given where Sq is below it
+  double acf_threshold = 0.2;                           ///< above 0, below 1; for Sal and Str
+  std::optional<double> smr_height_um =
+      std::nullopt;                 ///< the height of Smr, about the mean; Smr is not given without it
+  double smc_ratio_percent = 10.0;  ///< the ratio of Smc
+  double sxp_upper_percent = 2.5;   ///< Sxp = Smc(upper) - Smc(lower)
   double sxp_lower_percent = 50.0;
   double volume_peak_percent = 10.0;   ///< where peaks end and the core begins: Vmp, Vmc, Vvc
   double volume_pit_percent = 80.0;    ///< where the core ends and pits begin: Vmc, Vvc, Vvv
