@@ -9,6 +9,7 @@
 
 #include "core/metrology/operations/chosen_points.hpp"
 #include "core/metrology/operations/plane_sums.hpp"
+#include "core/metrology/operations/plane_values.hpp"
 #include "core/metrology/operations/robust_plane.hpp"
 
 namespace fvd::metrology {
@@ -65,35 +66,6 @@ std::size_t drop_without_sigma(ChosenPoints& points) {
   return dropped;
 }
 
-/// From normal coordinates to offset at (0, 0) and slopes, with their standard errors.
-void add_plane(OperationReport& report, const ChosenPoints& points, const Fit& fit, double kernel_width_px) {
-  Eigen::Matrix3d to_um = Eigen::Matrix3d::Zero();
-  to_um(0, 0) = 1.0;
-  to_um(0, 1) = -points.centre_x_um / points.half_x_um;
-  to_um(0, 2) = -points.centre_y_um / points.half_y_um;
-  to_um(1, 1) = 1.0 / points.half_x_um;
-  to_um(2, 2) = 1.0 / points.half_y_um;
-  const Eigen::Vector3d values = to_um * fit.plane;
-  const Eigen::Matrix3d covariance = to_um * fit.covariance * to_um.transpose();
-  const char* names[] = {"offset_um", "slope_x", "slope_y"};
-  for (int i = 0; i < 3; ++i) {
-    report.values.push_back({names[i], values[i], std::sqrt(std::max(covariance(i, i), 0.0)) * kernel_width_px});
-  }
-}
-
-void subtract(HeightField& field, const ChosenPoints& points, const Eigen::Vector3d& plane, WorkerPool* pool) {
-  run_bands(pool, field.height(), [&](int, int first, int end) {
-    for (int row = first; row < end; ++row) {
-      const double base = plane[0] + plane[2] * ((field.y_um(row) - points.centre_y_um) / points.half_y_um);
-      const double slope = plane[1] / points.half_x_um;
-      double* z = field.z_um.row(row);
-      for (int column = 0; column < field.width(); ++column) {
-        z[column] -= base + slope * (field.x_um(column) - points.centre_x_um);
-      }
-    }
-  });
-}
-
 std::optional<Fit> fit_robust(const ChosenPoints& points, OperationReport& report, WorkerPool* pool) {
   const std::optional<RobustPlane> robust = fit_robust_plane(points, pool);
   if (!robust) return std::nullopt;
@@ -129,10 +101,8 @@ OperationReport level(HeightField& field, LevelMethod method, const Region& regi
                                            : fit_least_squares(points, pool);
   }
   if (!fit) return refusal("a plane needs three points of the region that do not lie on one line");
-  OperationReport details;
-  add_plane(details, points, *fit, field.kernel.width_px());
-  report.values.insert(report.values.begin(), details.values.begin(), details.values.end());
-  subtract(field, points, fit->plane, pool);
+  put_plane_first(report, points, fit->plane, fit->covariance, field.kernel.width_px());
+  subtract_plane(field, points, fit->plane, pool);
   return report;
 }
 
