@@ -21,13 +21,13 @@ struct FormSettings {
 ///
 /// Values, x y z in um from the outer corner of pixel (0, 0) and zero height, angles in degrees:
 /// plane       offset_um, slope_x, slope_y
-/// polynomial  c_pq_um for all p, q: z = sum of c_pq X^p Y^q, X and Y from -1 to 1 over the width and height of the
-///             field, x and y right and down
+/// polynomial  c_pq_um for all p, q: z = sum of c_pq X^p Y^q, X and Y from -1 to 1 over the smallest block of
+///             pixels that holds the points used: X = (x - centre_x_um) / half_x_um, Y alike, which are given as well
 /// sphere      radius_um, centre_x_um, centre_y_um, centre_z_um, side (1: the surface is the upper side, a bump; -1: a
 ///             bowl)
 /// cylinder    radius_um, axis_x_um, axis_y_um, axis_z_um (the axis' point nearest to the middle of the points),
-///             azimuth_deg (of the axis in the image, -90 < a <= 90, from x towards y), elevation_deg (of the axis from
-///             the image's plane, positive where z rises along the azimuth), side
+///             azimuth_deg (of the axis in the image, -90 < a <= 90, from x towards y; absent of an upright axis),
+///             elevation_deg (of the axis from the image's plane, positive where z rises along the azimuth), side
 /// cone        as cylinder, radius_um at that point, and taper_deg: half of the opening angle, positive where the
 ///             radius grows along the axis in the direction of azimuth and elevation; apex_x_um, apex_y_um, apex_z_um
 ///             where |taper_deg| > 0.001

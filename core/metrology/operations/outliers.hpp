@@ -20,7 +20,8 @@ struct OutlierSettings {
 /// was. Own definition; 1.4826 makes of the MAD of a normal distribution its standard deviation.
 ///
 /// Decides nothing: a window with under half of its points valid, and one whose MAD and sigma are both 0 (over half of
-/// its heights are the same number, so that it has no scale); values `undecided_few_valid`, `undecided_no_scale`.
+/// its heights are the same number, so that it has no scale). Values: window_px, limit, undecided_few_valid,
+/// undecided_no_scale (points that differ from the median of such a window; with a warning).
 /// Throws Error(kBadRecipe) on settings out of range. pool: shares out rows where given; the result is the same with
 /// any number of threads. context: pure.
 [[nodiscard]] OperationReport remove_outliers(HeightField& field, const OutlierSettings& settings,

@@ -1,0 +1,51 @@
+#include "core/metrology/operations/masking.hpp"
+
+#include <cassert>
+#include <limits>
+
+namespace fvd::metrology {
+
+void make_hole(HeightField& field, int column, int row, Plane<MaskReasons>* reasons, MaskReasons reason) {
+  field.z_um.at(column, row) = std::numeric_limits<double>::quiet_NaN();
+  if (field.has_sigma()) field.sigma_um.at(column, row) = std::numeric_limits<float>::quiet_NaN();
+  if (reasons == nullptr) return;
+  MaskReasons& bits = reasons->at(column, row);
+  bits = static_cast<MaskReasons>(bits | reason);
+}
+
+OperationReport mask_sigma(HeightField& field, double max_sigma_um, Plane<MaskReasons>* reasons) {
+  assert(max_sigma_um > 0.0);
+  if (!field.has_sigma()) return refusal("the surface has no standard errors");
+  OperationReport report;
+  report.values = {{"max_sigma_um", max_sigma_um, std::nullopt}};
+  for (int row = 0; row < field.height(); ++row) {
+    for (int column = 0; column < field.width(); ++column) {
+      if (field.is_hole(column, row)) continue;
+      ++report.points_used;
+      if (static_cast<double>(field.sigma_um.at(column, row)) <= max_sigma_um) continue;
+      make_hole(field, column, row, reasons, mask_reason::kMaxSigma);
+      ++report.points_removed;
+    }
+  }
+  return report;
+}
+
+OperationReport mask_reasons(HeightField& field, const Plane<MaskReasons>& reasons, MaskReasons bits) {
+  if (reasons.width() != field.width() || reasons.height() != field.height()) {
+    return refusal("the reasons of the points have another size than the surface");
+  }
+  OperationReport report;
+  report.values = {{"reason_bits", static_cast<double>(bits), std::nullopt}};
+  for (int row = 0; row < field.height(); ++row) {
+    for (int column = 0; column < field.width(); ++column) {
+      if (field.is_hole(column, row)) continue;
+      ++report.points_used;
+      if ((reasons.at(column, row) & bits) == 0) continue;
+      make_hole(field, column, row, nullptr, 0);
+      ++report.points_removed;
+    }
+  }
+  return report;
+}
+
+}  // namespace fvd::metrology
