@@ -1,0 +1,59 @@
+#pragma once
+
+/// Triangles between the valid points of a surface.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "daemon/export/surface_view.hpp"
+
+namespace fvd {
+
+struct MeshPoint {
+  int x = 0;
+  int y = 0;
+};
+
+/// Corners, counter-clockwise as seen from the camera where y points up.
+using MeshTriangle = std::array<MeshPoint, 3>;
+
+/// Calls use(triangle) for all triangles, cell by cell: two where all four points of the cell are valid, one where
+/// three are, else none.
+template <typename Use>
+void for_each_triangle(const PlaneView<const float>& height_m, const Use& use) {
+  const auto valid = [&height_m](const MeshPoint& point) { return !std::isnan(height_m.at(point.x, point.y)); };
+  for (int y = 0; y + 1 < height_m.height; ++y) {
+    for (int x = 0; x + 1 < height_m.width; ++x) {
+      const MeshPoint a{x, y};
+      const MeshPoint b{x + 1, y};
+      const MeshPoint c{x, y + 1};
+      const MeshPoint d{x + 1, y + 1};
+      const int holes = (valid(a) ? 0 : 1) + (valid(b) ? 0 : 1) + (valid(c) ? 0 : 1) + (valid(d) ? 0 : 1);
+      if (holes > 1) continue;
+      if (!valid(b)) {
+        use(MeshTriangle{a, c, d});
+      } else if (!valid(c)) {
+        use(MeshTriangle{a, d, b});
+      } else {
+        if (valid(a)) use(MeshTriangle{a, c, b});
+        if (valid(d)) use(MeshTriangle{b, c, d});
+      }
+    }
+  }
+}
+
+/// The place of a point in mm: x right, y up from the lower border, z towards the camera; points stand in the middle of
+/// their pixels.
+[[nodiscard]] inline std::array<float, 3> mesh_place_mm(const SurfaceView& surface, const MeshPoint& point) {
+  constexpr double kMillimetresPerMicrometre = 1e-3;
+  constexpr double kMillimetresPerMetre = 1e3;
+  constexpr double kMiddle = 0.5;
+  const PlaneView<const float>& height_m = surface.height_m;
+  const double x_um = (point.x + kMiddle) * surface.pitch_x_um.value();
+  const double y_um = (height_m.height - kMiddle - point.y) * surface.pitch_y_um.value();
+  return {static_cast<float>(x_um * kMillimetresPerMicrometre), static_cast<float>(y_um * kMillimetresPerMicrometre),
+          static_cast<float>(static_cast<double>(height_m.at(point.x, point.y)) * kMillimetresPerMetre)};
+}
+
+}  // namespace fvd
