@@ -51,7 +51,21 @@ void check_shape(const fs::path& path, int width, int height, const Surface& sur
              std::to_string(surface.width()) + " x " + std::to_string(surface.height()));
 }
 
+/// Looked at first: the decoder takes memory for whatever size the head tells.
+void check_png_size(const fs::path& path, const Surface& surface) {
+  constexpr std::size_t kPlace = 16;  // of width and height, big-endian, behind signature and chunk head
+  const std::string head = FileBytes(path).text(kPlace, 8);
+  if (head.size() < 8) refuse(path, byte_place(kPlace), "the file ends");
+  const auto side = [&head](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8U | static_cast<unsigned char>(head[i]);
+    return static_cast<int>(std::min(value, 0x7FFFFFFFU));
+  };
+  check_shape(path, side(0), side(4), surface);
+}
+
 Plane<MaskReasons> mask_of(const fs::path& path, const Surface& surface) {
+  check_png_size(path, surface);
   ImageFile image;
   try {
     read_png(path, image);
@@ -69,7 +83,9 @@ Plane<MaskReasons> mask_of(const fs::path& path, const Surface& surface) {
 }  // namespace
 
 ResultSurface read_result_surface(const fs::path& folder, const SurfaceReadOptions& options) {
-  ResultSurface read{{}, result_of(folder)};
+  // Not in braces: g++ 12 frees a member twice if the next one's initialiser throws.
+  ResultSurface read;
+  read.result = result_of(folder);
   const Result::Focus& focus = read.result.focus;
   const fs::path json = folder / "result.json";
   SurfaceReadOptions pitch;
