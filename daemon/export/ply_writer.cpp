@@ -64,12 +64,13 @@ void write_ply(const SurfaceView& surface, const ByteSink& sink) {
   Counts counts;
   const Plane<std::int32_t> numbers = number_points(height_m, counts);
   for_each_triangle(height_m, [&counts](const MeshTriangle&) { ++counts.triangles; });
+  const MeshPlaces place_mm(surface);
   BinaryText file(sink);
   file.add_text(header_of(surface, counts));
   for (int y = 0; y < height_m.height; ++y) {
     for (int x = 0; x < height_m.width; ++x) {
       if (numbers.at(x, y) < 0) continue;
-      for (const float value : mesh_place_mm(surface, {x, y})) file.add(value);
+      for (const float value : place_mm({x, y})) file.add(value);
       if (has_colour(surface)) add_colour(surface, {x, y}, file);
       if (surface.sigma_m.data != nullptr) file.add(surface.sigma_m.at(x, y) * 1e3F);
     }

@@ -37,12 +37,13 @@ void write_stl(const SurfaceView& surface, const ByteSink& sink) {
   }
   std::string header = "fvd surface; unit mm; x right, y up, z towards the camera; " + one_line(surface.origin.title);
   header.resize(kHeader_bytes, ' ');
+  const MeshPlaces place_mm(surface);
   BinaryText file(sink);
   file.add_text(header);
   file.add(static_cast<std::uint32_t>(triangles));
   for_each_triangle(surface.height_m, [&](const MeshTriangle& triangle) {
     std::array<std::array<float, 3>, 3> corners{};
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh_place_mm(surface, triangle[i]);
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = place_mm(triangle[i]);
     for (const float value : normal_of(corners)) file.add(value);
     for (const auto& corner : corners) {
       for (const float value : corner) file.add(value);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "daemon/export/surface_view.hpp"
 
@@ -43,17 +44,30 @@ void for_each_triangle(const PlaneView<const float>& height_m, const Use& use) {
   }
 }
 
-/// The place of a point in mm: x right, y up from the lower border, z towards the camera; points stand in the middle of
-/// their pixels.
-[[nodiscard]] inline std::array<float, 3> mesh_place_mm(const SurfaceView& surface, const MeshPoint& point) {
-  constexpr double kMillimetresPerMicrometre = 1e-3;
-  constexpr double kMillimetresPerMetre = 1e3;
-  constexpr double kMiddle = 0.5;
-  const PlaneView<const float>& height_m = surface.height_m;
-  const double x_um = (point.x + kMiddle) * surface.pitch_x_um.value();
-  const double y_um = (height_m.height - kMiddle - point.y) * surface.pitch_y_um.value();
-  return {static_cast<float>(x_um * kMillimetresPerMicrometre), static_cast<float>(y_um * kMillimetresPerMicrometre),
-          static_cast<float>(static_cast<double>(height_m.at(point.x, point.y)) * kMillimetresPerMetre)};
-}
+/// Places of points in mm: x right, y up from the lower border, z towards the camera; points stand in the middle of
+/// their pixels. The surface outlives it.
+class MeshPlaces {
+ public:
+  explicit MeshPlaces(const SurfaceView& surface) : height_m_(surface.height_m) {
+    constexpr double kMiddle = 0.5;
+    for (int x = 0; x < height_m_.width; ++x) x_mm_.push_back(mm((x + kMiddle) * surface.pitch_x_um.value()));
+    for (int y = 0; y < height_m_.height; ++y) {
+      y_mm_.push_back(mm((height_m_.height - kMiddle - y) * surface.pitch_y_um.value()));
+    }
+  }
+  [[nodiscard]] std::array<float, 3> operator()(const MeshPoint& point) const {
+    constexpr double kMillimetresPerMetre = 1e3;
+    const double z_mm = static_cast<double>(height_m_.at(point.x, point.y)) * kMillimetresPerMetre;
+    return {x_mm_[static_cast<std::size_t>(point.x)], y_mm_[static_cast<std::size_t>(point.y)],
+            static_cast<float>(z_mm)};
+  }
+
+ private:
+  static float mm(double um) { return static_cast<float>(um * 1e-3); }
+
+  PlaneView<const float> height_m_;
+  std::vector<float> x_mm_;
+  std::vector<float> y_mm_;
+};
 
 }  // namespace fvd

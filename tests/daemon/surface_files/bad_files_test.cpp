@@ -184,6 +184,13 @@ void add_x3p(std::vector<BadFile>& files) {
               "X3pEntities", [](X3pText& t) { t.prologue += "<!DOCTYPE x [<!ENTITY a \"b\">]>"; }, "document type"),
           x3p(
               "X3pNoXml", [](X3pText& t) { t.revision = "<"; }, "main.xml, byte"),
+      });
+}
+
+void add_archives(std::vector<BadFile>& files) {
+  files.insert(
+      files.end(),
+      {
           archive("X3pOtherRoot", {{"main.xml", "<ISO5436_3/>"}}, "root"),
           archive("X3pWithoutMain", {{"other.xml", "<a/>"}}, "'main.xml': it is missing"),
           archive("X3pLargeMain", {{"main.xml", std::string((1U << 20U) - 1, ' ') + kPoints + "<a>"}}, ""),
@@ -317,6 +324,7 @@ void add_others(std::vector<BadFile>& files) {
 std::vector<BadFile> bad_files() {
   std::vector<BadFile> files;
   add_x3p(files);
+  add_archives(files);
   add_gsf(files);
   add_sdf(files);
   add_others(files);
