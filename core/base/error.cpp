@@ -70,6 +70,8 @@ std::string_view error_name(ErrorCode code) noexcept {
       return "db_failed";
     case ErrorCode::kRecipeConflict:
       return "recipe_conflict";
+    case ErrorCode::kSurfaceFile:
+      return "surface_file";
   }
   return "internal";
 }

@@ -41,9 +41,10 @@ enum class ErrorCode {
   kStorageFull,
   kStorageWrite,
   kDatabase,
-  kRecipeConflict,  ///< the recipe was changed meanwhile; the last: see kLastErrorCode
+  kRecipeConflict,  ///< the recipe was changed meanwhile
+  kSurfaceFile,     ///< a file that is to hold a surface cannot be read as one; the last: see kLastErrorCode
 };
-inline constexpr ErrorCode kLastErrorCode = ErrorCode::kRecipeConflict;
+inline constexpr ErrorCode kLastErrorCode = ErrorCode::kSurfaceFile;
 
 /// The stable name of a code, e.g. "camera_disconnected".
 [[nodiscard]] std::string_view error_name(ErrorCode code) noexcept;

@@ -68,6 +68,8 @@ RpcError rpc_error(ErrorCode code) noexcept {
       return {1132, false};
     case ErrorCode::kDatabase:
       return {1133, false};
+    case ErrorCode::kSurfaceFile:
+      return {1144, false};
     case ErrorCode::kMemoryBudget:
       return {1203, false};
   }

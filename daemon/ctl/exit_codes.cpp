@@ -13,6 +13,7 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kBadSlice:
     case ErrorCode::kMemoryBudget:
     case ErrorCode::kStageLimit:
+    case ErrorCode::kSurfaceFile:
       return kExitBadData;
     case ErrorCode::kStorageFull:
     case ErrorCode::kStorageWrite:
@@ -47,6 +48,7 @@ int exit_code_of_rpc(int code) noexcept {
     case 1015:    // invalid configuration
     case 1016:    // invalid input
     case 1017:    // recipe changed meanwhile
+    case 1144:    // file of a surface
     case 1203:    // too large
       return kExitBadData;
     case 1001:  // not ready

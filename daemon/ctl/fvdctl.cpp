@@ -11,6 +11,7 @@
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/export_command.hpp"
 #include "daemon/ctl/job_commands.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/recipe_commands.hpp"
@@ -35,6 +36,7 @@ struct Arguments {
   std::string method;
   std::string params = "{}";
   ProcessArguments process;
+  ExportArguments to_file;
   std::string suggest_source;
   StackChoice suggest_choice;
   StageArguments stage;
@@ -226,6 +228,10 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   sub = command("process", "make a height map of recorded slices, without a daemon",
                 [&] { return run_process(a.process, terminal); });
   add_process_options(*sub, a.process);
+
+  sub = command("export", "write the surface of a result or of a file in another format, without a daemon",
+                [&] { return run_export(a.to_file, terminal); });
+  add_export_options(*sub, a.to_file);
 
   add_stage_commands(app, a.stage, terminal, chosen);
   add_recipe_commands(

@@ -64,6 +64,10 @@ AtomicDirectory::~AtomicDirectory() {
 }
 
 void AtomicDirectory::add_file(const fs::path& name, std::string_view bytes) {
+  add_file(name, [bytes](const ByteSink& sink) { sink(bytes); });
+}
+
+void AtomicDirectory::add_file(const fs::path& name, const ByteProducer& produce) {
   const auto parts = std::distance(name.begin(), name.end());
   const bool strange = std::any_of(name.begin(), name.end(),
                                    [](const fs::path& part) { return part.empty() || part == "." || part == ".."; });
@@ -77,9 +81,9 @@ void AtomicDirectory::add_file(const fs::path& name, std::string_view bytes) {
     }
     folders_.push_back(folder);
   }
-  unsynced_.emplace_back(temporary_ / name, bytes);
+  unsynced_.emplace_back(temporary_ / name, produce);
+  files_.push_back({name.string(), unsynced_.back().size_bytes()});
   if (unsynced_.size() > kMaxUnsynced) finish_oldest();
-  files_.push_back({name.string(), bytes.size()});
 }
 
 void AtomicDirectory::finish_oldest() {

@@ -32,6 +32,8 @@ class AtomicDirectory {
   /// Writes one new file; commit() brings it to the disk at the latest. name: "file" or "folder/file"; the
   /// folder is made on first use. Throws Error kStorageFull, kStorageWrite, kBadInput for any other name.
   void add_file(const std::filesystem::path& name, std::string_view bytes);
+  /// The same for bytes that come one after the other; also throws what `produce` throws.
+  void add_file(const std::filesystem::path& name, const ByteProducer& produce);
 
   /// Files added so far, in that order.
   [[nodiscard]] const std::vector<File>& files() const noexcept { return files_; }

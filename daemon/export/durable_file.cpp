@@ -21,10 +21,16 @@ void write_all(int fd, std::string_view bytes, const std::filesystem::path& path
 }
 
 UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, std::string_view bytes)
+    : UnsyncedFile(path, [bytes](const ByteSink& sink) { sink(bytes); }) {}
+
+UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, const ByteProducer& produce)
     : path_(path), file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644)) {
   if (!file_.valid()) throw storage_error(errno, "create", path_);
   try {
-    write_all(file_.get(), bytes, path_);
+    produce([this](std::string_view bytes) {
+      write_all(file_.get(), bytes, path_);
+      size_bytes_ += bytes.size();
+    });
   } catch (...) {
     ::unlink(path_.c_str());
     throw;
@@ -45,6 +51,10 @@ void UnsyncedFile::finish() {
 }
 
 void write_new_file(const std::filesystem::path& path, std::string_view bytes) { UnsyncedFile(path, bytes).finish(); }
+
+void write_new_file(const std::filesystem::path& path, const ByteProducer& produce) {
+  UnsyncedFile(path, produce).finish();
+}
 
 void sync_directory(const std::filesystem::path& directory) {
   const UniqueFd fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

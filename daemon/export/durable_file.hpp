@@ -2,7 +2,9 @@
 
 /// Writing files that survive a power cut: every byte written, fsync after the last, no step's error ignored.
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 #include "daemon/base/unique_fd.hpp"
@@ -13,6 +15,11 @@ namespace fvd {
 /// Throws Error kStorageFull, kStorageWrite.
 void write_all(int fd, std::string_view bytes, const std::filesystem::path& path);
 
+/// Takes the next bytes of a file.
+using ByteSink = std::function<void(std::string_view bytes)>;
+/// Gives all bytes of a file to the sink, in order.
+using ByteProducer = std::function<void(const ByteSink& sink)>;
+
 /// A new file whose bytes are written but not yet known to be on the disk. Destroyed without finish() the file stays as
 /// it is.
 class UnsyncedFile {
@@ -20,19 +27,25 @@ class UnsyncedFile {
   /// Creates a file that must not exist yet, writes it and asks the kernel to begin bringing it to the disk. A file
   /// that could not be written is removed. Throws Error kStorageFull, kStorageWrite.
   UnsyncedFile(const std::filesystem::path& path, std::string_view bytes);
+  /// The same for bytes that come one after the other; also throws what `produce` throws.
+  UnsyncedFile(const std::filesystem::path& path, const ByteProducer& produce);
 
   /// Waits until it is on the disk. A file that could not be brought there is removed. Throws Error kStorageFull,
   /// kStorageWrite.
   void finish();
 
+  [[nodiscard]] std::uint64_t size_bytes() const noexcept { return size_bytes_; }
+
  private:
   std::filesystem::path path_;
   UniqueFd file_;
+  std::uint64_t size_bytes_ = 0;
 };
 
 /// Creates a file that must not exist yet, writes it and brings it to the disk. A file that could not be finished is
 /// removed. Throws Error kStorageFull, kStorageWrite.
 void write_new_file(const std::filesystem::path& path, std::string_view bytes);
+void write_new_file(const std::filesystem::path& path, const ByteProducer& produce);
 
 /// Brings a directory's entries to the disk. Throws Error kStorageWrite.
 void sync_directory(const std::filesystem::path& directory);

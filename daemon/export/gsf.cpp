@@ -1,10 +1,10 @@
 #include "daemon/export/gsf.hpp"
 
 #include <bit>
-#include <charconv>
 
-#include "core/base/units.hpp"
 #include "daemon/export/export_input.hpp"
+#include "daemon/export/length_text.hpp"
+#include "daemon/export/surface_view.hpp"
 
 namespace fvd {
 
@@ -12,61 +12,54 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "pixels are copied as they lie in memory");
 
-std::string number(double value) {
-  char text[32];
-  const auto end = std::to_chars(std::begin(text), std::end(text), value).ptr;
-  return {text, end};
-}
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
-  return text;
-}
-
-GsfHeader gsf_header(const ResultData& data) {
-  GsfHeader header{result_title(data), data.pixel_pitch_x_um, data.pixel_pitch_y_um, {}};
-  const auto add = [&header](const char* key, const std::string& value) {
-    if (!value.empty()) header.metadata.emplace_back(key, value);
-  };
-  add("PartId", data.part_id);
-  add("JobId", data.job_id);
-  add("Recipe", data.recipe_id);
-  add("RecipeSha256", data.recipe_sha256);
-  add("Peak", std::string(peak_method_name(data.peak)));
-  add("Software", data.software_version);
-  add("Source", data.source);
-  add("Simulated", data.simulated ? "true" : "false");
-  return header;
-}
-
-}  // namespace
-
-std::string encode_gsf(const Plane<float>& height_m, const GsfHeader& header) {
+/// Everything before the pixels.
+std::string head_of(int width, int height, const GsfHeader& header) {
   const bool metric = header.pitch_x_um && header.pitch_y_um;
-  const double pitch_x = metric ? *header.pitch_x_um * kMetresPerMicrometer : 1.0;
-  const double pitch_y = metric ? *header.pitch_y_um * kMetresPerMicrometer : 1.0;
-
   std::string file = "Gwyddion Simple Field 1.0\n";
   const auto line = [&file](const std::string& key, const std::string& value) {
     file += one_line(key) + " = " + one_line(value) + "\n";
   };
-  line("XRes", std::to_string(height_m.width()));
-  line("YRes", std::to_string(height_m.height()));
-  line("XReal", number(height_m.width() * pitch_x));
-  line("YReal", number(height_m.height() * pitch_y));
+  line("XRes", std::to_string(width));
+  line("YRes", std::to_string(height));
+  line("XReal", metric ? metres_text(*header.pitch_x_um, width) : std::to_string(width));
+  line("YReal", metric ? metres_text(*header.pitch_y_um, height) : std::to_string(height));
   line("XYUnits", metric ? "m" : "px");
   line("ZUnits", "m");
   line("Title", header.title);
   for (const auto& [key, value] : header.metadata) line(key, value);
   file.append(4 - file.size() % 4, '\0');
-
-  const auto pixels = std::as_bytes(height_m.pixels());
-  file.append(reinterpret_cast<const char*>(pixels.data()), pixels.size());
   return file;
 }
 
-std::string gsf_file(const ExportInput& input) { return encode_gsf(input.map.height_m, gsf_header(input.data)); }
+std::string_view bytes_of(const float* pixels, std::size_t count) {
+  return {reinterpret_cast<const char*>(pixels), count * sizeof(float)};
+}
+
+void write_field(const PlaneView<const float>& field, const SurfaceView& surface, const std::string& title,
+                 const ByteSink& sink) {
+  sink(head_of(field.width, field.height, {title, surface.pitch_x_um, surface.pitch_y_um, surface.origin.facts()}));
+  for (int y = 0; y < field.height; ++y) sink(bytes_of(field.row(y), static_cast<std::size_t>(field.width)));
+}
+
+}  // namespace
+
+std::string encode_gsf(const Plane<float>& height_m, const GsfHeader& header) {
+  std::string file = head_of(height_m.width(), height_m.height(), header);
+  file += bytes_of(height_m.pixels().data(), height_m.pixels().size());
+  return file;
+}
+
+std::string gsf_file(const ExportInput& input) {
+  const SurfaceView view = surface_view(input);
+  return encode_gsf(input.map.height_m, {view.origin.title, view.pitch_x_um, view.pitch_y_um, view.origin.facts()});
+}
+
+void write_gsf(const SurfaceView& surface, const ByteSink& sink) {
+  write_field(surface.height_m, surface, surface.origin.title, sink);
+}
+
+void write_sigma_gsf(const SurfaceView& surface, const ByteSink& sink) {
+  write_field(surface.sigma_m, surface, surface.origin.title + ": standard error", sink);
+}
 
 }  // namespace fvd

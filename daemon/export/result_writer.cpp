@@ -27,6 +27,7 @@ struct Task {
   std::string name;
   ExportCost cost;
   std::string (*encode)(const ExportInput& input);
+  void (*stream)(const ExportInput& input, const ByteSink& sink);  ///< in place of encode
   ExportInput input;
 };
 
@@ -40,7 +41,11 @@ std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ResultData
                            const std::shared_future<HeightSummary>& summary) {
   std::vector<Task> tasks;
   const auto add = [&](const Exporter& exporter, const HeightMap& map, PeakMethod peak) {
-    tasks.push_back({with_method(exporter.name, peak), exporter.cost, exporter.encode, {data, map, peak, summary}});
+    tasks.push_back({with_method(exporter.name, peak),
+                     exporter.cost,
+                     exporter.encode,
+                     exporter.stream,
+                     {data, map, peak, summary}});
   };
   for (const Exporter& exporter : exporters) {
     switch (exporter.need) {
@@ -95,6 +100,7 @@ class SharedDirectory {
   /// Makes the file of the task. Throws Error that begins with the file's name.
   AtomicDirectory::File write(const Task& task) {
     try {
+      if (task.stream != nullptr) return write_stream(task);
       const std::string bytes = task.encode(task.input);
       MutexLock lock(mutex_);
       directory_.add_file(task.name, bytes);
@@ -107,6 +113,13 @@ class SharedDirectory {
   }
 
  private:
+  /// Another exporter encodes meanwhile, but adds its file afterwards.
+  AtomicDirectory::File write_stream(const Task& task) {
+    MutexLock lock(mutex_);
+    directory_.add_file(task.name, [&task](const ByteSink& sink) { task.stream(task.input, sink); });
+    return directory_.files().back();
+  }
+
   Mutex mutex_;
   AtomicDirectory& directory_ FVD_GUARDED_BY(mutex_);
 };

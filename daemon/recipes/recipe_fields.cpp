@@ -1,5 +1,6 @@
 /// The keys of a recipe: names, ranges, meanings.
 
+#include <algorithm>
 #include <chrono>
 
 #include "config/field_writer.hpp"
@@ -181,6 +182,10 @@ void describe_slices_kept(std::string_view key, Recipe& recipe, Fields& fields) 
 std::vector<std::string> exporter_names() {
   std::vector<std::string> names;
   for (const Exporter& exporter : exporter_table()) names.emplace_back(exporter.name);
+  for (const Exporter& exporter : exporter_table()) {
+    const bool is_new = std::find(names.begin(), names.end(), exporter.format) == names.end();
+    if (!exporter.format.empty() && is_new) names.emplace_back(exporter.format);
+  }
   return names;
 }
 
@@ -205,7 +210,10 @@ void describe(Recipe& recipe, Fields& fields) {
   fields.group("evaluation", "what is measured on the heights, and how it is judged",
                [&](Fields& in) { describe(recipe.evaluation, in); });
   fields.optional("export", recipe.exports, [](Fields& in, std::vector<std::string>& names) {
-    in.choices("export", names, exporter_names(), "files of a result beside result.json; absent = all");
+    in.choices("export", names, exporter_names(),
+               "files of a result beside result.json, by name or format; absent = all but height.x3p, .sdf, .ply, "
+               ".stl, .csv and "
+               "sigma.gsf");
   });
   fields.group("keep", "what else is kept", [&](Fields& in) { describe_slices_kept("slices", recipe, in); });
 }

@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{with_focus(R"({"window": "round"})"), "/reconstruct/focus/window", "double_box"},
         BadRecipe{with("", R"(, "export": ["height.tiff", "heigt.gsf"])"), "/export", "\"heigt.gsf\" is not accepted"},
         BadRecipe{with("", R"(, "export": ["height_smooth.tiff"])"), "/export", "a value at /reconstruct/smooth_px"},
-        BadRecipe{with("", R"(, "export": ["height.csv"])"), "/export", "\"height.tiff\""},
+        BadRecipe{with("", R"(, "export": ["height.obj"])"), "/export", "\"height.tiff\""},
         BadRecipe{with("", R"(, "export": ["height_*.tiff"])"), "/export",
                   "height_*.tiff stands for maps that the recipe does not ask for, so no file is made; expected "
                   "methods at /reconstruct/focus/extra_peaks"},

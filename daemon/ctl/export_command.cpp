@@ -1,0 +1,136 @@
+#include "daemon/ctl/export_command.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+
+#include "core/base/error.hpp"
+#include "daemon/base/version.hpp"
+#include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/process_command.hpp"
+#include "daemon/export/durable_file.hpp"
+#include "daemon/export/surface_writers.hpp"
+#include "daemon/surface_files/result_folder.hpp"
+#include "drivers/replay/image_file.hpp"
+
+namespace fvd::ctl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTexture = "texture.png";
+
+std::vector<std::string> formats() {
+  std::vector<std::string> names;
+  for (const SurfaceWriter& writer : surface_writers()) names.emplace_back(writer.format);
+  return names;
+}
+
+SurfaceReadOptions read_options(const ExportArguments& arguments) {
+  if (arguments.pitch_um.size() > 2) throw UsageError("--pitch-um takes one distance, or those of columns and rows");
+  SurfaceReadOptions options;
+  if (arguments.pitch_um.empty()) return options;
+  options.pitch_x_um = arguments.pitch_um.front();
+  options.pitch_y_um = arguments.pitch_um.back();
+  return options;
+}
+
+/// The all-in-focus image of a result; empty where there is none of the surface's size.
+struct Texture {
+  Plane<std::uint16_t> grey;
+  Plane<std::uint8_t> colour;
+};
+
+Texture read_texture(const fs::path& path, const Surface& surface) {
+  Texture texture;
+  if (!fs::exists(path)) return texture;
+  ImageFile image;
+  try {
+    read_png(path, image);
+  } catch (const ImageFileError& error) {
+    throw Error(ErrorCode::kSurfaceFile, path.string() + ": " + error.what());
+  }
+  if (image.width != surface.width() || image.height != surface.height()) return texture;
+  if (image.channels == 3 && image.bytes_per_sample == 1) {
+    texture.colour = Plane<std::uint8_t>(3 * image.width, image.height);
+    std::memcpy(texture.colour.row(0), image.samples.data(), image.samples.size());
+  } else if (image.channels == 1) {
+    texture.grey = Plane<std::uint16_t>(image.width, image.height);
+    std::size_t at = 0;
+    for (std::uint16_t& level : texture.grey.pixels()) {
+      level = 0;
+      std::memcpy(&level, image.samples.data() + at, static_cast<std::size_t>(image.bytes_per_sample));
+      at += static_cast<std::size_t>(image.bytes_per_sample);
+    }
+  }
+  return texture;
+}
+
+/// The largest level of the format that the image came in: a PNG of 16 bit does not tell how many of them count.
+int max_grey_of(const Plane<std::uint16_t>& grey) {
+  const auto pixels = grey.pixels();
+  const int highest = pixels.empty() ? 0 : *std::max_element(pixels.begin(), pixels.end());
+  for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono10, PixelFormat::kMono12}) {
+    if (highest <= max_grey_level(format)) return max_grey_level(format);
+  }
+  return max_grey_level(PixelFormat::kMono16);
+}
+
+void write(const ExportArguments& arguments, const SurfaceView& view) {
+  const SurfaceWriter& writer = *find_surface_writer(arguments.format);  // the parser lets only known names through
+  write_new_file(arguments.out, [&](const ByteSink& sink) { write_surface(writer, view, sink); });
+}
+
+void print_summary(const ExportArguments& arguments, const Surface& surface, const Terminal& terminal) {
+  const auto pixels = surface.height_m.pixels();
+  const auto holes = std::count_if(pixels.begin(), pixels.end(), [](float height) { return std::isnan(height); });
+  terminal.out << "points    " << surface.width() << " x " << surface.height() << ", " << holes << " holes\n"
+               << "pitch     " << surface.pitch_x_um << " x " << surface.pitch_y_um << " um\n"
+               << "file      " << arguments.out << "\n"
+               << std::flush;
+}
+
+}  // namespace
+
+void add_export_options(CLI::App& command, ExportArguments& a) {
+  command.add_option("source", a.source, "folder of a result, or a file of a surface: X3P, GSF, SDF, float TIFF, CSV")
+      ->required();
+  command.add_option("--format", a.format, "of the new file; gsf_sigma: the standard errors")
+      ->required()
+      ->check(CLI::IsMember(formats()));
+  command.add_option("--out", a.out, "the new file; must not exist")->required();
+  command
+      .add_option("--pitch-um", a.pitch_um,
+                  "distance of the points, or X,Y of columns and rows, where the source does not tell it")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+}
+
+int run_export(const ExportArguments& arguments, const Terminal& terminal) {
+  const SurfaceReadOptions options = read_options(arguments);
+  if (fs::is_directory(arguments.source)) {
+    const ResultSurface read = read_result_surface(arguments.source, options);
+    const Texture texture = read_texture(fs::path(arguments.source) / kTexture, read.surface);
+    SurfaceView view = surface_view(read.surface, surface_origin(read.result));
+    if (!texture.colour.empty()) view.colour = texture.colour.view();
+    if (!texture.grey.empty()) view.grey = texture.grey.view();
+    view.max_grey = max_grey_of(texture.grey);
+    write(arguments, view);
+    print_summary(arguments, read.surface, terminal);
+    return kExitOk;
+  }
+  const Surface surface = read_surface(arguments.source, options);
+  SurfaceOrigin origin;
+  origin.title = surface.title;
+  origin.source = fs::path(arguments.source).filename().string();
+  origin.software_version = kVersion;
+  write(arguments, surface_view(surface, origin));
+  print_summary(arguments, surface, terminal);
+  return kExitOk;
+}
+
+}  // namespace fvd::ctl
