@@ -46,7 +46,7 @@ struct FilterSettings {
   /// kGaussian on the L side takes away a margin of nesting_um / 2 along the borders of the field, unless this is set.
   bool keep_margin = false;
   /// What border_error_um is compared with; absent: the median standard error of the field, if it has one.
-  std::optional<double> noise_floor_um;
+  std::optional<double> noise_floor_um = std::nullopt;
 };
 
 struct FilterReport {
