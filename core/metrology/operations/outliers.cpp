@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "core/base/error.hpp"
 #include "core/metrology/operations/bands.hpp"
+#include "core/metrology/operations/coded_band.hpp"
 #include "core/metrology/operations/masking.hpp"
 #include "core/metrology/operations/window_order.hpp"
 
@@ -31,15 +33,25 @@ void check(const OutlierSettings& settings) {
   }
 }
 
-/// Slides the window along rows of one field. context: one thread.
-class RowJudge {
+/// The median of the values, whose order changes; not empty.
+double median_of(std::vector<double>& values) {
+  const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), upper, values.end());
+  if (values.size() % 2 == 1) return *upper;
+  return 0.5 * (*std::max_element(values.begin(), upper) + *upper);
+}
+
+/// Slides the window along the rows of one band. Codes rule out nearly all points; the rest is decided on the heights.
+/// context: one thread.
+class BandJudge {
  public:
-  RowJudge(const HeightField& field, const OutlierSettings& settings)
+  BandJudge(const HeightField& field, const OutlierSettings& settings, int first, int end)
       : field_(field),
         settings_(settings),
         reach_(settings.window_px / 2),
+        band_(field, first, end, reach_),
         order_(settings.window_px),
-        column_(static_cast<std::size_t>(settings.window_px)) {}
+        no_column_(static_cast<std::size_t>(settings.window_px), kHoleCode) {}
 
   void judge(int row, std::uint8_t* is_outlier, Counts& counts) {
     order_.clear();
@@ -48,51 +60,75 @@ class RowJudge {
     for (int column = 0; column < field_.width(); ++column) {
       enter(column + reach_, row);
       is_outlier[column] = 0;
-      if (field_.is_hole(column, row)) continue;
+      if (band_.code(column, row) == kHoleCode) continue;
       const int columns = std::min(column + reach_, field_.width() - 1) - std::max(column - reach_, 0) + 1;
       if (2 * order_.valid() < rows * columns) {
         ++counts.few_valid;
         continue;
       }
       ++counts.judged;
-      is_outlier[column] = is_far(column, row, counts) ? 1 : 0;
+      is_outlier[column] = !is_near(column, row) && is_far(column, row, counts) ? 1 : 0;
     }
   }
 
  private:
   /// Takes the place of the column that has left the window.
   void enter(int column, int row) {
-    for (int i = 0; i < settings_.window_px; ++i) {
-      const int y = row - reach_ + i;
-      const bool inside = column < field_.width() && y >= 0 && y < field_.height();
-      column_[static_cast<std::size_t>(i)] =
-          inside ? field_.z_um.at(column, y) : std::numeric_limits<double>::quiet_NaN();
-    }
-    order_.replace_column(column % settings_.window_px, column_.data());
+    order_.replace_column(column % settings_.window_px,
+                          column < field_.width() ? band_.around(column, row) : no_column_.data());
   }
 
+  [[nodiscard]] double sigma_um(int column, int row) const {
+    return field_.has_sigma() ? static_cast<double>(field_.sigma_um.at(column, row)) : 0.0;
+  }
+
+  /// True only where the point is no outlier whatever the heights behind the codes. A height lies within one step above
+  /// its code, so that two of them differ by at most one step more than their codes; one more step is for rounding.
+  [[nodiscard]] bool is_near(int column, int row) {
+    const int here = band_.code(column, row);
+    const auto [lower, upper] = order_.middle();
+    const int steps = std::max(std::abs(here - lower), std::abs(here - upper)) + 2;
+    if (std::abs(here) == kLastCode) return false;
+    if (steps * band_.step_um() <= settings_.limit * sigma_um(column, row))
+      return lower > -kLastCode && upper < kLastCode;
+    // Over half of the points farther from the median than this: the MAD is too large for an outlier.
+    const int needed = static_cast<int>(std::min(steps / (settings_.limit * kMadToSigma), 1e6)) + 3;
+    if (lower - needed <= -kLastCode || upper + needed >= kLastCode) return false;
+    return order_.count_between(lower - needed, upper + needed) < order_.valid() / 2;
+  }
+
+  /// The rule itself.
   [[nodiscard]] bool is_far(int column, int row, Counts& counts) {
-    const double median = order_.median();
-    const double distance = std::abs(field_.z_um.at(column, row) - median);
-    const double sigma = field_.has_sigma() ? static_cast<double>(field_.sigma_um.at(column, row)) : 0.0;
-    if (distance <= settings_.limit * sigma) return false;
-    // Over half of the points farther from the median than this: the MAD is too large for an outlier. Counting them is
-    // far quicker than the MAD; the margin leaves what rounding might decide to the MAD itself.
-    const double needed = distance / (settings_.limit * kMadToSigma) * (1.0 + 1e-12);
-    if (order_.count_within(median, needed) < order_.valid() / 2) return false;
-    const double mad = order_.median_distance(median);
+    const double here = field_.z_um.at(column, row);
+    std::size_t equal = 0;
+    values_.clear();
+    for (int y = std::max(row - reach_, 0); y <= std::min(row + reach_, field_.height() - 1); ++y) {
+      for (int x = std::max(column - reach_, 0); x <= std::min(column + reach_, field_.width() - 1); ++x) {
+        const double z = field_.z_um.at(x, y);
+        equal += z == here ? 1U : 0U;
+        if (!std::isnan(z)) values_.push_back(z);
+      }
+    }
+    if (2 * equal > values_.size()) return false;  // it is the median
+    const double median = median_of(values_);
+    for (double& value : values_) value = std::abs(value - median);
+    const double mad = median_of(values_);
+    const double distance = std::abs(here - median);
+    const double sigma = sigma_um(column, row);
     if (mad == 0.0 && sigma == 0.0) {
       if (distance > 0.0) ++counts.no_scale;
       return false;
     }
-    return distance > settings_.limit * kMadToSigma * mad;
+    return distance > settings_.limit * std::max(kMadToSigma * mad, sigma);
   }
 
   const HeightField& field_;
   const OutlierSettings& settings_;
   int reach_;
+  CodedBand band_;
   WindowOrder order_;
-  std::vector<double> column_;
+  std::vector<std::int16_t> no_column_;  ///< beyond the border
+  std::vector<double> values_;
 };
 
 Counts sum_of(const std::vector<Counts>& bands) {
@@ -113,7 +149,7 @@ OperationReport remove_outliers(HeightField& field, const OutlierSettings& setti
   Plane<std::uint8_t> is_outlier = Plane<std::uint8_t>::unset(field.width(), field.height());
   std::vector<Counts> bands(static_cast<std::size_t>(band_count(field.height())));
   run_bands(pool, field.height(), [&](int band, int first, int end) {
-    RowJudge judge(field, settings);
+    BandJudge judge(field, settings, first, end);
     for (int row = first; row < end; ++row) {
       judge.judge(row, is_outlier.row(row), bands[static_cast<std::size_t>(band)]);
     }

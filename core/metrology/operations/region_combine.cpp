@@ -62,12 +62,14 @@ Region region_shrink(const Grid& grid, const Region& region, double shrink_um) {
     throw Error(ErrorCode::kBadRecipe, "`shrink_um` of a region must be 0 um or more");
   }
   const double reach_rows = std::min(shrink_um / grid.pitch_y_um, static_cast<double>(grid.height));
-  const Plane<int> rows = rows_to_outside(region, static_cast<int>(reach_rows) + 2);
+  const int far = static_cast<int>(reach_rows) + 2;  // beyond shrink_um, or beyond the image
+  const Plane<int> rows = rows_to_outside(region, far);
   Region result = Region::unset(grid.width, grid.height);
   std::vector<int> change(static_cast<std::size_t>(grid.width) + 1);
   for (int row = 0; row < grid.height; ++row) {
     std::fill(change.begin(), change.end(), 0);
     for (int column = 0; column < grid.width; ++column) {
+      if (rows.at(column, row) == far) continue;
       const double dy = rows.at(column, row) * grid.pitch_y_um;
       const double left_um2 = shrink_um * shrink_um * (1.0 + kOnBorder_px) - dy * dy;
       if (left_um2 < 0.0) continue;

@@ -3,131 +3,114 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
-#include <limits>
 
 namespace fvd::metrology {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
+// The scans below are loops over whole lanes of 16-bit numbers, eight of which the compiler puts into one register.
+constexpr int kLanes = 8;
+using Codes = std::vector<std::int16_t>;
 
-// The scans below are written in lanes, which the compiler turns into vector code; comparisons with a hole's NaN are
-// false, so holes drop out by themselves.
-constexpr std::size_t kLanes = 8;
-using Lanes = std::array<double, kLanes>;
-
-double next_above(const std::vector<double>& values, double pivot) {
-  Lanes best;
-  best.fill(kInfinity);
-  for (std::size_t i = 0; i < values.size(); i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double value = values[i + lane];
-      const double candidate = value > pivot ? value : kInfinity;
-      best[lane] = candidate < best[lane] ? candidate : best[lane];
-    }
+std::int16_t next_above(const Codes& codes, std::int16_t pivot) {
+  std::int16_t best = 32767;
+  for (const std::int16_t code : codes) {
+    const std::int16_t candidate = code > pivot ? code : std::int16_t{32767};
+    best = std::min(best, candidate);
   }
-  return *std::min_element(best.begin(), best.end());
+  return best;
 }
 
-double next_below(const std::vector<double>& values, double pivot) {
-  Lanes best;
-  best.fill(-kInfinity);
-  for (std::size_t i = 0; i < values.size(); i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double value = values[i + lane];
-      const double candidate = value < pivot ? value : -kInfinity;
-      best[lane] = candidate > best[lane] ? candidate : best[lane];
-    }
+std::int16_t next_below(const Codes& codes, std::int16_t pivot) {
+  std::int16_t best = kHoleCode;
+  for (const std::int16_t code : codes) {
+    const std::int16_t candidate = code < pivot ? code : kHoleCode;
+    best = std::max(best, candidate);
   }
-  return *std::max_element(best.begin(), best.end());
+  return best;
 }
 
-int total(const Lanes& counts) {
-  double sum = 0.0;
-  for (const double count : counts) sum += count;
-  return static_cast<int>(sum);
-}
-
-int count_equal(const std::vector<double>& values, double pivot) {
-  Lanes counts{};
-  for (std::size_t i = 0; i < values.size(); i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) counts[lane] += values[i + lane] == pivot ? 1.0 : 0.0;
+int count_equal(const Codes& codes, std::int16_t pivot) {
+  std::int16_t count = 0;
+  for (const std::int16_t code : codes) {
+    count = static_cast<std::int16_t>(count + static_cast<std::int16_t>(code == pivot));
   }
-  return total(counts);
+  return count;
 }
 
 }  // namespace
 
-WindowOrder::WindowOrder(int window) : window_(window), pivot_(-kInfinity) {
-  const std::size_t points = static_cast<std::size_t>(window) * static_cast<std::size_t>(window);
-  values_.resize((points + kLanes - 1) / kLanes * kLanes);
-  scratch_.reserve(points);
+WindowOrder::WindowOrder(int window)
+    : window_(window),
+      stride_((window + kLanes - 1) / kLanes * kLanes),
+      codes_(static_cast<std::size_t>(window) * static_cast<std::size_t>(stride_)),
+      pivot_(-kLastCode) {
+  assert(window >= 1 && window <= 32);
   clear();
 }
 
 void WindowOrder::clear() {
-  std::fill(values_.begin(), values_.end(), kHole);
+  std::fill(codes_.begin(), codes_.end(), kHoleCode);
   valid_ = 0;
-  pivot_ = -kInfinity;
-  below_ = 0;
+  pivot_ = -kLastCode;
+  below_ = static_cast<int>(codes_.size());
   at_pivot_ = 0;
 }
 
-void WindowOrder::replace_column(int slot, const double* values) {
-  double* column = values_.data() + static_cast<std::ptrdiff_t>(slot) * window_;
-  for (int i = 0; i < window_; ++i) {
-    const double old = column[i];
-    const double next = values[i];
-    valid_ += static_cast<int>(next == next) - static_cast<int>(old == old);
-    below_ += static_cast<int>(next < pivot_) - static_cast<int>(old < pivot_);
-    at_pivot_ += static_cast<int>(next == pivot_) - static_cast<int>(old == pivot_);
-    column[i] = next;
+void WindowOrder::replace_column(int slot, const std::int16_t* codes) {
+  std::array<std::int16_t, 32> next;
+  next.fill(kHoleCode);
+  std::copy_n(codes, window_, next.begin());
+  std::int16_t* column = codes_.data() + static_cast<std::ptrdiff_t>(slot) * stride_;
+  const std::int16_t pivot = pivot_;
+  for (int first = 0; first < stride_; first += kLanes) {
+    int valid = 0;
+    int below = 0;
+    int at_pivot = 0;
+    for (int i = first; i < first + kLanes; ++i) {
+      const std::int16_t code = next[static_cast<std::size_t>(i)];
+      valid += static_cast<int>(code != kHoleCode) - static_cast<int>(column[i] != kHoleCode);
+      below += static_cast<int>(code < pivot) - static_cast<int>(column[i] < pivot);
+      at_pivot += static_cast<int>(code == pivot) - static_cast<int>(column[i] == pivot);
+      column[i] = code;
+    }
+    valid_ += valid;
+    below_ += below;
+    at_pivot_ += at_pivot;
   }
 }
 
-/// Moves the pivot to the value that `rank` others precede.
+/// Moves the pivot to the code that `rank` others precede, holes among them.
 void WindowOrder::seek(int rank) {
   while (below_ > rank) {
-    pivot_ = next_below(values_, pivot_);
-    at_pivot_ = count_equal(values_, pivot_);
+    pivot_ = next_below(codes_, pivot_);
+    at_pivot_ = count_equal(codes_, pivot_);
     below_ -= at_pivot_;
   }
   while (below_ + at_pivot_ <= rank) {
     below_ += at_pivot_;
-    pivot_ = next_above(values_, pivot_);
-    at_pivot_ = count_equal(values_, pivot_);
+    pivot_ = next_above(codes_, pivot_);
+    at_pivot_ = count_equal(codes_, pivot_);
   }
 }
 
-double WindowOrder::median() {
+WindowOrder::Middle WindowOrder::middle() {
   assert(valid_ > 0);
-  const int rank = (valid_ - 1) / 2;
+  const int rank = static_cast<int>(codes_.size()) - valid_ + (valid_ - 1) / 2;
   seek(rank);
-  if (valid_ % 2 == 1 || rank + 1 < below_ + at_pivot_) return pivot_;
-  return 0.5 * (pivot_ + next_above(values_, pivot_));
+  if (valid_ % 2 == 1 || rank + 1 < below_ + at_pivot_) return {pivot_, pivot_};
+  return {pivot_, next_above(codes_, pivot_)};
 }
 
-int WindowOrder::count_within(double centre, double reach) const {
-  Lanes counts{};
-  for (std::size_t i = 0; i < values_.size(); i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      counts[lane] += std::abs(values_[i + lane] - centre) < reach ? 1.0 : 0.0;
-    }
+int WindowOrder::count_between(int from, int to) const {
+  const auto low = static_cast<std::int16_t>(from);
+  const auto high = static_cast<std::int16_t>(to);
+  std::int16_t count = 0;
+  for (const std::int16_t code : codes_) {
+    const auto outside =
+        static_cast<std::int16_t>(static_cast<std::int16_t>(code < low) | static_cast<std::int16_t>(code > high));
+    count = static_cast<std::int16_t>(count + outside);
   }
-  return total(counts);
-}
-
-double WindowOrder::median_distance(double centre) {
-  assert(valid_ > 0);
-  scratch_.clear();
-  for (const double value : values_) {
-    if (!std::isnan(value)) scratch_.push_back(std::abs(value - centre));
-  }
-  std::sort(scratch_.begin(), scratch_.end());
-  const std::size_t lower = (scratch_.size() - 1) / 2;
-  const std::size_t upper = scratch_.size() / 2;
-  return 0.5 * (scratch_[lower] + scratch_[upper]);
+  return static_cast<int>(codes_.size()) - count;
 }
 
 }  // namespace fvd::metrology
