@@ -105,7 +105,6 @@ TEST(Autocorrelation, UsesLagsWithExactlyAQuarterOfThePairs) {
 TEST(Autocorrelation, IsACubicBetweenLags) {
   const HeightField field = waves_with_holes();
   const Autocorrelation function = autocorrelation_of(field);
-  // Neville's scheme at (3.3, 2.8) pixels, from lags (2..5, 1..4).
   const auto neville = [](std::array<double, 4> p, double t) {
     for (int order = 1; order < 4; ++order) {
       for (int i = 0; i + order < 4; ++i) {
@@ -117,14 +116,17 @@ TEST(Autocorrelation, IsACubicBetweenLags) {
     }
     return p[0];
   };
-  std::array<double, 4> rows{};
-  for (int j = 0; j < 4; ++j) {
-    std::array<double, 4> row{};
-    for (int i = 0; i < 4; ++i) row[static_cast<std::size_t>(i)] = function.at(2 + i, 1 + j).value();
-    rows[static_cast<std::size_t>(j)] = neville(row, 1.3);
-  }
+  // At (3.3, top + 0.8) pixels; the first row of lags needs those of the other half of the plane.
+  for (const int top : {0, 2}) {
+    std::array<double, 4> rows{};
+    for (int j = 0; j < 4; ++j) {
+      std::array<double, 4> row{};
+      for (int i = 0; i < 4; ++i) row[static_cast<std::size_t>(i)] = function.at(2 + i, top - 1 + j).value();
+      rows[static_cast<std::size_t>(j)] = neville(row, 1.3);
+    }
 
-  EXPECT_NEAR(function.at_um(3.3, 2.8 * 1.5).value(), neville(rows, 1.8), 1e-13);
+    EXPECT_NEAR(function.at_um(3.3, (top + 0.8) * 1.5).value(), neville(rows, 1.8), 1e-13) << top;
+  }
   EXPECT_EQ(function.at_um(-3.3, -2.8 * 1.5), function.at_um(3.3, 2.8 * 1.5));
   EXPECT_NEAR(function.at_um(-4.0, 3.0).value(), function.at(-4, 2).value(), 1e-15);
 }

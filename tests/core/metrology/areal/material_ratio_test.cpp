@@ -237,6 +237,51 @@ TEST(MaterialRatioCurve, KeepsTwoLevelsLevel) {
   EXPECT_NEAR(curve.void_volume_um(10.0), 6.0, 1e-9);
 }
 
+TEST(MaterialRatioCurve, TakesAWholePlateauIntoTheCore) {
+  std::vector<double> heights(500, 10.0);
+  heights.resize(1000, 0.0);
+
+  const CoreParameters core = MaterialRatioCurve(heights).core();
+
+  EXPECT_EQ(core.core_um, 0.0);
+  EXPECT_EQ(core.ratio1_percent, 0.0);
+  EXPECT_NEAR(core.ratio2_percent, 50.0, 0.06);
+  EXPECT_NEAR(core.valley_um, 20.0, 0.03);
+  EXPECT_TRUE(core.tie);
+}
+
+TEST(MaterialRatioCurve, FindsASmallestSecantAtTheRightEnd) {
+  // Steep at first, then ever shallower: the last 40 % fall least.
+  std::vector<double> heights;
+  for (int i = 0; i < 2000; ++i) heights.push_back(std::pow(1.0 - (i + 0.5) / 2000.0, 3));
+
+  const CoreParameters core = MaterialRatioCurve(heights).core();
+
+  EXPECT_NEAR(core.secant_percent, 60.0, 1e-9);
+  EXPECT_NEAR(core.core_um, 0.064 / 0.4, 1e-6);
+  EXPECT_NEAR(core.core_top_um, 0.16, 1e-6);
+  EXPECT_NEAR(core.ratio1_percent, 100.0 * (1.0 - std::cbrt(0.16)), 1e-4);
+  EXPECT_EQ(core.ratio2_percent, 100.0);
+}
+
+TEST(MaterialRatioCurve, FindsASmallestSecantAnywhere) {
+  // A shallow stretch of 40 % between steep ones, which begins at several places.
+  for (const double begin : {0.02, 0.13, 0.4, 0.58}) {
+    std::vector<double> heights;
+    for (int i = 0; i < 2000; ++i) {
+      const double ratio = (i + 0.5) / 2000.0;
+      heights.push_back(-3.0 * std::min(ratio, begin) - 0.1 * std::clamp(ratio - begin, 0.0, 0.4) -
+                        5.0 * std::max(ratio - begin - 0.4, 0.0));
+    }
+
+    const CoreParameters core = MaterialRatioCurve(heights).core();
+
+    EXPECT_NEAR(core.secant_percent, 100.0 * begin, 0.06) << begin;
+    EXPECT_NEAR(core.core_um, 0.1, 0.005) << begin;
+    EXPECT_FALSE(core.tie) << begin;
+  }
+}
+
 TEST(MaterialRatioCurve, ReadsRatiosFromTopToBottom) {
   const MaterialRatioCurve curve(std::vector<double>{4.0, 3.0, 2.0, 1.0});
 
