@@ -13,6 +13,7 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/export_command.hpp"
 #include "daemon/ctl/job_commands.hpp"
+#include "daemon/ctl/measure_command.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/recipe_commands.hpp"
 #include "daemon/ctl/rpc_client.hpp"
@@ -37,6 +38,7 @@ struct Arguments {
   std::string params = "{}";
   ProcessArguments process;
   ExportArguments to_file;
+  MeasureArguments measure;
   std::string suggest_source;
   StackChoice suggest_choice;
   StageArguments stage;
@@ -232,6 +234,10 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   sub = command("export", "write the surface of a result or of a file in another format, without a daemon",
                 [&] { return run_export(a.to_file, terminal); });
   add_export_options(*sub, a.to_file);
+
+  sub = command("measure", "evaluate the surface of a result or of a file as a recipe says, without a daemon",
+                [&] { return run_measure(a.measure, terminal); });
+  add_measure_options(*sub, a.measure);
 
   add_stage_commands(app, a.stage, terminal, chosen);
   add_recipe_commands(

@@ -8,6 +8,7 @@
 
 #include "config/strict_json.hpp"
 #include "core/focus/fit/smooth_heights.hpp"
+#include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_stack.hpp"
 #include "daemon/ctl/progress_line.hpp"
@@ -206,6 +207,7 @@ void print_summary(std::ostream& out, const ProcessReport& report, const std::fi
     text << "heights   none: every point is a hole, see hole_points in result.json\n";
   }
   text << drift_text(result);
+  if (result.evaluation) text << evaluation_text(*result.evaluation);
   if (result.verdict) text << "verdict   " << verdict_name(*result.verdict) << "\n";
   for (const MeasuredValue& measured : result.measurements) {
     if (measured.verdict.value_or(Verdict::kPass) == Verdict::kPass) continue;
@@ -365,7 +367,7 @@ int run_process(const ProcessArguments& arguments, const Terminal& terminal) {
   });
   progress.end();
   print_summary(terminal.out, report, options.out);
-  return report.result.verdict.value_or(Verdict::kPass) == Verdict::kPass ? kExitOk : kExitVerdictFail;
+  return exit_code_of(report.result.verdict);
 }
 
 }  // namespace fvd::ctl
