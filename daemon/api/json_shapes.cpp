@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/api/compact_evaluation.hpp"
 #include "daemon/api/result_fields.hpp"
 #include "daemon/api/rpc_errors.hpp"
 
@@ -131,7 +132,7 @@ void describe_compact(Fields& fields, Presence presence) {
   const ResultFields result(fields);
   result.text("job_id", "the job's id");
   result.integer("seq", "its client's number", presence);
-  result.text("client", "whose seq", presence);
+  result.text("client", "whose seq; not in a compact result with an evaluation", Presence::kSometimes);
   result.text("part_id", "as given", presence);
   result.text("state", "completed, aborted, failed; processing while there is no result", presence);
   result.integer("error_code", "0 = no error", presence);
@@ -143,6 +144,7 @@ void describe_compact(Fields& fields, Presence presence) {
   result.integer("frames_ok", "compact", Presence::kSometimes);
   result.boolean("simulated", "a device was simulated", Presence::kSometimes);
   result.integer("warnings_count", "compact: what lowers trust; the full result says what", Presence::kSometimes);
+  describe_compact_evaluation(fields);
   result.boolean("durable", "false while the end is not stored yet: job.status tells why", Presence::kSometimes);
 }
 
@@ -153,10 +155,11 @@ void describe_next_result(Fields& fields) { describe_compact(fields, Presence::k
 void describe_result(Fields& fields) {
   describe_compact(fields, Presence::kAlways);
   const ResultFields result(fields);
+  result.any("result", "complete: result.json", Presence::kSometimes);
   result.text("recipe", "full: recipe id", Presence::kSometimes);
   result.text("error", "full: the error's name", Presence::kSometimes);
   result.text("error_message", "full: for people", Presence::kSometimes);
-  result.text("directory", "full: where the files are", Presence::kSometimes);
+  result.text("directory", "full, complete: where the files are", Presence::kSometimes);
   for (const char* group : kFullGroups) result.any(group, "full: as in result.json", Presence::kSometimes);
   for (const char* list : kFullLists) result.any(list, "full: as in result.json", Presence::kSometimes);
 }
@@ -171,6 +174,13 @@ ordered_json compact_result_json(const JobStatus& job, const std::string& result
   if (!job.not_durable.empty()) json["durable"] = false;
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);
+  if (result.contains("evaluation")) {
+    json.erase("client");  // who asks knows whose number it is; its bytes hold a value
+    json["warnings_count"] = result["warnings"].size();
+    json["simulated"] = result.at("provenance").at("simulated");
+    add_compact_evaluation(result["evaluation"], json);
+    return json;
+  }
   const auto& values = result.at("values");
   json["valid_fraction"] = values.at("valid_fraction");
   for (const char* key : {"min_um", "max_um", "mean_um"}) {
@@ -181,6 +191,19 @@ ordered_json compact_result_json(const JobStatus& job, const std::string& result
   json["frames_ok"] = result.at("frames").at("ok");
   json["warnings_count"] = result.contains("warnings") ? result["warnings"].size() : 0;
   json["simulated"] = result.at("provenance").at("simulated");
+  return json;
+}
+
+ordered_json complete_result_json(const JobStatus& job, const std::string& result_text, const std::string& directory) {
+  ordered_json json{{"job_id", job.job_id},
+                    {"seq", job.request.seq},
+                    {"client", job.request.client},
+                    {"part_id", job.request.part_id},
+                    {"state", job_state_name(job.state)},
+                    {"error_code", code_of(job.error)},
+                    {"directory", directory}};
+  if (!job.not_durable.empty()) json["durable"] = false;
+  if (!result_text.empty()) json["result"] = ordered_json::parse(result_text);
   return json;
 }
 

@@ -21,13 +21,17 @@ void describe_job_status(Fields& fields);
 [[nodiscard]] nlohmann::ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb);
 void describe_machine_status(Fields& fields);
 
-/// The main values of a result, picked from the text of result.json; at most 512 bytes as a reply.
+/// The main values of a result, picked from the text of result.json; at most 512 bytes as a reply; with an
+/// evaluation its verdict and values in their place, at most 440 bytes.
 [[nodiscard]] nlohmann::ordered_json compact_result_json(const JobStatus& job, const std::string& result_text);
 /// The whole result.json without what is long, and where the files are; at most 2560 bytes as a reply, and
 /// the warnings.
 [[nodiscard]] nlohmann::ordered_json full_result_json(const JobStatus& job, const std::string& result_text,
                                                       const std::string& directory);
-/// Of both.
+/// All of result.json under the key "result", of any length.
+[[nodiscard]] nlohmann::ordered_json complete_result_json(const JobStatus& job, const std::string& result_text,
+                                                          const std::string& directory);
+/// Of all three.
 void describe_result(Fields& fields);
 /// Of a compact result, or of none.
 void describe_next_result(Fields& fields);

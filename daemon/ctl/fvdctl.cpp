@@ -219,8 +219,11 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
 
   sub = command("result", "print the result of a job", [&] { return result(a, terminal); });
   sub->add_option("job", a.job, job_help);
-  sub->add_option("--format", a.format, "compact: at most 512 bytes; full: at most 2560 bytes, and the warnings")
-      ->check(CLI::IsMember({"compact", "full"}))
+  sub->add_option(
+         "--format", a.format,
+         "compact: at most 512 bytes, 440 with an evaluation; full: at most 2560 bytes, and the warnings; complete: "
+         "result.json")
+      ->check(CLI::IsMember({"compact", "full", "complete"}))
       ->capture_default_str();
 
   sub = command("rpc", "call any method and print what it returns", [&] { return rpc(a, terminal); });

@@ -54,7 +54,14 @@ class Checker {
   void check() {
     for (const auto& [name, region] : plan_.regions) check_region(name, region);
     for (const auto& [name, surface] : plan_.surfaces) check_surface(name, surface);
-    for (const auto& [name, measurement] : plan_.measurements) check_measurement(name, measurement);
+    std::map<std::string, std::string> ids;
+    for (const auto& [name, measurement] : plan_.measurements) {
+      check_measurement(name, measurement);
+      const auto [taken, is_new] = ids.emplace(plc_id(name, measurement), name);
+      if (is_new) continue;
+      refuse("/measurements/" + name + "/id",
+             "\"" + taken->first + "\" is the id of " + taken->second + " too, so that a PLC cannot tell them apart");
+    }
   }
 
  private:

@@ -68,8 +68,9 @@ void invalidate(EvaluatedMeasurement& made) {
   }
 }
 
-EvaluatedMeasurement finished(const MeasurementInput& input) {
+EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& input) {
   EvaluatedMeasurement made = measured_by_kind(input);
+  made.id = id;
   made.kind = input.planned.kind;
   made.surface = input.planned.surface;
   add_missing(never_evaluated(), made.not_evaluated);
@@ -78,6 +79,7 @@ EvaluatedMeasurement finished(const MeasurementInput& input) {
     add_invalid_values(input, made);
     invalidate(made);
     made.verdict = Verdict::kInvalid;
+    if (made.reason_code == 0) made.reason_code = evaluation_code::kInvalid;
     return made;
   }
   std::vector<Verdict> verdicts;
@@ -101,7 +103,7 @@ Evaluation evaluate_surface(const Surface& surface, const EvaluationPlan& plan, 
     const SurfaceState& measured = chain.state(kMeasuredSurface);
     const SurfaceState& state = chain.state(planned.surface);
     const MeasurementInput input{plan, planned, state, measured, context, surface.lateral_period_um.value_or(0.0)};
-    EvaluatedMeasurement made = finished(input);
+    EvaluatedMeasurement made = finished(plc_id(name, planned), input);
     if (made.verdict) verdicts.push_back(*made.verdict);
     evaluation.measurements.emplace(name, std::move(made));
   }

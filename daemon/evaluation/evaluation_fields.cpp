@@ -247,6 +247,8 @@ void describe(PlannedMeasurement& measurement, Fields& fields) {
                   {"cutting_edge", [&](Fields& in) { describe_edge(measurement, in); }}},
                  "what is measured");
   fields.require("kind");
+  fields.text("id", measurement.id, 4,
+              "its name in compact results for PLCs; empty = the first 4 characters of its name");
   fields.text("surface", measurement.surface, kMaxNameLength, "the surface that it is measured on");
   fields.number("min_valid_fraction", measurement.min_valid_fraction, {0.0, 1.0},
                 "of a region's points; with fewer the measurement is invalid");

@@ -74,6 +74,7 @@ struct PlannedChipping {
 
 struct PlannedMeasurement {
   std::string kind = "areal";
+  std::string id;  ///< at most 4 characters, for PLCs; empty = the name's first 4
   std::string surface = kMeasuredSurface;
   double min_valid_fraction = 0.7;       ///< of each region; under it the measurement is invalid
   std::map<std::string, Limits> limits;  ///< by a value's name with its unit, e.g. "Sa_um"
@@ -106,6 +107,12 @@ struct PlannedMeasurement {
   double tolerance_um = 0.5;                ///< cutting_edge: method tolerance
   std::optional<PlannedChipping> chipping;  ///< cutting_edge
 };
+
+/// The name of a measurement in the results that PLCs read.
+[[nodiscard]] inline std::string plc_id(const std::string& name, const PlannedMeasurement& measurement) {
+  constexpr std::size_t kLength = 4;
+  return measurement.id.empty() ? name.substr(0, kLength) : measurement.id;
+}
 
 struct PlannedDecision {
   std::string rule = "iso14253_1";  ///< iso14253_1, simple, guard_U

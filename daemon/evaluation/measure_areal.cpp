@@ -10,6 +10,7 @@
 
 #include "core/metrology/areal/evaluate_areal.hpp"
 #include "core/metrology/areal/height_weights.hpp"
+#include "core/metrology/operations/region.hpp"
 #include "core/metrology/uncertainty/monte_carlo.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/noise_floor.hpp"
@@ -104,9 +105,15 @@ class ArealUncertainty {
 
 EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
   EvaluatedMeasurement made;
+  made.main_value = areal_value_key(input.planned.parameters.front());
   made.region = input.planned.region;
   const HeightField& field = input.surface.field;
   const Region region = region_points(input.plan, input.planned.region, field);
+  if (!region.empty() && metrology::count_points(region) == 0) {
+    made.reason = "the region " + input.planned.region + " has no point in the field of view";
+    made.reason_code = evaluation_code::kRegionOutside;
+    return made;
+  }
   const NoiseFloor floor = noise_floor(field, region);
   metrology::ArealSettings settings;
   settings.noise_floor_um = floor.sq_um;
@@ -117,6 +124,7 @@ EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
   made.points = static_cast<std::int64_t>(found.points);
   made.valid_fraction = found.valid_fraction();
   made.reason = too_few_valid(found.valid_fraction(), input.planned);
+  if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
   const std::optional<double> sq_um = found.values.back().value;
   const bool below_noise = is_below_noise(sq_um, floor);
   const ArealUncertainty uncertainty(input, region, settings, parameters);

@@ -117,6 +117,7 @@ ordered_json details_json(const MeasurementInput& input, const NoiseFloor& floor
 
 EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   EvaluatedMeasurement made;
+  made.main_value = profile_value_key(input.planned.parameters.front());
   const HeightField& field = input.surface.field;
   const ProfileLine line = line_of(input.planned);
   const Profile profile = metrology::extract_profile(field, line);
@@ -133,6 +134,7 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   made.points = static_cast<std::int64_t>(found.points);
   made.valid_fraction = found.valid_fraction;
   made.reason = too_few_valid(found.valid_fraction, input.planned);
+  if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
   const auto draws = drawn(field, line, parameters, settings);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string key = profile_value_key(input.planned.parameters[i]);

@@ -98,7 +98,11 @@ const char* sign_name(metrology::GrooveSign sign) {
   return sign == metrology::GrooveSign::kGroove ? "groove" : "ridge";
 }
 
-void refuse(const metrology::StepRefusal& refusal, EvaluatedMeasurement& made) { made.reason = refusal.text; }
+void refuse(const metrology::StepRefusal& refusal, EvaluatedMeasurement& made) {
+  made.reason = refusal.text;
+  if (refusal.code == metrology::StepRefusalCode::kTooFewValid) made.reason_code = evaluation_code::kTooFewValid;
+  if (refusal.code == metrology::StepRefusalCode::kOutside) made.reason_code = evaluation_code::kRegionOutside;
+}
 
 void measure_flat_bottom(const MeasurementInput& input, EvaluatedMeasurement& made) {
   const auto outcome = metrology::iso5436_a1(input.surface.field, groove_settings(input.planned));
@@ -185,6 +189,7 @@ EvaluatedMeasurement measure_step_between(const MeasurementInput& input) {
 
 EvaluatedMeasurement measure_levels(const MeasurementInput& input) {
   EvaluatedMeasurement made;
+  made.main_value = level_value_key(input.planned.regions[1], input.planned.regions[0]);
   const metrology::HeightField& field = input.surface.field;
   std::vector<metrology::Region> points;
   points.reserve(input.planned.regions.size());

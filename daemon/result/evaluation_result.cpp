@@ -69,11 +69,16 @@ void describe(EvaluatedValue& value, Fields& fields) {
 }
 
 void describe(EvaluatedMeasurement& measurement, Fields& fields) {
+  fields.text("id", measurement.id, 4, "for PLCs");
   fields.text("kind", measurement.kind, kMaxText_bytes, "what was measured");
   optional_text(fields, "method", measurement.method, "by which method");
   fields.text("surface", measurement.surface, kMaxText_bytes, "on which surface");
   optional_text(fields, "region", measurement.region, "in which region");
   optional_text(fields, "reason", measurement.reason, "why it is invalid");
+  bool coded = measurement.reason_code != 0;
+  fields.optional_field("reason_code", coded, [&](Fields& in) {
+    in.integer("reason_code", measurement.reason_code, {0, 9999}, "of that reason");
+  });
   fields.integer("points", measurement.points, {0, INT64_MAX}, "valid points");
   fields.number("valid_fraction", measurement.valid_fraction, {0.0, 1.0}, "of the points it was to rest on");
   optional_text(fields, "main_value", measurement.main_value, "the value that stands for the measurement");

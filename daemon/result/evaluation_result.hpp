@@ -13,6 +13,14 @@
 
 namespace fvd {
 
+/// Reasons of verdicts, by their numbers on the wire (the error codes of daemon/README.md).
+namespace evaluation_code {
+inline constexpr int kTooFewValid = 1122;
+inline constexpr int kInvalid = 1141;        ///< a measurement is invalid for another reason
+inline constexpr int kRegionOutside = 1142;  ///< what it looks at does not lie in the field of view
+inline constexpr int kUncertain = 1145;      ///< information: a verdict is uncertain
+}  // namespace evaluation_code
+
 /// One line of an uncertainty budget, in the unit of its value.
 struct UncertaintyLine {
   std::string source;  ///< "noise", "slice_z", "alpha_z", ...
@@ -49,11 +57,13 @@ struct EvaluatedValue {
 };
 
 struct EvaluatedMeasurement {
+  std::string id;  ///< for PLCs, at most 4 characters
   std::string kind;
   std::string method;
   std::string surface;
   std::string region;
-  std::string reason;  ///< why all of it is invalid; empty = it is not
+  std::string reason;   ///< why all of it is invalid; empty = it is not
+  int reason_code = 0;  ///< of that reason on the wire: evaluation_code; 0 = none
   std::int64_t points = 0;
   double valid_fraction = 0.0;
   std::string main_value;                        ///< the key of the value that stands for the measurement; may be empty

@@ -16,8 +16,9 @@ struct GetParams {
 
   void describe(Fields& fields) {
     job.describe(fields);
-    fields.choice("format", format, {"compact", "full"},
-                  "compact: at most 512 bytes; full: at most 2560 bytes, and the warnings");
+    fields.choice("format", format, {"compact", "full", "complete"},
+                  "compact: at most 512 bytes, 440 with an evaluation; full: at most 2560 bytes, and the warnings; "
+                  "complete: result.json, of any length");
     client.describe(fields);
   }
 };
@@ -29,6 +30,7 @@ void describe_acknowledged(Fields& fields) {
 Reply result_of(const Services& services, const JobKey& key, const std::string& format) {
   const StoredJob stored = services.results.stored(key);
   if (format == "compact") return compact_result_json(stored.status, stored.result_json);
+  if (format == "complete") return complete_result_json(stored.status, stored.result_json, stored.result_dir);
   return full_result_json(stored.status, stored.result_json, stored.result_dir);
 }
 
