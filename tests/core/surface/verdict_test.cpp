@@ -42,8 +42,24 @@ TEST(Verdict, OnAllIsTheWorst) {
   EXPECT_EQ(joined_verdict(std::array{kInvalid, kFail, kPass}), kFail);
 }
 
+TEST(Verdict, OnAllIsUncertainWhereNothingWorseIs) {
+  using enum Verdict;
+  EXPECT_EQ(joined_verdict(std::array{kPass, kUncertain, kPass}), kUncertain);
+  EXPECT_EQ(joined_verdict(std::array{kUncertain, kInvalid}), kInvalid);
+  EXPECT_EQ(joined_verdict(std::array{kUncertain, kFail}), kFail);
+}
+
+TEST(Verdict, OfAPartCountsInvalidAsTheWorst) {
+  using enum Verdict;
+  EXPECT_EQ(worst_verdict({}), std::nullopt);
+  EXPECT_EQ(worst_verdict(std::array{kPass, kPass}), kPass);
+  EXPECT_EQ(worst_verdict(std::array{kPass, kUncertain}), kUncertain);
+  EXPECT_EQ(worst_verdict(std::array{kUncertain, kFail, kPass}), kFail);
+  EXPECT_EQ(worst_verdict(std::array{kFail, kInvalid, kUncertain}), kInvalid);
+}
+
 TEST(Verdict, IsReadBackFromItsName) {
-  for (const Verdict verdict : {Verdict::kPass, Verdict::kFail, Verdict::kInvalid}) {
+  for (const Verdict verdict : {Verdict::kPass, Verdict::kFail, Verdict::kInvalid, Verdict::kUncertain}) {
     EXPECT_EQ(verdict_from_name(verdict_name(verdict)), verdict);
   }
   EXPECT_EQ(verdict_from_name("good"), std::nullopt);
