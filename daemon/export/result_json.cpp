@@ -197,7 +197,8 @@ Json times(const PhaseTimes& times) {
   return {{"prepare_ms", ms(times.prepare_ms)},
           {"scan_ms", ms(times.scan_ms)},
           {"finish_ms", ms(times.finish_ms)},
-          {"write_ms", ms(times.write_ms)}};
+          {"write_ms", ms(times.write_ms)},
+          {"evaluate_ms", times.evaluate_ms ? ms(*times.evaluate_ms) : Json(nullptr)}};
 }
 
 /// The recipe stands here for readers of format 1.

@@ -248,8 +248,10 @@ StepSummary steps(const Node& node) {
 }
 
 PhaseTimes times(const Node& node) {
-  return {node.at("prepare_ms").number(), node.at("scan_ms").number(), node.at("finish_ms").number(),
-          node.at("write_ms").number()};
+  PhaseTimes times{node.at("prepare_ms").number(), node.at("scan_ms").number(), node.at("finish_ms").number(),
+                   node.at("write_ms").number()};
+  if (node.has("evaluate_ms")) times.evaluate_ms = node.at("evaluate_ms").optional_number();
+  return times;
 }
 
 Result::Provenance provenance(const Node& node) {

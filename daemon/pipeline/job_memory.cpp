@@ -17,6 +17,40 @@ constexpr std::size_t kMapBytesPerPixel = 3 * sizeof(float) + sizeof(MaskReasons
 /// The preview's picture is drawn and encoded while the largest file of four bytes a point is made beside it.
 constexpr std::size_t kEncodingBytesPerPixel = 12;
 
+/// The measured surface as it was and in double precision, with its standard errors.
+constexpr std::size_t kMeasuredSurfaceBytesPerPixel = 2 * sizeof(float) + sizeof(double) + sizeof(float);
+constexpr std::size_t kSurfaceBytesPerPixel = sizeof(double) + sizeof(float);
+/// While one measurement is made: regions, weights, sorted heights; with filters their moments; with the autocorrelation
+/// the transforms of three times the region (400 MiB for 5 Mpx were measured).
+constexpr std::size_t kMeasurementBytesPerPixel = 40;
+constexpr std::size_t kFilterBytesPerPixel = 100;
+constexpr std::size_t kAutocorrelationBytesPerPixel = 90;
+
+bool has_filter(const EvaluationPlan& plan) {
+  return std::any_of(plan.surfaces.begin(), plan.surfaces.end(), [](const auto& surface) {
+    return std::any_of(surface.second.steps.begin(), surface.second.steps.end(),
+                       [](const PlannedOperation& step) { return step.op == "filter"; });
+  });
+}
+
+bool has_autocorrelation(const EvaluationPlan& plan) {
+  return std::any_of(plan.measurements.begin(), plan.measurements.end(), [](const auto& measurement) {
+    const auto& names = measurement.second.parameters;
+    return std::any_of(names.begin(), names.end(),
+                       [](const std::string& name) { return name == "Sal" || name == "Str" || name == "Std"; });
+  });
+}
+
+std::size_t evaluation_bytes(const EvaluationPlan& plan, std::size_t pixels) {
+  if (plan.empty()) return 0;
+  std::size_t bytes = kMeasuredSurfaceBytesPerPixel + kSurfaceBytesPerPixel * plan.surfaces.size();
+  std::size_t working = kMeasurementBytesPerPixel;
+  if (has_filter(plan)) working = std::max(working, kFilterBytesPerPixel);
+  if (has_autocorrelation(plan)) working = std::max(working, kMeasurementBytesPerPixel + kAutocorrelationBytesPerPixel);
+  bytes += working;
+  return bytes * pixels;
+}
+
 std::size_t mebibytes(std::size_t bytes) { return bytes >> 20U; }
 
 }  // namespace
@@ -39,6 +73,7 @@ JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
                            static_cast<std::size_t>(StreamingFocusStack::kMaxBatch + FocusWorker::kHeldBack);
   }
   needed.encoding_bytes = pixels * kEncodingBytesPerPixel;
+  needed.evaluation_bytes = evaluation_bytes(recipe.evaluation, pixels);
   return needed;
 }
 
@@ -48,8 +83,8 @@ void require_memory(const JobMemory& needed, int width, int height, std::size_t 
     message << "the job needs " << mebibytes(needed.total_bytes()) << " MiB for " << width << " x " << height
             << " pixels (state " << mebibytes(needed.state_bytes) << ", maps " << mebibytes(needed.maps_bytes)
             << ", frames " << mebibytes(needed.frames_bytes) << ", files " << mebibytes(needed.encoding_bytes)
-            << "), the budget is " << mebibytes(budget_bytes)
-            << " MiB: use a smaller region, fewer extra_peaks or frames, or raise compute.memory_budget_mib";
+            << ", evaluation " << mebibytes(needed.evaluation_bytes) << "), the budget is " << mebibytes(budget_bytes)
+            << " MiB: use a smaller region, fewer extra_peaks, frames or surfaces, or raise compute.memory_budget_mib";
     throw Error(ErrorCode::kMemoryBudget, message.str());
   }
   if (pages != nullptr && needed.total_bytes() + pages->kept_bytes() > budget_bytes) pages->release();
