@@ -20,8 +20,8 @@ constexpr std::size_t kEncodingBytesPerPixel = 12;
 /// The measured surface as it was and in double precision, with its standard errors.
 constexpr std::size_t kMeasuredSurfaceBytesPerPixel = 2 * sizeof(float) + sizeof(double) + sizeof(float);
 constexpr std::size_t kSurfaceBytesPerPixel = sizeof(double) + sizeof(float);
-/// While one measurement is made: regions, weights, sorted heights; with filters their moments; with the autocorrelation
-/// the transforms of three times the region (400 MiB for 5 Mpx were measured).
+/// While one measurement is made: regions, weights, sorted heights; with filters their moments; with the
+/// autocorrelation the transforms of three times the region (400 MiB for 5 Mpx were measured).
 constexpr std::size_t kMeasurementBytesPerPixel = 40;
 constexpr std::size_t kFilterBytesPerPixel = 100;
 constexpr std::size_t kAutocorrelationBytesPerPixel = 90;

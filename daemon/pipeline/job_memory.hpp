@@ -11,9 +11,9 @@ namespace fvd {
 
 /// Bytes, by who holds them.
 struct JobMemory {
-  std::size_t state_bytes = 0;     ///< of the focus stack: what is kept of the slices
-  std::size_t maps_bytes = 0;      ///< heights, errors, reasons, texture: one set per peak method
-  std::size_t frames_bytes = 0;    ///< the camera's pool
+  std::size_t state_bytes = 0;       ///< of the focus stack: what is kept of the slices
+  std::size_t maps_bytes = 0;        ///< heights, errors, reasons, texture: one set per peak method
+  std::size_t frames_bytes = 0;      ///< the camera's pool
   std::size_t encoding_bytes = 0;    ///< result files while they are made, before they are written
   std::size_t evaluation_bytes = 0;  ///< surfaces and what measurements make of them
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -109,7 +110,9 @@ void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultD
 
 void evaluate_as_asked(const Recipe& recipe, WorkerPool& pool, ResultData& data) {
   if (recipe.evaluation.empty()) return;
+  const auto start = std::chrono::steady_clock::now();
   data.evaluation = evaluate_surface(evaluated_surface(data), recipe.evaluation, evaluation_context(data), &pool);
+  data.times.evaluate_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data) {

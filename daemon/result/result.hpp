@@ -47,10 +47,10 @@ struct Warning {
 
 /// Wall-clock durations of the job's phases in ms; NaN = unknown.
 struct PhaseTimes {
-  double prepare_ms = 0.0;  ///< devices, homing, take-up
-  double scan_ms = 0.0;     ///< first move to last frame
-  double finish_ms = 0.0;   ///< last frame to height map
-  double write_ms = 0.0;    ///< of the other files
+  double prepare_ms = 0.0;                 ///< devices, homing, take-up
+  double scan_ms = 0.0;                    ///< first move to last frame
+  double finish_ms = 0.0;                  ///< last frame to height map
+  double write_ms = 0.0;                   ///< of the other files
   std::optional<double> evaluate_ms = {};  ///< of the measurements; absent where there are none
   bool operator==(const PhaseTimes&) const = default;
 };
