@@ -104,7 +104,7 @@ std::optional<double> number_of(std::string_view text) { return whole<double>(te
 std::optional<std::int64_t> integer_of(std::string_view text) { return whole<std::int64_t>(text); }
 
 float height_of(double metres) noexcept {
-  constexpr double kLargest = std::numeric_limits<float>::max();
+  constexpr auto kLargest = static_cast<double>(std::numeric_limits<float>::max());
   if (!(std::abs(metres) <= kLargest)) return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(metres);
 }

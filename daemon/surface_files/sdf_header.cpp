@@ -85,7 +85,7 @@ double least_of(SdfType type) {
     case SdfType::kInt32:
       return std::numeric_limits<std::int32_t>::min();
     case SdfType::kFloat:
-      return std::numeric_limits<float>::lowest();
+      return static_cast<double>(std::numeric_limits<float>::lowest());
     case SdfType::kDouble:
       return std::numeric_limits<double>::lowest();
     default:

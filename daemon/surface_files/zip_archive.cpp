@@ -43,6 +43,7 @@ void check_number_of_entries(const FileBytes& file) {
   constexpr std::string_view kEnd("PK\5\6", 4);
   constexpr std::string_view kLocator64("PK\6\7", 4);
   constexpr std::string_view kEnd64("PK\6\6", 4);
+  constexpr std::size_t kEnd64_bytes = 56;
   for (std::size_t at = tail.find(kEnd); at != std::string::npos; at = tail.find(kEnd, at + 1)) {
     if (tail.size() - at < 22) break;
     const std::string_view record = std::string_view(tail).substr(at, 22);
@@ -52,9 +53,9 @@ void check_number_of_entries(const FileBytes& file) {
   for (std::size_t at = tail.find(kLocator64); at != std::string::npos; at = tail.find(kLocator64, at + 1)) {
     if (tail.size() - at < 20) break;
     const std::uint64_t place = little_endian(std::string_view(tail).substr(at + 8, 8));
-    if (place > file.size() - 56) continue;
-    const std::string record = file.text(place, 56);
-    if (record.starts_with(kEnd64)) check(place, little_endian(std::string_view(record).substr(32, 8)));
+    const std::string record = file.text(place, kEnd64_bytes);
+    if (record.size() == kEnd64_bytes && record.starts_with(kEnd64))
+      check(place, little_endian(std::string_view(record).substr(32, 8)));
   }
 }
 

@@ -20,7 +20,7 @@ fvd_locked cmake --build "$FVD_BUILD" --target fuzzers
 
 failed=0
 cd "$FVD_BUILD"
-for format in x3p gsf sdf tiff csv; do
+for format in x3p x3p_main gsf sdf tiff csv; do
   mkdir -p "corpus/$format"
   log=fuzz_$format.log
   # 4 GiB of address space are mapped for a surface before its bytes are read: only what is touched counts.

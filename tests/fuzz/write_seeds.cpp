@@ -31,6 +31,10 @@ int main(int argc, char** argv) {
   for (const std::string format : {"x3p", "gsf", "sdf", "csv"}) {
     write(folder, format, fvd::surface_bytes(*fvd::find_surface_writer(format), view));
   }
+  const std::string x3p = fvd::surface_bytes(*fvd::find_surface_writer("x3p"), view);
+  const auto xml = x3p.find("<?xml");
+  constexpr std::string_view kRootEnd = "</p:ISO5436_2>\n";
+  write(folder, "x3p_main", x3p.substr(xml, x3p.find(kRootEnd) + kRootEnd.size() - xml));
   write(folder, "tiff", fvd::encode_height_tiff(surface.height_m, {"", "", {}, {}}));
   std::ofstream(folder / "sdf" / "ascii")
       << "aISO-1.0\nNumPoints = 3\nNumProfiles = 2\nXscale = 5e-7\nYscale = 5e-7\nZscale = 1e-9\nDataType = 6\n*\n"

@@ -215,6 +215,8 @@ void add_archives(std::vector<BadFile>& files) {
           bytes("X3pEntryOfFourGib", "x3p", with_size("\xFF\xFF\xFF\xFE", "x"), "compressed by more than 200"),
           bytes("X3pEntryLongerThanTheFile", "x3p", with_size("\xFF\xFF\xFF\x0E", "\xFF\xFF\xFF\x0E"),
                 "longer than the file"),
+          bytes("X3pShorterThanItsLocator", "x3p", std::string("PK\6\6....PK\6\7", 12) + std::string(20, '\0'),
+                "archive"),
           bytes("X3pOnlyMagic", "x3p", "PK\3\4", "archive"),
       });
 }

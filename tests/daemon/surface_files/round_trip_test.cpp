@@ -131,6 +131,13 @@ TEST(SurfaceWriters, PutMainFirstIntoAnX3pAndStoreIt) {
   EXPECT_THAT(bytes, testing::HasSubstr(R"("source":"camera \u00e9")"));
 }
 
+TEST(SurfaceWriters, MarkHolesInTheMaskOfAnX3pAsWell) {
+  const std::string bytes = bytes_in("x3p", test::sample_surface());
+
+  const auto directory = bytes.find(std::string("PK\1\2", 4));
+  EXPECT_EQ(bytes.substr(directory - 5, 5), "\xFB\xFF\xFF\xFF\xFB") << "points 2 and 34 of 35; the rest is filled up";
+}
+
 TEST(SurfaceWriters, OrderTheElementsOfAnX3pAsItsSchemaDoes) {
   const std::string xml = bytes_in("x3p", test::sample_surface());
   std::size_t place = 0;
