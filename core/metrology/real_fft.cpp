@@ -2,17 +2,18 @@
 
 #include <cassert>
 #include <cstddef>
-#include <mutex>
 #include <new>
 
 #include <fftw3.h>
+
+#include "core/base/mutex.hpp"
 
 namespace fvd::metrology {
 namespace {
 
 /// FFTW's planner has one state for the whole process; only executing a plan is safe from several threads.
-std::mutex& planner_mutex() {
-  static std::mutex mutex;
+Mutex& planner_mutex() {
+  static Mutex mutex;
   return mutex;
 }
 
@@ -45,14 +46,14 @@ RealFft::RealFft(int width, int height) : plans_(std::make_unique<Plans>()) {
   plans_->plane.reset(fftw_alloc_real(plans_->plane_size()));
   plans_->spectrum.reset(fftw_alloc_complex(plans_->spectrum_size()));
   if (!plans_->plane || !plans_->spectrum) throw std::bad_alloc();
-  const std::lock_guard lock(planner_mutex());
+  MutexLock lock(planner_mutex());
   plans_->forward = fftw_plan_dft_r2c_2d(height, width, plans_->plane.get(), plans_->spectrum.get(),
                                          FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
   plans_->inverse = fftw_plan_dft_c2r_2d(height, width, plans_->spectrum.get(), plans_->plane.get(), FFTW_ESTIMATE);
 }
 
 RealFft::~RealFft() {
-  const std::lock_guard lock(planner_mutex());
+  MutexLock lock(planner_mutex());
   fftw_destroy_plan(plans_->forward);
   fftw_destroy_plan(plans_->inverse);
 }
