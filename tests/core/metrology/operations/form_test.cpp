@@ -242,6 +242,23 @@ TEST(ConeForm, FindsACountersinkThatStandsUpright) {
   EXPECT_LT(largest(field), 1e-9);
 }
 
+TEST(ConeForm, EndsAtItsApex) {
+  HeightField field = make_field(120, 60, 1.0, 1.0, [](double x, double y) {
+    const double radius = 0.3 * (x - 40.0);
+    const double square = radius * radius - (y - 30.0) * (y - 30.0);
+    return x > 40.0 && square > 0.0 ? std::sqrt(square) : kHole;
+  });
+  field.z_um.at(5, 30) = 0.0;  // where the mirrored half of the cone would be
+
+  const OperationReport report =
+      remove_form(field, {FormKind::kCone, 2}, rectangle_region(grid_of(field), {60.0, 0.0, 60.0, 60.0}));
+
+  EXPECT_NEAR(value(report, "taper_deg"), std::atan(0.3) / kRadian, 1e-8);
+  EXPECT_NEAR(value(report, "apex_x_um"), 40.0, 1e-7);
+  EXPECT_EQ(report.points_removed, 1U);
+  EXPECT_TRUE(field.is_hole(5, 30));
+}
+
 TEST(PlaneForm, MinimisesDistancesAtRightAngles) {
   HeightField field = make_field(40, 30, 1.0, 1.0, [](double x, double y) { return 0.8 * x - 0.4 * y; });
   add_noise(field, 3.0, 4);
