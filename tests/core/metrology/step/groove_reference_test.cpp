@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -26,9 +28,9 @@ HeightField tilted_groove(double sign = 1.0) {
 }
 
 template <typename T>
-const T& given(const StepOutcome<T>& outcome) {
+T given(StepOutcome<T> outcome) {
   if (const auto* refusal = std::get_if<StepRefusal>(&outcome)) throw std::runtime_error(refusal->text);
-  return std::get<T>(outcome);
+  return std::get<T>(std::move(outcome));
 }
 
 template <typename T>
@@ -76,7 +78,8 @@ TEST(AGrooveAlongX, IsMeasuredByTracesAlongY) {
 }
 
 TEST(AGroove, IsRefusedWithTheReason) {
-  const HeightField flat = made_field(300, 60, [](double x, double y) { return 0.1 * std::sin(3.0 * x * y); });
+  const HeightField flat =
+      made_field(300, 60, [](double x, double y) { return 0.1 * std::sin(1.3 * x * x) + 0.001 * y; });
   EXPECT_EQ(refused(iso5436_a1(flat, {})), StepRefusalCode::kNoEdges);
 
   GrooveSettings outside;
