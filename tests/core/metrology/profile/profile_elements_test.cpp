@@ -59,6 +59,13 @@ TEST(ProfileElements, DoNotCountWhatStaysBelowTheDiscriminations) {
   EXPECT_EQ(counted.elements, clean.elements + 2);
 }
 
+TEST(ProfileElements, HaveADiscriminationOfTheirOwnForHillsAndForDales) {
+  const std::vector<double> low_hills{-1, 0.2, -1, 0.2, -1, 0.2, -1};
+
+  EXPECT_EQ(find_profile_elements(low_hills, 1.0, {0.3, 0.1, 0.0}).crossings, 0u);
+  EXPECT_EQ(find_profile_elements(low_hills, 1.0, {0.1, 0.3, 0.0}).crossings, 6u);
+}
+
 TEST(ProfileElements, TakeTheMiddleOfCrossingsThatNoiseRepeats) {
   const std::vector<double> z{-2, 2, 2, 2, 0.01, -0.01, 0.01, -2, -2, -2, 2, 2, -2};
 

@@ -62,6 +62,22 @@ TEST(ProfileExtraction, AveragesAcrossTheBandAlone) {
   EXPECT_NEAR(profile.z_um[10], 1.0, 1e-12);
 }
 
+TEST(ProfileExtraction, LaysTheBandAcrossASlantingLine) {
+  HeightField field{Plane<double>(80, 80), {}, 1.0, 1.0, {}};
+  const ProfileLine line{.from_x_um = 15.0, .from_y_um = 10.0, .to_x_um = 51.0, .to_y_um = 58.0, .band_width_um = 12.0};
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 80; ++x) {
+      const double away = 0.8 * (field.x_um(x) - 15.0) - 0.6 * (field.y_um(y) - 10.0);
+      field.z_um.at(x, y) = away * away;
+    }
+  }
+
+  const Profile profile = extract_profile(field, line);
+
+  // 12 samples, 1 um apart; bilinear heights between points are at most 1/4 above such a parabola.
+  for (const double z : profile.z_um) EXPECT_NEAR(z, (144.0 - 1.0) / 12.0 + 0.12, 0.14);
+}
+
 TEST(ProfileExtraction, MakesAHoleWhereANeighbourIsMissing) {
   HeightField field = plane(40, 40, 1.0, 1.0);
   field.z_um.at(20, 20) = kHole;
