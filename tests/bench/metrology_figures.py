@@ -40,7 +40,8 @@ def edge_plan(truth, flank_to=80):
 def edge(plant, name, seed=1, window=None):
     slices = plant.work / f"look_{name}"
     if not slices.exists():
-        plant.run(plant.sim, "truth", plant.world(name), slices)
+        slices.mkdir()
+        plant.run(plant.sim, "truth", "--world", plant.world(name), slices)
     truth = plant.truth(slices)["edge"]
     evaluation, _, _ = plant.measured(name, edge_plan(truth), seed, window)
     return evaluation["measurements"]["edge"], truth
@@ -95,7 +96,7 @@ def textures(plant):
             "measurements": {"t": {"kind": "areal", "surface": "level", "region": "middle", "parameters": ["Sq"]}}}
     figures, worst = {}, 0.0
     for sq in (0.5, 2, 5):
-        evaluation, _, slices = plant.measured("rough", plan, changes={"rough": {"sq_um": sq}})
+        evaluation, _, slices = plant.measured("rough", plan, changes={"sq_um": sq})
         found, _ = value(evaluation, "t", "Sq_um")
         noise = evaluation["measurements"]["t"]["details"]["noise_floor_Sq_um"]
         truth = box_mean(gsf(slices / "truth.gsf"), 9)[16:-16, 16:-16]
