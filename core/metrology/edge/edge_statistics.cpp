@@ -1,6 +1,7 @@
 #include "core/metrology/edge/edge_statistics.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -61,6 +62,7 @@ double shared_noise(std::span<const double> along_um, double every_um, double wi
 }
 
 EdgeValue summarise(std::span<const double> values, std::span<const double> u_noise, double shared, bool squares) {
+  assert(u_noise.empty() || u_noise.size() == values.size());
   EdgeValue value;
   std::vector<double> scaled(values.begin(), values.end());
   std::vector<double> noise(u_noise.begin(), u_noise.end());
@@ -68,10 +70,7 @@ EdgeValue summarise(std::span<const double> values, std::span<const double> u_no
   value.p10 = quantile(scaled, 0.1);
   value.p90 = quantile(scaled, 0.9);
   if (squares) {
-    for (double& u : noise) {
-      const double size = std::abs(values[static_cast<std::size_t>(&u - noise.data())]);
-      u = u * (u + 2.0 * size);
-    }
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] *= noise[i] + 2.0 * std::abs(values[i]);
     for (double& v : scaled) v *= std::abs(v);
   }
   const auto from_square = [&](double u) {
