@@ -138,7 +138,7 @@ TEST(ReportPdf, SaysAsTextWhatWasMeasuredAndUnderWhichConditions) {
                                "the light varies by 3 %",
                                "fvd 1.2.3",
                                "surface SHA-256",
-                               "times exaggerated",
+                               "heights to scale",
                                "height / µm",
                                "x / µm",
                                "step: measured heights, mean over 200 µm",

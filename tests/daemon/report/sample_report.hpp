@@ -24,6 +24,7 @@ inline Surface groove_surface(int width = 160, int height = 120, double pitch_um
   surface.pitch_x_um = surface.pitch_y_um = pitch_um;
   surface.title = "part-42";
   const auto make_hole = [&surface](int x, int y, unsigned reasons) {
+    if (x >= surface.width() || y >= surface.height()) return;
     surface.height_m.at(x, y) = surface.sigma_m.at(x, y) = std::numeric_limits<float>::quiet_NaN();
     surface.mask.at(x, y) = static_cast<MaskReasons>(reasons);
   };
