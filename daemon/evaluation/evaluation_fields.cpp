@@ -217,7 +217,7 @@ void describe_edge(PlannedMeasurement& measurement, Fields& fields) {
       "model: where the rounding ends follows from the fit; tolerance: where it leaves the flank by this much");
   measurement.method = method;
   fields.number("tolerance_um", measurement.tolerance_um, positive(100.0), "of the method tolerance");
-  fields.choice("rake_side", measurement.rake_side, {"left", "right", "above", "below"},
+  fields.choice("rake_side", measurement.rake_side, {"left", "right", "top", "bottom"},
                 "where the rake face lies in the image");
   fields.number("sections_every_um", measurement.sections_every_um, positive(1e5),
                 "each section is the mean over so much along the edge");

@@ -23,8 +23,8 @@ using nlohmann::ordered_json;
 
 metrology::RakeSide rake_side(const std::string& name) {
   if (name == "right") return metrology::RakeSide::kRight;
-  if (name == "above") return metrology::RakeSide::kTop;
-  if (name == "below") return metrology::RakeSide::kBottom;
+  if (name == "top") return metrology::RakeSide::kTop;
+  if (name == "bottom") return metrology::RakeSide::kBottom;
   return metrology::RakeSide::kLeft;
 }
 

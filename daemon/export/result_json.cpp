@@ -197,8 +197,13 @@ Json times(const PhaseTimes& times) {
   return {{"prepare_ms", ms(times.prepare_ms)},
           {"scan_ms", ms(times.scan_ms)},
           {"finish_ms", ms(times.finish_ms)},
-          {"write_ms", ms(times.write_ms)},
-          {"evaluate_ms", times.evaluate_ms ? ms(*times.evaluate_ms) : Json(nullptr)}};
+          {"write_ms", ms(times.write_ms)}};
+}
+
+Json times(const Result& result) {
+  Json json = times(result.times);
+  if (result.times.evaluate_ms) json["evaluate_ms"] = ms(*result.times.evaluate_ms);
+  return json;
 }
 
 /// The recipe stands here for readers of format 1.
@@ -245,7 +250,7 @@ std::string result_json_text(const Result& result) {
   json["slices"] = slices(result.slices);
   json["steps"] = steps(result);
   json["stage_in_curves"] = stage(result.stage);
-  json["times"] = times(result.times);
+  json["times"] = times(result);
   json["provenance"] = provenance(result);
   json["files"] = file_list(result.files);
   return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";

@@ -26,7 +26,7 @@ double checked_nesting_px(double nesting_um, double pitch_um, std::string_view a
     throw Error(ErrorCode::kBadInput, "nesting index " + figure(nesting_um) + " um and pitch " + figure(pitch_um) +
                                           " um" + std::string(axis) + " must be positive numbers");
   }
-  if (!(nesting_px >= kMinNestingPx * (1.0 - 1e-9))) {  // 0.3 / 0.06 is below 5
+  if (!(nesting_px >= kMinNestingPx * (1.0 - 1e-9))) {  // 0.35 / 0.07 is below 5
     throw Error(ErrorCode::kBadInput, "nesting index " + figure(nesting_um) + " um is " + figure(nesting_px) +
                                           " pixels" + std::string(axis) + "; a filter needs at least " +
                                           figure(kMinNestingPx) + " pixels, here " + figure(kMinNestingPx * pitch_um) +

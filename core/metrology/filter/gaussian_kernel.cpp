@@ -10,8 +10,6 @@ namespace {
 
 constexpr double kMeanWidth = 0.46971863934982567;        // sqrt(ln 2 / pi)
 constexpr double kParaboloidWidth = 0.73091342809467587;  // sqrt(u / pi), (1 + u) exp(-u) = 1 / 2, u = 1.678347
-/// In nesting indices, for kMeanWidth.
-constexpr double kSupport = 1.1;
 
 }  // namespace
 
@@ -35,9 +33,9 @@ double SampledGaussian::sum() const {
   return weights.front() + 2.0 * tail;
 }
 
-SampledGaussian sample_gaussian(FilterMethod method, double nesting_px) {
-  assert(nesting_px > 0.0);
-  const double support_px = kSupport * nesting_px * gaussian_width(method) / kMeanWidth;
+SampledGaussian sample_gaussian(FilterMethod method, double nesting_px, double support) {
+  assert(nesting_px > 0.0 && support >= 0.75);
+  const double support_px = support * nesting_px * gaussian_width(method) / kMeanWidth;
   SampledGaussian kernel;
   kernel.deviation_px = gaussian_deviation(method, nesting_px);
   const auto reach = static_cast<std::size_t>(std::ceil(support_px));

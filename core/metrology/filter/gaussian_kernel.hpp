@@ -29,8 +29,11 @@ struct SampledGaussian {
   [[nodiscard]] double sum() const;  ///< over both sides
 };
 
-/// Reaches to 1.1 nesting indices (order 2: the same share of its width), where the weight is below 4e-8 of the middle:
-/// 0.5 nesting indices would err by 1.1 %. nesting_px > 0.
-[[nodiscard]] SampledGaussian sample_gaussian(FilterMethod method, double nesting_px);
+/// In nesting indices, for the width of the mean; order 2 reaches as many of its deviations. 0.5 would err by 1.1 %.
+inline constexpr double kUsualSupport = 1.1;   ///< weights beyond are below 4e-8 of the middle
+inline constexpr double kWholeSupport = 1.55;  ///< below 2e-15: the transform of the kernel ends, too
+
+/// support >= 0.75, see above; nesting_px > 0.
+[[nodiscard]] SampledGaussian sample_gaussian(FilterMethod method, double nesting_px, double support = kUsualSupport);
 
 }  // namespace fvd::metrology

@@ -9,9 +9,9 @@
 namespace fvd::metrology {
 
 /// Smallest pivot that still determines a coefficient, of the coefficient's own moment and of the whole kernel's
-/// weight: moments come from Fourier transforms with errors of 1e-16 of that weight.
+/// weight: moments come from Fourier transforms with errors of 1e-15 of that weight.
 inline constexpr double kMinRelativePivot = 1e-7;
-inline constexpr double kMinPivot = 1e-10;
+inline constexpr double kMinPivot = 1e-8;
 
 /// Normal equations of N coefficients, the constant as the last one: matrix (lower triangle) and right hand side.
 template <std::size_t N>

@@ -1,17 +1,13 @@
+#include "core/metrology/filter/separable_sum.hpp"
+
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <functional>
-#include <utility>
 #include <vector>
-
-#include "core/metrology/filter/band_moments.hpp"
 
 namespace fvd::metrology {
 namespace {
 
-/// Reach in x and y together from which transforms are faster.
-constexpr std::size_t kLongKernel = 90;
 constexpr int kRowsOfALane = 16;
 
 /// One row, the neighbours beyond its ends 0. padded: memory of width + 2 * reach.
@@ -65,14 +61,14 @@ Plane<double> sum_directly(const Plane<double>& source, const SeparableKernel& k
 }  // namespace
 
 Plane<double> separable_sum(const Plane<double>& source, const SeparableKernel& kernel, WorkerPool* pool) {
-  if (kernel.half_x.size() + kernel.half_y.size() < kLongKernel) return sum_directly(source, kernel, pool);
-  BandMoments moments(source.width(), source.height(), kernel, 0, pool);
+  if (kernel.half_x.size() + kernel.half_y.size() <= static_cast<std::size_t>(kLongReachPx) + 2) {
+    return sum_directly(source, kernel, pool);
+  }
+  MomentRows moments(source.width(), source.height(), kernel, 0, 1, pool);
   auto result = Plane<double>::unset(source.width(), source.height());
-  constexpr std::array<MomentPower, 1> kSum{{{0, 0}}};
-  std::array<Plane<double>, 1> band_sum;
   for (int band = 0; band < moments.bands(); ++band) {
-    moments.compute(source, band, kSum, band_sum);
-    std::copy_n(band_sum[0].row(0), band_sum[0].pixels().size(), result.row(moments.first_row(band)));
+    const MomentRows::Band loaded = moments.load(source, band, 0);
+    moments.each_row(band, [&](int lane, int y) { moments.sum_row(loaded, y, {0, 0}, lane, result.row(y)); });
   }
   return result;
 }

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/metrology/filter/band_moments.hpp"
 #include "core/metrology/filter/gaussian_kernel.hpp"
+#include "core/metrology/filter/separable_sum.hpp"
 
 namespace fvd::metrology {
 namespace {

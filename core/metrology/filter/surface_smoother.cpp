@@ -6,15 +6,15 @@
 #include <limits>
 #include <vector>
 
-#include "core/metrology/filter/band_moments.hpp"
 #include "core/metrology/filter/gaussian_kernel.hpp"
 #include "core/metrology/filter/local_polynomial.hpp"
+#include "core/metrology/filter/moment_rows.hpp"
+#include "core/metrology/filter/separable_sum.hpp"
 
 namespace fvd::metrology {
 namespace {
 
 constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
-constexpr int kRowsOfALane = 16;
 
 std::vector<double> scaled_to_sum_one(SampledGaussian kernel) {
   const double sum = kernel.sum();
@@ -23,8 +23,12 @@ std::vector<double> scaled_to_sum_one(SampledGaussian kernel) {
 }
 
 SeparableKernel kernel_of(const SmootherInput& input) {
-  SampledGaussian x = sample_gaussian(input.method, input.nesting_px_x);
-  SampledGaussian y = sample_gaussian(input.method, input.nesting_px_y);
+  // Sums that are added up cost by the reach; transforms cost by the waves that pass.
+  const bool is_added_up = input.method == FilterMethod::kGaussian &&
+                           kUsualSupport * (input.nesting_px_x + input.nesting_px_y) < kLongReachPx - 2;
+  const double support = is_added_up ? kUsualSupport : kWholeSupport;
+  SampledGaussian x = sample_gaussian(input.method, input.nesting_px_x, support);
+  SampledGaussian y = sample_gaussian(input.method, input.nesting_px_y, support);
   const double unit_x = x.deviation_px;
   const double unit_y = y.deviation_px;
   return {scaled_to_sum_one(std::move(x)), scaled_to_sum_one(std::move(y)), unit_x, unit_y};
@@ -79,50 +83,50 @@ struct Products {
   }
 };
 
+/// Rows of sums, one for each power; one for each lane.
+using RowSums = std::vector<std::vector<double>>;
+
 template <typename Form>
-void solve_row(const Products<Form>& products, std::span<const double* const> weight_rows,
-               std::span<const double* const> height_rows, int width, double* smooth) {
-  for (int x = 0; x < width; ++x) {
+void solve_row(const Products<Form>& products, const RowSums& of_weights, const RowSums& of_heights,
+               std::span<double> smooth) {
+  for (std::size_t x = 0; x < smooth.size(); ++x) {
     LocalMoments<Form::kTerms> moments;
     for (std::size_t i = 0; i < Form::kTerms; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) moments.matrix[i][j] = weight_rows[products.place[i][j]][x];
-      moments.right[i] = height_rows[i][x];
+      for (std::size_t j = 0; j <= i; ++j) moments.matrix[i][j] = of_weights[products.place[i][j]][x];
+      moments.right[i] = of_heights[i][x];
     }
     const bool enough = moments.matrix[Form::kTerms - 1][Form::kTerms - 1] >= kMinRegressionWeightShare;
     smooth[x] = enough ? constant_term(moments).value_or(kHole) : kHole;
   }
 }
 
-std::vector<const double*> rows_of(std::span<const Plane<double>> planes, int y) {
-  std::vector<const double*> rows;
-  rows.reserve(planes.size());
-  for (const Plane<double>& plane : planes) rows.push_back(plane.row(y));
-  return rows;
-}
-
 template <typename Form>
 void smooth_by_polynomial(const SmootherInput& input, WorkerPool* pool, Plane<double>& smooth_um,
                           Plane<double>& share) {
   const Products<Form> products;
-  const int width = input.z_um.width();
-  const int highest = 2 * (Form::kPowers[Form::kTerms - 2].y);
-  BandMoments moments(width, input.z_um.height(), kernel_of(input), highest, pool);
+  const auto width = static_cast<std::size_t>(input.z_um.width());
+  constexpr int kHighest = Form::kPowers[Form::kTerms - 2].y;
+  MomentRows moments(input.z_um.width(), input.z_um.height(), kernel_of(input), 2 * kHighest, 3 * kHighest + 2, pool);
   const Plane<double> heights = weighted_heights(input);
-  std::vector<Plane<double>> of_weights(products.powers.size());
-  std::array<Plane<double>, Form::kTerms> of_heights;
+  const auto lanes = static_cast<std::size_t>(moments.lanes());
+  std::vector<RowSums> of_weights(lanes, RowSums(products.powers.size(), std::vector<double>(width)));
+  std::vector<RowSums> of_heights(lanes, RowSums(Form::kTerms, std::vector<double>(width)));
   const std::size_t constant = products.place[Form::kTerms - 1][Form::kTerms - 1];
   for (int band = 0; band < moments.bands(); ++band) {
-    moments.compute(input.weights, band, products.powers, of_weights);
-    moments.compute(heights, band, Form::kPowers, of_heights);
-    const int first = moments.first_row(band);
-    const int rows = moments.first_row(band + 1) - first;
-    const auto solve = [&](int lane) {
-      for (int y = lane * kRowsOfALane; y < std::min((lane + 1) * kRowsOfALane, rows); ++y) {
-        solve_row<Form>(products, rows_of(of_weights, y), rows_of(of_heights, y), width, smooth_um.row(first + y));
-        std::copy_n(of_weights[constant].row(y), width, share.row(first + y));
+    const MomentRows::Band band_weights = moments.load(input.weights, band, 2 * kHighest);
+    const MomentRows::Band band_heights = moments.load(heights, band, kHighest);
+    moments.each_row(band, [&](int lane, int y) {
+      RowSums& weight_sums = of_weights[static_cast<std::size_t>(lane)];
+      RowSums& height_sums = of_heights[static_cast<std::size_t>(lane)];
+      for (std::size_t k = 0; k < weight_sums.size(); ++k) {
+        moments.sum_row(band_weights, y, products.powers[k], lane, weight_sums[k].data());
       }
-    };
-    run_lanes(pool, (rows + kRowsOfALane - 1) / kRowsOfALane, std::ref(solve));
+      for (std::size_t k = 0; k < height_sums.size(); ++k) {
+        moments.sum_row(band_heights, y, Form::kPowers[k], lane, height_sums[k].data());
+      }
+      solve_row<Form>(products, weight_sums, height_sums, {smooth_um.row(y), width});
+      std::copy_n(weight_sums[constant].data(), width, share.row(y));
+    });
   }
 }
 

@@ -86,15 +86,23 @@ class BandJudge {
   /// its code, so that two of them differ by at most one step more than their codes; one more step is for rounding.
   [[nodiscard]] bool is_near(int column, int row) {
     const int here = band_.code(column, row);
+    if (std::abs(here) == kLastCode) return false;
+    const double allowed_steps = settings_.limit * sigma_um(column, row) / band_.step_um();
+    const int allowed = static_cast<int>(std::min(allowed_steps, 2.0 * kLastCode)) - 2;
+    if (allowed > 0 && 2 * count_between(here - allowed, here + allowed) > order_.valid()) {
+      return true;  // so many are within limit * sigma that their median is
+    }
     const auto [lower, upper] = order_.middle();
     const int steps = std::max(std::abs(here - lower), std::abs(here - upper)) + 2;
-    if (std::abs(here) == kLastCode) return false;
-    if (steps * band_.step_um() <= settings_.limit * sigma_um(column, row))
-      return lower > -kLastCode && upper < kLastCode;
     // Over half of the points farther from the median than this: the MAD is too large for an outlier.
     const int needed = static_cast<int>(std::min(steps / (settings_.limit * kMadToSigma), 1e6)) + 3;
     if (lower - needed <= -kLastCode || upper + needed >= kLastCode) return false;
     return order_.count_between(lower - needed, upper + needed) < order_.valid() / 2;
+  }
+
+  /// Without the outermost codes, behind which there may be any height.
+  [[nodiscard]] int count_between(int from, int to) const {
+    return order_.count_between(std::max(from, 1 - kLastCode), std::min(to, kLastCode - 1));
   }
 
   /// The rule itself.

@@ -11,22 +11,36 @@ namespace {
 constexpr int kLanes = 8;
 using Codes = std::vector<std::int16_t>;
 
+using Lanes = std::array<std::int16_t, kLanes>;
+
+/// The smallest code above the pivot.
 std::int16_t next_above(const Codes& codes, std::int16_t pivot) {
-  std::int16_t best = 32767;
-  for (const std::int16_t code : codes) {
-    const std::int16_t candidate = code > pivot ? code : std::int16_t{32767};
-    best = std::min(best, candidate);
+  Lanes best;
+  best.fill(32767);
+  for (std::size_t i = 0; i < codes.size(); i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::int16_t code = codes[i + lane];
+      const auto counts = static_cast<std::int16_t>(-static_cast<std::int16_t>(code > pivot));  // all bits or none
+      const auto candidate = static_cast<std::int16_t>((code & counts) | (32767 & ~counts));
+      best[lane] = candidate < best[lane] ? candidate : best[lane];
+    }
   }
-  return best;
+  return *std::min_element(best.begin(), best.end());
 }
 
+/// The largest code below the pivot.
 std::int16_t next_below(const Codes& codes, std::int16_t pivot) {
-  std::int16_t best = kHoleCode;
-  for (const std::int16_t code : codes) {
-    const std::int16_t candidate = code < pivot ? code : kHoleCode;
-    best = std::max(best, candidate);
+  Lanes best;
+  best.fill(kHoleCode);
+  for (std::size_t i = 0; i < codes.size(); i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::int16_t code = codes[i + lane];
+      const auto counts = static_cast<std::int16_t>(-static_cast<std::int16_t>(code < pivot));
+      const auto candidate = static_cast<std::int16_t>((code & counts) | (kHoleCode & ~counts));
+      best[lane] = candidate > best[lane] ? candidate : best[lane];
+    }
   }
-  return best;
+  return *std::max_element(best.begin(), best.end());
 }
 
 int count_equal(const Codes& codes, std::int16_t pivot) {

@@ -19,12 +19,14 @@ struct ProfileSettings {
   /// kGaussian takes nesting_um / 2 away at each end.
   FilterMethod method = FilterMethod::kGaussianRegression1;
   bool robust = false;
-  int sections = 5;                         ///< >= 1
-  std::optional<double> section_length_um;  ///< absent: nesting_um
-  std::optional<double> tolerance_ra_um;    ///< chooses the default settings; absent: the measured Ra does
-  std::optional<double> noise_floor_um;     ///< Rsk and Rku are not given where Rq is not above it; likewise Psk, Pku
-  double height_discrimination = 0.1;       ///< of Rp for hills and of Rv for dales: lower ones do not count (RSm, Rc)
-  double length_discrimination = 0.01;      ///< of the section length: shorter hills and dales do not count
+  int sections = 5;  ///< >= 1
+  /// Absent: nesting_um, and without that the whole profile in equal sections.
+  std::optional<double> section_length_um = std::nullopt;
+  std::optional<double> tolerance_ra_um = std::nullopt;  ///< chooses the default settings; absent: the measured Ra does
+  std::optional<double> noise_floor_um =
+      std::nullopt;                     ///< Rsk and Rku are not given where Rq is not above it; likewise Psk, Pku
+  double height_discrimination = 0.1;   ///< of Rp for hills and of Rv for dales: lower ones do not count (RSm, Rc)
+  double length_discrimination = 0.01;  ///< of the section length: shorter hills and dales do not count
 };
 
 struct ProfileResult {
@@ -32,7 +34,7 @@ struct ProfileResult {
   std::size_t points = 0;             ///< valid points inside the evaluation length
   double valid_fraction = 0.0;        ///< of its points
   double longest_hole_um = 0.0;       ///< inside it
-  double evaluation_length_um = 0.0;  ///< sections * section_length_um; it lies in the middle of the profile
+  double evaluation_length_um = 0.0;  ///< sections * section_length_um; in the middle, ends at whole points
   double section_length_um = 0.0;
   int sections = 0;
   std::optional<bool> default_settings;  ///< absent: neither a tolerance nor an Ra
@@ -44,12 +46,13 @@ struct ProfileResult {
 };
 
 /// Formulas: ISO 21920-2:2021, heights against the reference line (P: least squares line over the evaluation length;
-/// W: the same line; R: the filter's). Pa Pq Psk Pku Pt Pz, Wa Wq Wt, Ra Rq Rsk Rku Rt Rdq and the Rk family over the
+/// W: its mean; R: the filter's). Pa Pq Psk Pku Pt Pz, Wa Wq Wt, Ra Rq Rsk Rku Rt Rdq and the Rk family over the
 /// evaluation length (P has one section, so that Pz = Pt); Rz Rp Rv means over the sections; RSm Rc over complete
-/// elements, see profile_elements.hpp. A point belongs to the section in which it stands.
+/// elements, see profile_elements.hpp. A point belongs to the section in which it stands, to both on their common end.
 ///
-/// No value is given where a section has a hole longer than nesting_um / 4; one that cannot be given says why.
-/// Throws Error(kBadInput) for an empty profile, sections < 1, lengths that are not positive numbers. context: pure.
+/// No value is given where a section has a hole longer than nesting_um / 4 (without one: section / 4); one that cannot
+/// be given says why. Throws Error(kBadInput) for an empty profile, sections < 1, lengths that are not positive
+/// numbers. context: pure.
 [[nodiscard]] ProfileResult evaluate_profile(const Profile& profile, std::span<const ProfileParameter> parameters,
                                              const ProfileSettings& settings);
 

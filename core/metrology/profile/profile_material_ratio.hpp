@@ -17,8 +17,9 @@ struct MaterialRatioCore {
 };
 
 /// sorted_um: highest first, at least 3, none NaN. The curve goes straight through the heights at the ratios
-/// (i + 0.5) / n and level to 0 and to 1 beyond the first and last. The flattest secant over 40 % of ratio, the first
-/// from the left (equal to 1e-9 of the height), makes the core; areas outside are exact. context: pure.
+/// (i + 0.5) / n. Secants see it go on straight beyond the first and last, areas and ratios level. The flattest secant
+/// over 40 % of ratio, the first from the left (equal to 1e-9 of the height), makes the core; areas outside are exact.
+/// context: pure.
 [[nodiscard]] MaterialRatioCore material_ratio_core(std::span<const double> sorted_um);
 
 }  // namespace fvd::metrology

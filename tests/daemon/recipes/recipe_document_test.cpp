@@ -218,8 +218,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "height_*.tiff stands for maps that the recipe does not ask for, so no file is made; expected "
                   "methods at /reconstruct/focus/extra_peaks"},
         BadRecipe{with("", R"(, "keep": {"slices": "yes"})"), "/keep/slices", "true or false"},
-        BadRecipe{with("", R"(, "evaluation": {})"), "/evaluation", "unknown key"},
         BadRecipe{with("", R"(, "report": {})"), "/report", "unknown key"},
+        BadRecipe{with("", R"(, "evaluation": {"regons": {}})"), "/evaluation/regons", "unknown key"},
         BadRecipe{with(R"(, "light": {})", ""), "/acquire/light", "unknown key"},
         BadRecipe{std::string(kMaxRecipeBytes + 1, ' '), "", "at most 32768"}),
     [](const auto& of) { return test::readable_name(of.index, of.param.pointer + " " + of.param.says); });

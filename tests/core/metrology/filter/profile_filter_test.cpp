@@ -90,7 +90,7 @@ TEST(ProfileFilter, LeavesTheKnownErrorOfASlopeAtABorder) {
 TEST(ProfileFilter, RefusesNestingIndicesBelowFivePointsWithTheFigure) {
   const std::vector<double> z(50, 1.0);
 
-  EXPECT_NO_THROW((void)filter_profile(z, 0.06, {.nesting_um = 0.3}));
+  EXPECT_NO_THROW((void)filter_profile(z, 0.07, {.nesting_um = 0.35}));
   try {
     (void)filter_profile(z, 2.0, {.nesting_um = 9.8});
     FAIL();

@@ -159,5 +159,30 @@ TEST(RobustRounds, WeighByTukeysFormula) {
   EXPECT_EQ(weights[4], 0.0);
 }
 
+TEST(RobustRounds, LeaveTheWeightWhereAFitIsNotDetermined) {
+  const std::vector<double> z{0.1, -0.1, 0.1, 0.4};
+  std::vector<double> weights{1.0, 1.0, 1.0, 0.7};
+  std::vector<double> smooth(4, 0.0);
+  smooth[3] = kHole;
+
+  (void)fit_robustly(z, weights, smooth, [] {});
+
+  EXPECT_EQ(weights[3], 0.7);
+  EXPECT_LT(weights[0], 1.0);
+}
+
+TEST(RobustRounds, TakeTheirScaleFromTheLargestResidualWhereMostAreNone) {
+  const std::vector<double> z{0.0, 0.0, 0.0, 0.0001, 1.0};
+  std::vector<double> weights(5, 1.0);
+  const std::vector<double> smooth(5, 0.0);
+
+  const RobustRounds rounds = fit_robustly(z, weights, smooth, [] {});
+
+  EXPECT_NEAR(*rounds.cut_um, 0.001, 1e-15);
+  EXPECT_EQ(weights[0], 1.0);
+  EXPECT_GT(weights[3], 0.9);
+  EXPECT_EQ(weights[4], 0.0);
+}
+
 }  // namespace
 }  // namespace fvd::metrology

@@ -19,8 +19,8 @@ constexpr double kRadian = std::numbers::pi / 180.0;
 /// Heights of the points p of a vertical line with distance(p) = 0, by bisection between two heights.
 template <typename Distance>
 double root(double low, double high, const Distance& distance) {
-  long double a = low;
-  long double b = high;
+  auto a = static_cast<long double>(low);
+  auto b = static_cast<long double>(high);
   const bool rises = distance(b) > 0.0L;
   for (int i = 0; i < 120; ++i) {
     const long double middle = 0.5L * (a + b);
@@ -31,8 +31,8 @@ double root(double low, double high, const Distance& distance) {
 
 HeightField sphere_cap(double side) {
   return make_field(160, 120, 0.8, 1.1, [side](double x, double y) {
-    const long double dx = x - 70.0L;
-    const long double dy = y - 60.0L;
+    const long double dx = static_cast<long double>(x) - 70.0L;
+    const long double dy = static_cast<long double>(y) - 60.0L;
     return static_cast<double>(12.0L + static_cast<long double>(side) * std::sqrt(500.0L * 500.0L - dx * dx - dy * dy));
   });
 }
@@ -176,7 +176,7 @@ class AxisForm : public testing::TestWithParam<Axis> {
         const Eigen::Matrix<long double, 3, 1> d(static_cast<long double>(x) - 60.0L,
                                                  static_cast<long double>(y) - 50.0L, z + 20.0L);
         const long double along = d.dot(axis);
-        return (d - along * axis).norm() - (radius + slope * along);
+        return (d - along * axis).norm() - (static_cast<long double>(radius) + static_cast<long double>(slope) * along);
       };
       // The point of the axis nearest to the vertical line lies inside of the form.
       const Eigen::Vector3d a = direction();
@@ -240,6 +240,23 @@ TEST(ConeForm, FindsACountersinkThatStandsUpright) {
   EXPECT_NEAR(value(report, "apex_x_um"), 70.0, 1e-8);
   EXPECT_NEAR(value(report, "apex_z_um"), 5.0, 1e-8);
   EXPECT_LT(largest(field), 1e-9);
+}
+
+TEST(ConeForm, EndsAtItsApex) {
+  HeightField field = make_field(120, 60, 1.0, 1.0, [](double x, double y) {
+    const double radius = 0.3 * (x - 40.0);
+    const double square = radius * radius - (y - 30.0) * (y - 30.0);
+    return x > 40.0 && square > 0.0 ? std::sqrt(square) : kHole;
+  });
+  field.z_um.at(5, 30) = 0.0;  // where the mirrored half of the cone would be
+
+  const OperationReport report =
+      remove_form(field, {FormKind::kCone, 2}, rectangle_region(grid_of(field), {60.0, 0.0, 60.0, 60.0}));
+
+  EXPECT_NEAR(value(report, "taper_deg"), std::atan(0.3) / kRadian, 1e-8);
+  EXPECT_NEAR(value(report, "apex_x_um"), 40.0, 1e-7);
+  EXPECT_EQ(report.points_removed, 1U);
+  EXPECT_TRUE(field.is_hole(5, 30));
 }
 
 TEST(PlaneForm, MinimisesDistancesAtRightAngles) {

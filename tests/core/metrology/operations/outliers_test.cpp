@@ -38,7 +38,7 @@ bool is_outlier(const HeightField& field, int column, int row, const OutlierSett
   return std::abs(field.z_um.at(column, row) - median) > settings.limit * std::max(1.4826 * mad, sigma);
 }
 
-/// Noise, holes alone and in a block, spikes, steps, equal heights.
+/// Noise, holes alone and in a block, spikes, steps, equal heights; far more than any codes of 16 bits reach.
 HeightField rough_field(int width, int height, bool sigma, double holes) {
   HeightField field = make_field(width, height, 1.0, 1.0,
                                  [](double x, double y) { return 0.3 * x - 0.1 * y + (x > 20.0 ? 50.0 : 0.0); });
@@ -48,6 +48,10 @@ HeightField rough_field(int width, int height, bool sigma, double holes) {
   for (double& z : field.z_um.pixels()) z += uniform(generator) < 0.05 ? 10.0 * uniform(generator) : 0.0;
   for (int row = 0; row < std::min(height, 9); ++row) {
     for (int column = 0; column < std::min(width, 9); ++column) field.z_um.at(column, row) = 7.0;
+  }
+  for (double& z : field.z_um.pixels()) z = uniform(generator) < 0.01 ? 1e6 * (uniform(generator) - 0.5) : z;
+  for (int row = 20; row < std::min(height, 28); ++row) {
+    for (int column = 0; column < std::min(width, 10); ++column) field.z_um.at(column, row) -= 1e5;
   }
   punch_holes(field, holes, 6);
   for (int row = height / 2; row < std::min(height / 2 + 12, height); ++row) {

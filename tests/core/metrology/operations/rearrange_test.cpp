@@ -129,6 +129,20 @@ TEST(Lateral, MakesAHoleOfAPointWithAMissingNeighbour) {
   EXPECT_TRUE(field.is_hole(5, 1));
 }
 
+TEST(Lateral, AsksForNoNeighbourWhereRoundingMissesAWholePixel) {
+  for (const double y_um : {7.0, 13.0}) {  // 6 / 70 * 7 / 0.1 is a little below 6, 6 / 130 * 13 / 0.1 above
+    for (int pixels = 1; pixels <= 6; ++pixels) {
+      HeightField field = make_field(20, 1, 0.1, 2.0 * y_um, [](double x, double) { return x; });
+      field.z_um.at(12, 0) = kHole;
+
+      (void)lateral(field, {0.1, 2.0 * y_um, -pixels / (10.0 * y_um)});
+
+      EXPECT_EQ(hole_count(field), static_cast<std::size_t>(pixels) + 1U);
+      EXPECT_TRUE(field.is_hole(12 - pixels, 0));
+    }
+  }
+}
+
 TEST(Lateral, RefusesCalibrationsThatCannotBe) {
   HeightField field = numbered(2, 2);
 

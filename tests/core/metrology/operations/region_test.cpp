@@ -239,6 +239,12 @@ TEST(ThresholdRegion, KeepsTheLargestPartWhoseParentsMeetLate) {
   EXPECT_FALSE(found.tie);
 }
 
+TEST(ThresholdRegion, DoesNotConnectAcrossCorners) {
+  EXPECT_EQ(threshold_region(heights({"##..", "..##"}), {5.0, std::nullopt, false}).parts, 2U);
+  EXPECT_EQ(threshold_region(heights({"..##", "##.."}), {5.0, std::nullopt, false}).parts, 2U);
+  EXPECT_EQ(threshold_region(heights({".###", "##.."}), {5.0, std::nullopt, false}).parts, 1U);
+}
+
 TEST(ThresholdRegion, SaysThatTwoPartsAreEquallyLarge) {
   const ThresholdRegion found = threshold_region(heights({"##.##"}), {std::nullopt, 20.0, true});
   const ThresholdRegion tied = threshold_region(heights({"##.##"}), {5.0, std::nullopt, true});

@@ -1,10 +1,12 @@
-#include "core/metrology/filter/band_moments.hpp"
+#include "core/metrology/filter/moment_rows.hpp"
 
 #include <array>
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
+
+#include "core/metrology/filter/separable_sum.hpp"
 
 namespace fvd::metrology {
 namespace {
@@ -38,41 +40,40 @@ double sum_at(const Plane<double>& source, const SeparableKernel& kernel, int x,
   return sum;
 }
 
-TEST(BandMoments, AreTheSumsOfTheirDefinition) {
+TEST(MomentRows, AreTheSumsOfTheirDefinition) {
   const Plane<double> source = random_plane(23, 17);
   const SeparableKernel kernel{falling(5), falling(30), 2.0, 4.0};
-  constexpr std::array<MomentPower, 5> kPowers{{{0, 0}, {1, 0}, {0, 3}, {1, 1}, {4, 2}}};
-  BandMoments moments(23, 17, kernel, 4, nullptr);
-  std::array<Plane<double>, 5> sums;
+  MomentRows moments(23, 17, kernel, 4, 4, nullptr);
 
-  moments.compute(source, 0, kPowers, sums);
+  const MomentRows::Band band = moments.load(source, 0, 3);
 
   ASSERT_EQ(moments.bands(), 1);
-  for (std::size_t k = 0; k < kPowers.size(); ++k) {
+  for (const MomentPower power : {MomentPower{0, 0}, {1, 0}, {0, 3}, {1, 1}, {4, 2}}) {
     for (int y = 0; y < 17; ++y) {
+      std::array<double, 23> sums{};
+      moments.sum_row(band, y, power, 0, sums.data());
       for (int x = 0; x < 23; ++x) {
-        const double expected = sum_at(source, kernel, x, y, kPowers[k]);
-        EXPECT_NEAR(sums[k].at(x, y), expected, 1e-10) << k << " " << x << " " << y;
+        EXPECT_NEAR(sums[static_cast<std::size_t>(x)], sum_at(source, kernel, x, y, power), 1e-10);
       }
     }
   }
 }
 
-TEST(BandMoments, AreTheSameWhereTwoBandsMeet) {
-  const Plane<double> source = random_plane(1000, 2500);
-  const SeparableKernel kernel{falling(8), falling(9), 1.0, 1.0};
-  constexpr std::array<MomentPower, 1> kPowers{{{0, 1}}};
-  BandMoments moments(1000, 2500, kernel, 1, nullptr);
-
-  ASSERT_EQ(moments.bands(), 3);
-  EXPECT_EQ(moments.first_row(3), 2500);
-  for (int band = 0; band < 3; ++band) {
-    std::array<Plane<double>, 1> sums;
-    moments.compute(source, band, kPowers, sums);
-    const int first = moments.first_row(band);
-    for (const int row : {0, 3, sums[0].height() - 1}) {
-      for (const int x : {0, 500, 999}) {
-        EXPECT_NEAR(sums[0].at(x, row), sum_at(source, kernel, x, first + row, kPowers[0]), 1e-10);
+TEST(MomentRows, AreTheSameWhereBandsMeet) {
+  const Plane<double> source = random_plane(1000, 900);
+  const SeparableKernel kernel{falling(8), falling(70), 1.0, 1.0};
+  for (const int bands : {2, 3}) {  // without and with one that has neighbours on both sides
+    MomentRows moments(1000, 900, kernel, 1, bands == 2 ? 20 : 40, nullptr);
+    ASSERT_EQ(moments.bands(), bands);
+    EXPECT_EQ(moments.first_row(bands), 900);
+    for (int k = 0; k < bands; ++k) {
+      const MomentRows::Band band = moments.load(source, k, 1);
+      for (const int row : {moments.first_row(k), moments.first_row(k) + 3, moments.first_row(k + 1) - 1}) {
+        std::vector<double> sums(1000);
+        moments.sum_row(band, row, {0, 1}, 0, sums.data());
+        for (const std::size_t x : {0u, 500u, 999u}) {
+          EXPECT_NEAR(sums[x], sum_at(source, kernel, static_cast<int>(x), row, {0, 1}), 1e-10);
+        }
       }
     }
   }

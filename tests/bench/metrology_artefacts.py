@@ -1,0 +1,82 @@
+"""Artefacts of known dimensions through fvd-sim render and fvdctl process; for metrology_figures.py."""
+
+import json
+import pathlib
+import subprocess
+
+import numpy as np
+
+
+class Plant:
+    """The programs of one build, and a folder for what they make."""
+
+    def __init__(self, work, build, root):
+        self.work = pathlib.Path(work)
+        self.sim = str(pathlib.Path(build) / "sim/fvd-sim")
+        self.fvdctl = str(pathlib.Path(build) / "daemon/ctl/fvdctl")
+        self.root = pathlib.Path(root)
+        self.runs = 0
+
+    def run(self, *command, good=(0, 2, 3, 4)):
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True, errors="replace")
+        if done.returncode not in good:
+            raise RuntimeError(f"{' '.join(map(str, command))}\nexit {done.returncode}: {done.stderr[-800:]}")
+        return done
+
+    def world(self, name, changes=None):
+        """A world of sim/worlds, with groups of it changed."""
+        file = self.root / "sim/worlds" / f"{name}.json"
+        if not changes:
+            return file
+        world = json.loads(file.read_text())
+        for group, members in changes.items():
+            if isinstance(members, dict):
+                world.setdefault(group, {}).update(members)
+            else:
+                world[group] = members
+        made = self.work / f"world_{self.runs}.json"
+        made.write_text(json.dumps(world))
+        return made
+
+    def measured(self, name, evaluation, seed=1, window=None, changes=None):
+        """(evaluation of the result, folder of the result, folder of slices and truth)"""
+        self.runs += 1
+        slices = self.work / f"slices_{self.runs}"
+        out = self.work / f"result_{self.runs}"
+        self.run(self.sim, "render", self.world(name, changes), slices, "--seed", seed, "--format", "pgm")
+        z = np.loadtxt(slices / "z.txt", ndmin=1)
+        focus = {"curve_width_um": 28}
+        focus.update(window or {"window": "box", "window_px": 9})
+        recipe = self.work / f"recipe_{self.runs}.json"
+        recipe.write_text(json.dumps({
+            "format": 2,
+            "acquire": {"scan": {"start_um": float(z[0]), "step_um": float(z[1] - z[0]), "slices": len(z)}},
+            "reconstruct": {"focus": focus},
+            "evaluation": evaluation,
+        }))
+        self.run(self.fvdctl, "process", slices, "--recipe", recipe, "--out", out)
+        return json.loads((out / "result.json").read_text())["evaluation"], out, slices
+
+    def truth(self, slices):
+        return json.loads((slices / "truth.json").read_text())
+
+
+def value(evaluation, measurement, key):
+    """(value, U) of a value; None where it is absent."""
+    found = evaluation["measurements"][measurement]["values"][key]
+    return found.get("value"), found.get("U")
+
+
+def gsf(path):
+    """Heights in um of a GSF file."""
+    data = path.read_bytes()
+    end = data.index(b"\0")
+    header = dict(line.split(" = ", 1) for line in data[:end].decode().splitlines()[1:])
+    width, height = int(header["XRes"]), int(header["YRes"])
+    return np.frombuffer(data[-4 * width * height:], "<f4").reshape(height, width).astype(float) * 1e6
+
+
+def box_mean(plane, side):
+    """Mean over a square window; only points whose window lies in the plane."""
+    sums = np.cumsum(np.cumsum(np.pad(plane, ((1, 0), (1, 0))), 0), 1)
+    return (sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]) / side**2
