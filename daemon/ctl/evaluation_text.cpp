@@ -1,32 +1,16 @@
 #include "daemon/ctl/evaluation_text.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <iomanip>
 #include <sstream>
 
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/result/value_digits.hpp"
 
 namespace fvd::ctl {
 
 namespace {
 
 constexpr int kNameWidth = 20;
-constexpr int kMostDigits = 6;
-
-/// So many that the last is worth no more than a tenth of U: a value has no more digits than it is sure of.
-int digits_behind_point(const EvaluatedValue& value) {
-  const double scale = value.expanded_u.value_or(0.0);
-  if (!(scale > 0.0)) return 4;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(scale))), 0, kMostDigits);
-}
-
-std::string fixed(double number, int digits) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(digits) << number;
-  return text.str();
-}
 
 std::string limits_text(const Limits& limits) {
   std::ostringstream text;
@@ -38,8 +22,8 @@ std::string limits_text(const Limits& limits) {
 std::string value_text(const EvaluatedValue& value) {
   if (!value.value) return "-  (" + value.reason + ")";
   const int digits = digits_behind_point(value);
-  std::string text = fixed(*value.value, digits);
-  if (value.expanded_u) text += " +- " + fixed(*value.expanded_u, digits);
+  std::string text = fixed_digits(*value.value, digits);
+  if (value.expanded_u) text += " +- " + fixed_digits(*value.expanded_u, digits);
   if (value.unit != "1") text += " " + value.unit;
   return text;
 }

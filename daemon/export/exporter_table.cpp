@@ -6,6 +6,7 @@
 #include "daemon/export/gsf.hpp"
 #include "daemon/export/height_tiff.hpp"
 #include "daemon/export/mask_png.hpp"
+#include "daemon/export/picture_exporters.hpp"
 #include "daemon/export/preview.hpp"
 #include "daemon/export/step_csv.hpp"
 #include "daemon/export/surface_writers.hpp"
@@ -43,6 +44,10 @@ std::span<const Exporter> exporter_table() {
       Exporter{"height.ply", kResult, kSlow, nullptr, surface_file<write_ply>, "ply", true},
       Exporter{"height.stl", kResult, kSlow, nullptr, surface_file<write_stl>, "stl", true},
       Exporter{"height.csv", kResult, kSlow, nullptr, surface_file<write_csv>, "csv", true},
+      Exporter{"sigma.png", kResult, kSlow, sigma_picture_file, nullptr, {}, true},
+      Exporter{"holes.png", kResult, kSlow, holes_picture_file, nullptr, {}, true},
+      Exporter{"view3d.png", kResult, kSlow, view_picture_file, nullptr, {}, true},
+      Exporter{"report.pdf", kResult, kSlow, report_file, nullptr, {}, true},
   };
   return kExporters;
 }

@@ -5,7 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "daemon/export/axis_ticks.hpp"
+#include "daemon/report/axis_ticks.hpp"
 #include "daemon/export/page_text.hpp"
 
 namespace fvd {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/export/axis_ticks.hpp"
+#include "daemon/report/axis_ticks.hpp"
 
 namespace fvd {
 

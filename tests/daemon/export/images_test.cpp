@@ -6,7 +6,7 @@
 #include <tiffio.h>
 #include <tiffio.hxx>
 
-#include "daemon/export/axis_ticks.hpp"
+#include "daemon/report/axis_ticks.hpp"
 #include "daemon/export/height_tiff.hpp"
 #include "daemon/export/mask_png.hpp"
 #include "daemon/export/preview.hpp"

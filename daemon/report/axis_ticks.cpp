@@ -1,4 +1,4 @@
-#include "daemon/export/axis_ticks.hpp"
+#include "daemon/report/axis_ticks.hpp"
 
 #include <algorithm>
 #include <charconv>

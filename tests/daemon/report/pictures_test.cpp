@@ -1,0 +1,97 @@
+#include <cstdint>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/report/hole_reasons.hpp"
+#include "daemon/report/surface_digest.hpp"
+#include "daemon/report/surface_pictures.hpp"
+#include "tests/daemon/report/sample_report.hpp"
+
+namespace fvd {
+namespace {
+
+struct Size {
+  unsigned width = 0;
+  unsigned height = 0;
+};
+
+/// From the head of a PNG.
+Size size_of(const std::string& png) {
+  EXPECT_TRUE(png.starts_with("\x89PNG"));
+  const auto number = [&png](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8U | static_cast<unsigned char>(png.at(i));
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST(SurfacePictures, HaveTheProportionsOfTheField) {
+  const Surface wide = test::groove_surface(160, 40);
+  const Surface high = test::groove_surface(40, 160);
+
+  const Size of_wide = size_of(sigma_png(picture_surface(wide)));
+  const Size of_high = size_of(sigma_png(picture_surface(high)));
+
+  // 520 points for the longer side, two pixels a point, and what stands around the field.
+  EXPECT_EQ(of_wide.width, 2U * 640U);
+  EXPECT_EQ(of_high.width, 2U * 300U) << "the least, for the title";
+  EXPECT_EQ(of_high.height - of_wide.height, 2U * (520U - 130U));
+}
+
+TEST(SurfacePictures, AreTheSameBytesForTheSameSurface) {
+  const Surface surface = test::groove_surface();
+  const PictureSurface picture = picture_surface(surface);
+
+  EXPECT_TRUE(sigma_png(picture) == sigma_png(picture));
+  EXPECT_TRUE(holes_png(picture) == holes_png(picture));
+  EXPECT_TRUE(view3d_png(picture) == view3d_png(picture));
+  EXPECT_EQ(size_of(view3d_png(picture)).width, 1200U);
+}
+
+TEST(SurfacePictures, ShowOneHoleOfALargeField) {
+  Surface surface = test::groove_surface(2600, 30);
+  const std::string before = holes_png(picture_surface(surface));
+
+  surface.mask.at(2000, 25) = mask_reason::kSecondPeak;
+
+  EXPECT_FALSE(before == holes_png(picture_surface(surface)));
+}
+
+TEST(SurfacePictures, DoWithoutMaskSigmaAndPitch) {
+  const Surface surface = test::groove_surface(12, 9);
+  PictureSurface picture;
+  picture.height_m = surface.height_m.view();
+
+  EXPECT_GT(size_of(sigma_png(picture)).width, 0U);
+  EXPECT_GT(size_of(holes_png(picture)).width, 0U);
+  EXPECT_GT(size_of(view3d_png(picture)).width, 0U);
+}
+
+TEST(HoleReasons, HaveAColourEach) {
+  std::uint32_t bits = 0;
+  std::set<std::uint32_t> colours;
+  for (const HoleReason& reason : hole_reasons()) {
+    EXPECT_EQ(bits & reason.bit, 0U) << reason.name;
+    bits |= reason.bit;
+    EXPECT_TRUE(colours.insert(reason.colour).second) << reason.name;
+  }
+
+  EXPECT_EQ(bits, 0x5FFFU) << "all bits that mean something";
+}
+
+TEST(SurfaceDigest, IsOfTheHeightsAlone) {
+  // sha256sum of 00 00 80 3f 00 00 c0 7f 00 00 00 40 00 00 80 bf
+  Plane<float> heights(2, 2);
+  heights.at(0, 0) = 1.0F;
+  heights.at(1, 0) = -std::numeric_limits<float>::quiet_NaN();
+  heights.at(0, 1) = 2.0F;
+  heights.at(1, 1) = -1.0F;
+
+  EXPECT_EQ(surface_sha256(heights.view()), "60608f33266a9979002b8fb817e79d8c22cddedb49530151ce0898a9f5b8d771");
+}
+
+}  // namespace
+}  // namespace fvd
