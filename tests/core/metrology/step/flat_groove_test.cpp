@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -81,6 +82,17 @@ TEST(FlatGroove, CountsThePointsOfItsRegions) {
   EXPECT_NEAR(step.correlation_factor, 1.0, 1e-9);
 }
 
+TEST(FlatGroove, CountsCentresOnTheBordersOfRegions) {
+  GrooveSettings settings;
+  settings.edges = GrooveEdges{105.5, 195.5};
+
+  const GrooveStep step = given(iso5436_a1(groove(50.0, 0.0, 0.0), settings));
+
+  EXPECT_EQ(step.regions[0].asked, 61 * 90);
+  EXPECT_EQ(step.regions[1].asked, 61 * 90);
+  EXPECT_EQ(step.regions[2].asked, 31 * 90);
+}
+
 TEST(FlatGroove, MeasuresARidgeUpwards) {
   const GrooveStep step = given(iso5436_a1(groove(-12.0, -0.03, 0.02), {}));
 
@@ -154,6 +166,36 @@ TEST(FlatGroove, SharesTheBandAmongItsTraces) {
   EXPECT_EQ(step.traces.each[0].points, 150 * 4);
 }
 
+TEST(FlatGroove, TakesARowWhereATraceIsNarrow) {
+  GrooveSettings settings = with_edges();
+  settings.traces = 6;
+  settings.band = FromTo{10.0, 70.0};
+  settings.trace_width_um = 0.1;
+
+  const GrooveStep step = given(iso5436_a1(groove(50.0, 0.02, 0.01), settings));
+
+  ASSERT_EQ(step.traces.each.size(), 6U);
+  EXPECT_EQ(step.traces.each[0].points, 150);
+  EXPECT_NE(step.mean.weights.at(20, 15), 0.0);
+  EXPECT_EQ(step.mean.weights.at(20, 14), 0.0);
+  EXPECT_NEAR(step.mean.height_um, 50.0 / std::sqrt(1.0004), 1e-10);
+}
+
+TEST(FlatGroove, LooksForEdgesOverTheFocusWindow) {
+  // Walls that the window made 9 points wide: from a point to the next they do not stand out of the noise.
+  HeightField field = make_field(300, 49, 1.0, 1.0, [](double x, double) {
+    const double from_wall = std::min(x - 105.0, 195.0 - x);
+    return -5.0 * std::clamp(from_wall / 9.0 + 0.5, 0.0, 1.0);
+  });
+  add_white_noise(field, 0.56, 13);
+  field.kernel.weights.assign(9, 1.0 / 9.0);
+
+  const GrooveStep step = given(iso5436_a1(field, {}));
+
+  EXPECT_NEAR(step.edges.left_um, 105.0, 1.0);
+  EXPECT_NEAR(step.edges.right_um, 195.0, 1.0);
+}
+
 TEST(FlatGroove, LeavesOutTracesWithTooFewPoints) {
   HeightField field = groove(50.0, 0.0, 0.0);
   for (int row = 0; row < 20; ++row) {
@@ -189,6 +231,9 @@ TEST(FlatGroove, RefusesWhatItCannotMeasure) {
   beside.band = FromTo{50.0, 120.0};
   GrooveSettings wide = with_edges();
   wide.edges = GrooveEdges{50.0, 250.0};
+  // A reaches from -30 to 37 um.
+  GrooveSettings at_border = with_edges();
+  at_border.edges = GrooveEdges{70.0, 170.0};
   GrooveSettings low = with_edges();
   low.band = FromTo{10.0, 18.0};
   HeightField without_bottom = groove(50.0, 0.0, 0.0);
@@ -200,6 +245,12 @@ TEST(FlatGroove, RefusesWhatItCannotMeasure) {
     // Five of nine strips have a third of A only; over the band A has 63 %.
     for (int column = 15; row < 50 && column < 55; ++column) in_few_rows.z_um.at(column, row) = kHole;
   }
+  HeightField without_a = groove(50.0, 0.0, 0.0);
+  for (int row = 0; row < 90; ++row) {
+    for (int column = 0; column < 100; ++column) without_a.z_um.at(column, row) = kHole;
+  }
+  GrooveSettings all_tolerant = with_edges();
+  all_tolerant.min_valid_fraction = 0.0;
   GrooveSettings tolerant = with_edges();
   tolerant.min_valid_fraction = 0.6;
 
@@ -208,11 +259,13 @@ TEST(FlatGroove, RefusesWhatItCannotMeasure) {
 
   EXPECT_EQ(refused(iso5436_a1(field, beside)).code, StepRefusalCode::kOutside);
   EXPECT_EQ(refused(iso5436_a1(field, wide)).code, StepRefusalCode::kOutside);
+  EXPECT_EQ(refused(iso5436_a1(field, at_border)).code, StepRefusalCode::kOutside);
   EXPECT_EQ(refused(iso5436_a1(field, low)).code, StepRefusalCode::kTooFewTraces);
   EXPECT_EQ(refused(iso5436_a1(groove(0.0, 0.02, 0.01), {})).code, StepRefusalCode::kNoEdges);
   EXPECT_EQ(holes.code, StepRefusalCode::kTooFewValid);
   EXPECT_NEAR(holes.figure.value_or(0.0), 2.0 / 3.0, 1e-12);
   EXPECT_NE(holes.text.find("region C"), std::string::npos);
+  EXPECT_EQ(refused(iso5436_a1(without_a, all_tolerant)).code, StepRefusalCode::kTooFewValid);
   EXPECT_EQ(few.code, StepRefusalCode::kTooFewTraces);
   EXPECT_EQ(few.figure, std::optional(4.0));
 }

@@ -95,6 +95,26 @@ TEST(GrooveEdges, AreRefusedWithoutARiseAndAFall) {
   }
 }
 
+TEST(GrooveEdges, AreFoundOnASteepTilt) {
+  // The tilt is steeper than the wall that falls, so that the trace rises everywhere.
+  const auto trace = make_trace(200, 0.5, [](double x) { return 0.8 * x + walled(x, 3.0, 4.0); });
+
+  const GrooveEdges edges = given(find_groove_edges(trace, 0.5, 3));
+
+  EXPECT_NEAR(edges.left_um, 30.0, 1e-9);
+  EXPECT_NEAR(edges.right_um, 75.0, 1e-9);
+}
+
+TEST(GrooveEdges, AreThoseOfTheFirstOfEqualGrooves) {
+  const auto trace =
+      make_trace(400, 0.5, [](double x) { return walled(x, 10.0, 0.01) + walled(x - 100.0, 10.0, 0.01); });
+
+  const GrooveEdges edges = given(find_groove_edges(trace, 0.5, 3));
+
+  EXPECT_NEAR(edges.left_um, 30.0, 1e-9);
+  EXPECT_NEAR(edges.right_um, 75.0, 1e-9);
+}
+
 TEST(MedianTrace, TakesTheMedianOfTheBand) {
   HeightField field =
       make_field(4, 6, 1.0, 1.0, [](double x, double y) { return 10.0 * std::floor(x) + std::floor(y); });

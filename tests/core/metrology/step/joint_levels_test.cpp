@@ -1,5 +1,6 @@
 #include "core/metrology/step/joint_levels.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -28,9 +29,12 @@ std::array<long double, 4> by_normal_equations(const HeightField& field, const P
     for (int column = 0; column < groups.group.width(); ++column) {
       const int group = groups.group.at(column, row);
       if (group == 0 || field.is_hole(groups.left + column, groups.top + row)) continue;
-      const std::array<long double, 5> line{field.x_um(groups.left + column), field.y_um(groups.top + row),
-                                            group == 1 ? 1.0L : 0.0L, group == 2 ? 1.0L : 0.0L,
-                                            field.z_um.at(groups.left + column, groups.top + row)};
+      const std::array<double, 5> of_point{field.x_um(groups.left + column), field.y_um(groups.top + row),
+                                           group == 1 ? 1.0 : 0.0, group == 2 ? 1.0 : 0.0,
+                                           field.z_um.at(groups.left + column, groups.top + row)};
+      std::array<long double, 5> line{};
+      std::transform(of_point.begin(), of_point.end(), line.begin(),
+                     [](double value) { return static_cast<long double>(value); });
       for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t j = 0; j < 5; ++j) m[i][j] += line[i] * line[j];
       }

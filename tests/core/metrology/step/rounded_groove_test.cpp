@@ -138,11 +138,13 @@ TEST(RoundedGroove, IsRefusedWhereTheBottomIsNotRounded) {
   };
   const HeightField bulging = with_bottom([](double u) { return -20.0 - u * u / 200.0; });
   const HeightField beside = with_bottom([](double u) { return -20.0 + 0.5 * u + u * u / 200.0; });
+  const HeightField other_side = with_bottom([](double u) { return -20.0 - 0.5 * u + u * u / 200.0; });
   const HeightField flat = with_bottom([](double) { return -20.0; });
 
   for (const BottomForm form : {BottomForm::kCircle, BottomForm::kParabola}) {
     EXPECT_EQ(refused(iso5436_a2(bulging, with_edges(), form)).code, StepRefusalCode::kNotRounded);
     EXPECT_EQ(refused(iso5436_a2(beside, with_edges(), form)).code, StepRefusalCode::kNotRounded);
+    EXPECT_EQ(refused(iso5436_a2(other_side, with_edges(), form)).code, StepRefusalCode::kNotRounded);
   }
   EXPECT_EQ(refused(iso5436_a2(flat, with_edges())).code, StepRefusalCode::kNotRounded);
 }
