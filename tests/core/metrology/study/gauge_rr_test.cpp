@@ -156,6 +156,18 @@ TEST(GaugeRr, OfAPerfectGaugeHasNoCategoriesToCount) {
   EXPECT_TRUE(study.interaction_pooled);
 }
 
+TEST(GaugeRr, DoesNotTakeRoundingForAnInteraction) {
+  const std::vector<double> values =
+      two_trials(7, 3, 0.0, [](int part, int person) { return 100.1 + std::sqrt(2.0 + part) + 0.3 * person; });
+
+  const GaugeRr study = gauge_rr(values, sized(7, 3, 2));
+
+  EXPECT_TRUE(study.interaction_pooled);
+  EXPECT_EQ(study.interaction_p, 1.0);
+  EXPECT_EQ(study.ev, 0.0);
+  EXPECT_NEAR(study.av, 0.3, 1e-10);
+}
+
 TEST(GaugeRr, OfEqualValuesHasNoShareOfTheTotal) {
   const GaugeRr study = gauge_rr(std::vector<double>(12, 0.3), sized(3, 2, 2));
 

@@ -18,7 +18,7 @@ struct Optics {
   double angle_deg = 3.0;
 };
 
-/// What these optics show of a grid of 10 um, lines -reach to reach.
+/// What these optics show of a grid of 10 um, lines -reach to reach about those with the numbers 7 and 12.
 std::vector<GridCrossing> seen(const Optics& optics, int reach_x, int reach_y) {
   const double angle = optics.angle_deg * M_PI / 180.0;
   std::vector<GridCrossing> crossings;
@@ -27,7 +27,7 @@ std::vector<GridCrossing> seen(const Optics& optics, int reach_x, int reach_y) {
       const double x_um = 10.0 * (i * std::cos(angle) - j * std::sin(angle));
       const double y_um = 10.0 * (i * std::sin(angle) + j * std::cos(angle));
       crossings.push_back(
-          {240.0 + (x_um - optics.shear * y_um) / optics.pitch_x_um, 180.0 + y_um / optics.pitch_y_um, i, j});
+          {240.0 + (x_um - optics.shear * y_um) / optics.pitch_x_um, 180.0 + y_um / optics.pitch_y_um, 7 + i, 12 + j});
     }
   }
   return crossings;
@@ -77,8 +77,8 @@ TEST(LateralGrid, TellsWhatTheMapLeavesOver) {
 TEST(LateralGrid, HasTheUncertaintyThatDrawsShow) {
   // Columns and rows scatter differently, so that they are not confused.
   constexpr int kDraws = 2000;
-  for (const Optics& optics : {Optics{0.5, 0.9, 0.1, 0.0}, Optics{0.5, 0.9, -0.2, 30.0}}) {
-    const std::vector<GridCrossing> truth = seen(optics, 4, 2);
+  for (const Optics& optics : {Optics{0.5, 0.9, 0.1, 0.0}, Optics{0.5, 0.9, -0.3, 30.0}}) {
+    const std::vector<GridCrossing> truth = seen(optics, 9, 1);
     RandomNormal random(6);
     std::array<double, 2> squares{};
     std::array<double, 2> stated{};
@@ -100,6 +100,52 @@ TEST(LateralGrid, HasTheUncertaintyThatDrawsShow) {
   }
 }
 
+TEST(LateralGrid, HasTheUncertaintyOfItsDerivatives) {
+  std::vector<GridCrossing> crossings = seen({0.5, 0.9, -0.3, 30.0}, 4, 1);
+  RandomNormal random(2);
+  for (GridCrossing& crossing : crossings) {
+    crossing.column += 0.02 * random.normal();
+    crossing.row += 0.2 * random.normal();
+  }
+
+  const LateralGrid grid = fitted(crossings);
+
+  std::array<double, 2> place_variance{};  // of columns and rows, in px^2
+  for (std::size_t i = 0; i < 27; ++i) {
+    const double column = (grid.deviations_x_um[i] - grid.shear * grid.deviations_y_um[i]) / grid.pitch_x_um;
+    place_variance[0] += column * column / 24.0;
+    place_variance[1] += std::pow(grid.deviations_y_um[i] / grid.pitch_y_um, 2) / 24.0;
+  }
+  double variance_x = 0.0;
+  double variance_y = 0.0;
+  for (GridCrossing& crossing : crossings) {
+    for (double GridCrossing::*coordinate : {&GridCrossing::column, &GridCrossing::row}) {
+      const double here = crossing.*coordinate;
+      crossing.*coordinate = here + 1e-3;
+      const LateralGrid above = fitted(crossings);
+      crossing.*coordinate = here - 1e-3;
+      const LateralGrid below = fitted(crossings);
+      crossing.*coordinate = here;
+      const double variance = place_variance[coordinate == &GridCrossing::column ? 0 : 1];
+      variance_x += variance * std::pow((above.pitch_x_um - below.pitch_x_um) / 2e-3, 2);
+      variance_y += variance * std::pow((above.pitch_y_um - below.pitch_y_um) / 2e-3, 2);
+    }
+  }
+  EXPECT_NEAR(grid.u_pitch_x_um / std::sqrt(variance_x), 1.0, 1e-6);
+  EXPECT_NEAR(grid.u_pitch_y_um / std::sqrt(variance_y), 1.0, 1e-6);
+}
+
+TEST(LateralGrid, CountsThePlacesThatTheFitUses) {
+  std::vector<GridCrossing> crossings = seen({0.5, 0.5, 0.0, 0.0}, 1, 1);
+  crossings[4].column += 0.3;
+
+  const LateralGrid grid = fitted(crossings);
+
+  // s^2 = 0.09 (8 / 9) / (9 - 3) along the columns; a step of 20 columns rests on six places one step from the middle.
+  EXPECT_NEAR(grid.u_pitch_x_um, std::sqrt(0.09 * 8.0 / 9.0 / 6.0 / 6.0) * 0.5 / 20.0, 1e-12);
+  EXPECT_NEAR(grid.u_pitch_y_um, 0.0, 1e-12);
+}
+
 TEST(LateralGrid, AddsTheUncertaintyOfTheGrid) {
   const LateralGrid grid = fitted(seen({}, 3, 3), 1e-4);
 
@@ -113,7 +159,7 @@ TEST(LateralGrid, IsRefusedWhereCrossingsCannotTellIt) {
   std::vector<GridCrossing> same_row = seen({}, 2, 1);
   std::vector<GridCrossing> mirrored = seen({}, 2, 2);
   for (GridCrossing& crossing : same_row) crossing.row = 7.0;
-  for (GridCrossing& crossing : mirrored) crossing.index_y = -crossing.index_y;
+  for (GridCrossing& crossing : mirrored) crossing.index_y = 24 - crossing.index_y;
 
   EXPECT_FALSE(refused(std::span(crossings).first(6)));
   EXPECT_TRUE(refused(std::span(crossings).first(5)));
@@ -171,6 +217,9 @@ TEST(LateralDrift, LooksAtCrossingsThatAreSeenTwice) {
   EXPECT_EQ(std::get<LateralDrift>(six).crossings, 6);
   EXPECT_NEAR(std::get<LateralDrift>(six).x_px_per_um, 0.03, 1e-12);
   EXPECT_TRUE(std::holds_alternative<StudyRefusal>(lateral_drift(low, 0.0, all.first(5), 50.0)));
+  std::vector<GridCrossing> twice(all.begin(), all.begin() + 5);
+  twice.push_back(twice.front());
+  EXPECT_TRUE(std::holds_alternative<StudyRefusal>(lateral_drift(low, 0.0, twice, 50.0)));
   EXPECT_TRUE(std::holds_alternative<StudyRefusal>(lateral_drift(low, 50.0, high, 50.0)));
 }
 
