@@ -20,6 +20,16 @@ double slope_beyond(const Polynomial& polynomial, double x) {
   return polynomial.slope(std::clamp(x, polynomial.centre - polynomial.half, polynomial.centre + polynomial.half));
 }
 
+// The last place towards `outer` that is inside.
+template <typename Inside>
+double border(const Inside& inside, double inner, double outer) {
+  for (int round = 0; round < 20; ++round) {
+    const double middle = (inner + outer) / 2.0;
+    (inside(middle) ? inner : outer) = middle;
+  }
+  return inner;
+}
+
 }  // namespace
 
 SpacePoint EdgeFrame::at(double s_um, double h_um) const {
@@ -63,14 +73,20 @@ void EdgeCurve::cut(const HeightField& field, const Region& region) {
   const double reach = std::hypot(field.width() * field.pitch_x_um, field.height() * field.pitch_y_um);
   from_um_ = to_um_ = 0.0;
   bool found = false;
-  for (double place = -reach; place <= reach; place += step) {
+  const auto inside = [&](double place) {
     const double across = value_beyond(across_, place);
-    const double x = straight_.origin_x_um + place * straight_.e_x + across * straight_.u_x;
-    const double y = straight_.origin_y_um + place * straight_.e_y + across * straight_.u_y;
-    if (!is_in_region(field, region, x, y)) continue;
+    return is_in_region(field, region, straight_.origin_x_um + place * straight_.e_x + across * straight_.u_x,
+                        straight_.origin_y_um + place * straight_.e_y + across * straight_.u_y);
+  };
+  for (double place = -reach; place <= reach; place += step) {
+    if (!inside(place)) continue;
     if (!found) from_um_ = place;
     to_um_ = place;
     found = true;
+  }
+  if (found) {
+    from_um_ = border(inside, from_um_, from_um_ - step);
+    to_um_ = border(inside, to_um_, to_um_ + step);
   }
   measure_length();
 }
