@@ -10,7 +10,7 @@
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
-#include "daemon/ctl/process_command.hpp"
+#include "daemon/ctl/pitch_option.hpp"
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/surface_writers.hpp"
 #include "daemon/surface_files/result_folder.hpp"
@@ -28,15 +28,6 @@ std::vector<std::string> formats() {
   std::vector<std::string> names;
   for (const SurfaceWriter& writer : surface_writers()) names.emplace_back(writer.format);
   return names;
-}
-
-SurfaceReadOptions read_options(const ExportArguments& arguments) {
-  if (arguments.pitch_um.size() > 2) throw UsageError("--pitch-um takes one distance, or those of columns and rows");
-  SurfaceReadOptions options;
-  if (arguments.pitch_um.empty()) return options;
-  options.pitch_x_um = arguments.pitch_um.front();
-  options.pitch_y_um = arguments.pitch_um.back();
-  return options;
 }
 
 /// The all-in-focus image of a result; empty where there is none of the surface's size.
@@ -103,15 +94,11 @@ void add_export_options(CLI::App& command, ExportArguments& a) {
       ->required()
       ->check(CLI::IsMember(formats()));
   command.add_option("--out", a.out, "the new file; must not exist")->required();
-  command
-      .add_option("--pitch-um", a.pitch_um,
-                  "distance of the points, or X,Y of columns and rows, where the source does not tell it")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+  add_pitch_option(command, a.pitch_um);
 }
 
 int run_export(const ExportArguments& arguments, const Terminal& terminal) {
-  const SurfaceReadOptions options = read_options(arguments);
+  const SurfaceReadOptions options = read_options(arguments.pitch_um);
   if (fs::is_directory(arguments.source)) {
     const ResultSurface read = read_result_surface(arguments.source, options);
     const Texture texture = read_texture(fs::path(arguments.source) / kTexture, read.surface);

@@ -16,6 +16,7 @@
 #include "daemon/ctl/measure_command.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/recipe_commands.hpp"
+#include "daemon/ctl/report_command.hpp"
 #include "daemon/ctl/rpc_client.hpp"
 #include "daemon/ctl/stage_command.hpp"
 #include "daemon/ctl/suggest_command.hpp"
@@ -39,6 +40,7 @@ struct Arguments {
   ProcessArguments process;
   ExportArguments to_file;
   MeasureArguments measure;
+  ReportArguments report;
   std::string suggest_source;
   StackChoice suggest_choice;
   StageArguments stage;
@@ -241,6 +243,10 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   sub = command("measure", "evaluate the surface of a result or of a file as a recipe says, without a daemon",
                 [&] { return run_measure(a.measure, terminal); });
   add_measure_options(*sub, a.measure);
+
+  sub = command("report", "write the report of a result's folder as a PDF, without a daemon",
+                [&] { return run_report(a.report, terminal); });
+  add_report_options(*sub, a.report);
 
   add_stage_commands(app, a.stage, terminal, chosen);
   add_recipe_commands(

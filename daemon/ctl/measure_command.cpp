@@ -17,6 +17,7 @@
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/pitch_option.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/evaluation/evaluate_surface.hpp"
 #include "daemon/export/atomic_directory.hpp"
@@ -35,17 +36,8 @@ struct Input {
   EvaluationContext context;
 };
 
-SurfaceReadOptions read_options(const MeasureArguments& arguments) {
-  if (arguments.pitch_um.size() > 2) throw UsageError("--pitch-um takes one distance, or those of columns and rows");
-  SurfaceReadOptions options;
-  if (arguments.pitch_um.empty()) return options;
-  options.pitch_x_um = arguments.pitch_um.front();
-  options.pitch_y_um = arguments.pitch_um.back();
-  return options;
-}
-
 Input read_input(const MeasureArguments& arguments) {
-  const SurfaceReadOptions options = read_options(arguments);
+  const SurfaceReadOptions options = read_options(arguments.pitch_um);
   Input input;
   if (!fs::is_directory(arguments.source)) {
     input.surface = read_surface(arguments.source, options);
@@ -91,11 +83,7 @@ void add_measure_options(CLI::App& command, MeasureArguments& a) {
   command.add_option("--recipe", a.recipe, "file of a recipe with a section evaluation")
       ->required()
       ->check(CLI::ExistingFile);
-  command
-      .add_option("--pitch-um", a.pitch_um,
-                  "distance of the points, or X,Y of columns and rows, where the source does not tell it")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+  add_pitch_option(command, a.pitch_um);
   command
       .add_option("--noise-um", a.noise_um,
                   "standard error of every point, where the source has none; without it U is not known")

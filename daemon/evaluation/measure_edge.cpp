@@ -8,6 +8,7 @@
 
 #include "core/metrology/edge/cutting_edge.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
+#include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
 
@@ -191,6 +192,7 @@ EvaluatedMeasurement measure_edge(const MeasurementInput& input) {
   if (!field.has_sigma()) made.not_evaluated.emplace_back("noise");
   made.not_evaluated.emplace_back("slice_z");
   made.details = details_json(edge).dump();
+  made.cross_section = edge_section(edge, input.planned);
   return made;
 }
 

@@ -12,6 +12,7 @@
 #include "core/metrology/profile/profile_evaluation.hpp"
 #include "core/metrology/uncertainty/monte_carlo.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
+#include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/noise_floor.hpp"
 #include "daemon/evaluation/value_names.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
@@ -161,6 +162,7 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   ordered_json details = details_json(input, floor, profile, found);
   details["monte_carlo"] = draws ? ordered_json{{"draws", draws->draws}, {"seed", draws->seed}} : ordered_json(nullptr);
   made.details = details.dump();
+  made.cross_section = profile_section(input.planned);
   return made;
 }
 

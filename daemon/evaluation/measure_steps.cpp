@@ -10,6 +10,7 @@
 #include "core/metrology/step/groove_step.hpp"
 #include "core/metrology/step/region_step.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
+#include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
 #include "daemon/evaluation/value_names.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
@@ -105,7 +106,8 @@ void refuse(const metrology::StepRefusal& refusal, EvaluatedMeasurement& made) {
 }
 
 void measure_flat_bottom(const MeasurementInput& input, EvaluatedMeasurement& made) {
-  const auto outcome = metrology::iso5436_a1(input.surface.field, groove_settings(input.planned));
+  const metrology::GrooveSettings settings = groove_settings(input.planned);
+  const auto outcome = metrology::iso5436_a1(input.surface.field, settings);
   if (const auto* refusal = std::get_if<metrology::StepRefusal>(&outcome)) return refuse(*refusal, made);
   const auto& groove = std::get<metrology::GrooveStep>(outcome);
   add_height(input, "height_um", groove.mean, made);
@@ -122,10 +124,12 @@ void measure_flat_bottom(const MeasurementInput& input, EvaluatedMeasurement& ma
                    {"correlation_factor", groove.correlation_factor},
                    {"regions", regions_json(groove.regions.data(), groove.regions.data() + groove.regions.size())}}
           .dump();
+  made.cross_section = groove_section(input.surface.field, settings, groove.edges);
 }
 
 void measure_rounded_bottom(const MeasurementInput& input, EvaluatedMeasurement& made) {
-  const auto outcome = metrology::iso5436_a2(input.surface.field, groove_settings(input.planned));
+  const metrology::GrooveSettings settings = groove_settings(input.planned);
+  const auto outcome = metrology::iso5436_a2(input.surface.field, settings);
   if (const auto* refusal = std::get_if<metrology::StepRefusal>(&outcome)) return refuse(*refusal, made);
   const auto& groove = std::get<metrology::RoundedGroove>(outcome);
   add_height(input, "height_um", groove.mean, made);
@@ -138,6 +142,7 @@ void measure_rounded_bottom(const MeasurementInput& input, EvaluatedMeasurement&
                    {"traces", traces_json(groove.traces)},
                    {"regions", regions_json(groove.regions.data(), groove.regions.data() + groove.regions.size())}}
           .dump();
+  made.cross_section = groove_section(input.surface.field, settings, groove.edges);
 }
 
 metrology::StepSlope slope_of(const std::string& name) {
@@ -183,6 +188,8 @@ EvaluatedMeasurement measure_step_between(const MeasurementInput& input) {
                               {"correlation_factor", step.correlation_factor},
                               {"regions", regions_json(regions.data(), regions.data() + regions.size())}}
                      .dump();
+  const std::array sections{SectionRegion{input.planned.lower, &lower}, SectionRegion{input.planned.upper, &upper}};
+  made.cross_section = regions_section(field, sections);
   if (step.correlation_factor > kWarnFactor) made.warnings.push_back({"slope_and_step_correlated", step.suggestion});
   return made;
 }
@@ -218,6 +225,9 @@ EvaluatedMeasurement measure_levels(const MeasurementInput& input) {
                               {"correlation_factors", std::move(factors)},
                               {"regions", regions_json(regions, regions + found.regions.size())}}
                      .dump();
+  std::vector<SectionRegion> sections;
+  for (const metrology::NamedRegion& region : named) sections.push_back({region.name, region.region});
+  made.cross_section = regions_section(field, sections);
   return made;
 }
 

@@ -212,8 +212,7 @@ void describe(Recipe& recipe, Fields& fields) {
   fields.optional("export", recipe.exports, [](Fields& in, std::vector<std::string>& names) {
     in.choices("export", names, exporter_names(),
                "files of a result beside result.json, by name or format; absent = all but height.x3p, .sdf, .ply, "
-               ".stl, .csv and "
-               "sigma.gsf");
+               ".stl, .csv, sigma.gsf, report.pdf and the pictures sigma.png, holes.png and view3d.png");
   });
   fields.group("keep", "what else is kept", [&](Fields& in) { describe_slices_kept("slices", recipe, in); });
 }

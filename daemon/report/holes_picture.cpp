@@ -17,7 +17,7 @@ namespace fvd {
 
 namespace {
 
-constexpr double kLegendWidth = 200.0;
+constexpr double kLegendWidth = 230.0;
 constexpr double kLegendRow = 14.0;
 constexpr std::uint32_t kValidColour = 0x00EDEDED;
 constexpr std::uint32_t kUnknownColour = 0x00AAAAAA;
@@ -94,7 +94,7 @@ void draw_legend(Canvas& canvas, const PicturePage& page, const std::vector<Lege
     canvas.fill(sample, as_colour(row.colour));
     canvas.frame(sample, colour::kPaleInk);
     const double percent = 100.0 * static_cast<double>(row.points) / static_cast<double>(points);
-    canvas.text({x + 14.0, y + 7.5}, row.name, {.size = 7.0, .room = 124.0});
+    canvas.text({x + 14.0, y + 7.5}, row.name, {.size = 7.0, .room = 136.0});
     canvas.text({x + kLegendWidth - 18.0, y + 7.5}, std::to_string(row.points) + ", " + fixed_text(percent, 2) + " %",
                 {.size = 7.0, .ink = colour::kPaleInk, .align = TextAlign::kRight});
     y += kLegendRow;
@@ -110,7 +110,7 @@ std::string holes_png(const PictureSurface& surface) {
   const PicturePage page = picture_page(surface, kLegendWidth, kLegendRow * static_cast<double>(rows.size()));
   PictureFile file(page.width, page.height);
   draw_page_title(file.canvas(), page, surface, "why points are holes; one with several reasons has the upper colour");
-  draw_map(file.canvas(), page.field, surface, reasons_raster(surface));
+  draw_map(file.canvas(), page.field, surface, reasons_raster(surface), Shown::kClasses);
   draw_legend(file.canvas(), page, rows, points);
   return file.bytes();
 }

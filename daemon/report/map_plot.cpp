@@ -50,10 +50,10 @@ PageRect field_place(const PictureSurface& surface, const PageRect& place) {
           std::max(kLeast, surface.height_um() * points_per_um)};
 }
 
-void draw_map(Canvas& canvas, const PageRect& field, const PictureSurface& surface, const Raster& raster) {
+void draw_map(Canvas& canvas, const PageRect& field, const PictureSurface& surface, const Raster& raster, Shown shown) {
   // Points larger than this are seen as squares, which they are.
   constexpr double kSeen = 2.0;
-  canvas.picture(field, raster, field.width / raster.width < kSeen);
+  canvas.picture(field, raster, shown == Shown::kValues && field.width / raster.width < kSeen);
   canvas.frame(field, colour::kPaleInk);
   draw_columns(canvas, field, surface);
   draw_rows(canvas, field, surface);

@@ -19,8 +19,14 @@ inline constexpr double kBarRoom = 62.0;    ///< for the colour bar
 /// place's top left.
 [[nodiscard]] PageRect field_place(const PictureSurface& surface, const PageRect& place);
 
+enum class Shown {
+  kValues,   ///< between points colours go over into each other, unless the points are seen as squares
+  kClasses,  ///< no colour that is not the raster's
+};
+
 /// The picture in field, and axes at its left and bottom that count from the outer corner of the first pixel.
-void draw_map(Canvas& canvas, const PageRect& field, const PictureSurface& surface, const Raster& raster);
+void draw_map(Canvas& canvas, const PageRect& field, const PictureSurface& surface, const Raster& raster,
+              Shown shown = Shown::kValues);
 
 /// At the field's right. title: what the colours are, with its unit.
 void draw_colour_bar(Canvas& canvas, const PageRect& field, const ValueRange& range, ColourScale scale,

@@ -65,7 +65,7 @@ void draw_axes(Canvas& canvas, const Plot& plot, const PictureSurface& surface) 
     canvas.text({inside.x - 3.0, y + 2.0}, fixed_text(value, up.decimals),
                 {.size = kLabel, .align = TextAlign::kRight});
   }
-  canvas.text_upwards({inside.x - 21.0, inside.y + inside.height / 2.0}, "z / µm",
+  canvas.text_upwards({inside.x - 21.0, inside.y + inside.height / 2.0}, "measured z / µm",
                       {.size = kLabel, .align = TextAlign::kCentre});
 }
 

@@ -26,8 +26,10 @@ constexpr double kGap = 8.0;
 constexpr int kMostMapPixels = 700;
 constexpr std::size_t kMostProfiles = 3;
 constexpr double kProfileHeight = 108.0;
+constexpr double kMostProfileHeight = 150.0;
 constexpr double kLeastPictures = 130.0;
-constexpr double kMostPictures = 220.0;
+constexpr double kMostPictures = 260.0;
+constexpr double kViewHeight = 200.0;
 constexpr double kConditionText = 6.5;
 constexpr double kSmallConditionText = 5.5;
 constexpr double kConditionGap = 1.0;
@@ -48,14 +50,14 @@ std::vector<NamedSection> sections_of(const Result& result) {
   for (const std::string& name : result.evaluation->order) {
     const auto found = result.evaluation->measurements.find(name);
     if (found == result.evaluation->measurements.end() || sections.size() == kMostProfiles) continue;
-    if (auto section = cross_section_of(found->second.details)) sections.push_back({name, std::move(*section)});
+    if (const auto& section = found->second.cross_section) sections.push_back({name, *section});
   }
   return sections;
 }
 
 std::string section_title(const std::string& name, const CrossSection& section) {
   const std::string width = fixed_text(section.band_width_um, section.band_width_um < 10.0 ? 1 : 0);
-  return name + ": measured heights" + (section.band_width_um > 0.0 ? ", mean over " + width + " µm" : std::string());
+  return name + (section.band_width_um > 0.0 ? ": mean over " + width + " µm" : std::string());
 }
 
 std::string paragraph_of(const ConditionLine& line) { return line.about + ":  " + line.text; }
@@ -81,9 +83,10 @@ class Report {
 
  private:
   [[nodiscard]] bool goes_on() const { return next_row_ < rows_.size() || next_line_ < lines_.size(); }
-  [[nodiscard]] double profiles_height() const { return sections_.empty() ? 0.0 : kProfileHeight + kGap; }
+  [[nodiscard]] double profiles_height() const { return sections_.empty() ? 0.0 : profile_height_ + kGap; }
   [[nodiscard]] double conditions_height();
-  /// What is left between head, table and conditions; the conditions' text becomes smaller where that is too little.
+  /// Of the room between head, table and conditions: the conditions' text becomes smaller where it is too little, the
+  /// profiles higher where it is more than the pictures need.
   [[nodiscard]] double pictures_height(double left);
   void draw_first_page();
   void draw_further_page();
@@ -101,6 +104,7 @@ class Report {
   std::vector<ConditionLine> lines_;
   PdfFile file_;
   Canvas& canvas_;
+  double profile_height_ = kProfileHeight;
   double text_size_ = kConditionText;
   std::size_t next_row_ = 0;
   std::size_t next_line_ = 0;
@@ -118,9 +122,15 @@ double Report::conditions_height() {
 
 double Report::pictures_height(double left) {
   const double height = left - conditions_height();
-  if (height >= kLeastPictures) return std::min(height, kMostPictures);
+  // No higher than the map needs in its half of the page.
+  const PageRect field = field_place(surface_, {0.0, 0.0, (kPage.width - kGap) / 2.0, kMostPictures});
+  const double most = std::clamp(field.height + kMapBottom + 4.0, kViewHeight, kMostPictures);
+  if (height >= kLeastPictures) {
+    profile_height_ = std::clamp(kProfileHeight + height - most, kProfileHeight, kMostProfileHeight);
+    return std::min(height, most);
+  }
   text_size_ = kSmallConditionText;
-  return std::clamp(left - conditions_height(), kLeastPictures, kMostPictures);
+  return std::clamp(left - conditions_height(), kLeastPictures, most);
 }
 
 void Report::draw_first_page() {
@@ -163,7 +173,7 @@ void Report::draw_profiles(double top) {
   const double width = (kPage.width - kGap * (count - 1.0)) / count;
   double x = kPage.x;
   for (const auto& [name, section] : sections_) {
-    draw_profile(canvas_, {x, top, width, kProfileHeight}, surface_, section, section_title(name, section));
+    draw_profile(canvas_, {x, top, width, profile_height_}, surface_, section, section_title(name, section));
     x += width + kGap;
   }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "daemon/report/axis_ticks.hpp"
@@ -22,6 +23,9 @@ constexpr int kMostCells = 420;
 constexpr double kMargin_px = 4.0;
 constexpr double kAmbient = 0.45;
 constexpr std::uint32_t kPaper = 0x00FFFFFF;
+constexpr std::uint32_t kWall = 0x00D8D8D8;
+constexpr double kFrontLight = 1.0;
+constexpr double kLeftLight = 0.88;
 
 /// Towards the light: left, front, above; of length 1.
 constexpr std::array<double, 3> kLight{-0.48, -0.36, 0.80};
@@ -60,41 +64,51 @@ std::uint32_t lit(std::uint32_t rgb, double light) {
   return part(16U) | part(8U) | part(0U);
 }
 
+/// A corner on the raster, with its place on the scale of colours.
+struct Vertex {
+  ViewFrame::Place place;
+  double share = 0.0;  ///< 0..1
+};
+
 /// Triangles onto the raster, the nearest in front.
 class Painter {
  public:
   explicit Painter(Raster& raster)
       : raster_(raster), depth_(raster.pixels.size(), -std::numeric_limits<double>::infinity()) {}
 
-  void triangle(const ViewFrame::Place& a, const ViewFrame::Place& b, const ViewFrame::Place& c, std::uint32_t rgb) {
-    const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+  /// colours: between the corners by their shares. light: of the whole triangle.
+  void triangle(const Vertex& a, const Vertex& b, const Vertex& c, std::span<const std::uint32_t> colours,
+                double light) {
+    const ViewFrame::Place& p = a.place;
+    const ViewFrame::Place& q = b.place;
+    const ViewFrame::Place& r = c.place;
+    const double area = (q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y);
     if (area == 0.0) return;
-    const int left = std::max(0, static_cast<int>(std::floor(std::min({a.x, b.x, c.x}))));
-    const int right = std::min(raster_.width - 1, static_cast<int>(std::ceil(std::max({a.x, b.x, c.x}))));
-    const int top = std::max(0, static_cast<int>(std::floor(std::min({a.y, b.y, c.y}))));
-    const int bottom = std::min(raster_.height - 1, static_cast<int>(std::ceil(std::max({a.y, b.y, c.y}))));
+    const int left = std::max(0, static_cast<int>(std::floor(std::min({p.x, q.x, r.x}))));
+    const int right = std::min(raster_.width - 1, static_cast<int>(std::ceil(std::max({p.x, q.x, r.x}))));
+    const int top = std::max(0, static_cast<int>(std::floor(std::min({p.y, q.y, r.y}))));
+    const int bottom = std::min(raster_.height - 1, static_cast<int>(std::ceil(std::max({p.y, q.y, r.y}))));
     for (int y = top; y <= bottom; ++y) {
       for (int x = left; x <= right; ++x) {
         const double px = x + 0.5;
         const double py = y + 0.5;
-        const double v = ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / area;
-        const double w = ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;
+        const double v = ((px - p.x) * (r.y - p.y) - (r.x - p.x) * (py - p.y)) / area;
+        const double w = ((q.x - p.x) * (py - p.y) - (px - p.x) * (q.y - p.y)) / area;
         constexpr double kSeam = -1e-9;  // neighbours leave no gap between them
         if (v < kSeam || w < kSeam || v + w > 1.0 - kSeam) continue;
-        put(x, y, a.depth + v * (b.depth - a.depth) + w * (c.depth - a.depth), rgb);
+        double& nearest =
+            depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(raster_.width) + static_cast<std::size_t>(x)];
+        const double depth = p.depth + v * (q.depth - p.depth) + w * (r.depth - p.depth);
+        if (depth <= nearest) continue;
+        nearest = depth;
+        const double share = a.share + v * (b.share - a.share) + w * (c.share - a.share);
+        const double level = std::clamp(share, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
+        raster_.at(x, y) = lit(colours[static_cast<std::size_t>(std::lround(level))], light);
       }
     }
   }
 
  private:
-  void put(int x, int y, double depth, std::uint32_t rgb) {
-    double& nearest =
-        depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(raster_.width) + static_cast<std::size_t>(x)];
-    if (depth <= nearest) return;
-    nearest = depth;
-    raster_.at(x, y) = rgb;
-  }
-
   Raster& raster_;
   std::vector<double> depth_;
 };
@@ -127,6 +141,10 @@ class Mesh {
         }
       }
     }
+    for (int x = 0; x + 1 < image_.width; ++x) {
+      wall(painter, corner(x, image_.height - 1), corner(x + 1, image_.height - 1), kFrontLight);
+    }
+    for (int y = 0; y + 1 < image_.height; ++y) wall(painter, corner(0, y), corner(0, y + 1), kLeftLight);
   }
 
  private:
@@ -157,11 +175,23 @@ class Mesh {
     const double length = std::hypot(normal[0], normal[1], normal[2]);
     if (!(length > 0.0)) return;
     const double cosine = (normal[0] * kLight[0] + normal[1] * kLight[1] + normal[2] * kLight[2]) / length;
-    const double share = ((a.z + b.z + c.z) / 3.0 - view_.range.low) / (view_.range.high - view_.range.low);
-    const auto level = static_cast<std::size_t>(std::clamp(std::lround(share * 255.0), 0L, 255L));
     const double light = kAmbient + (1.0 - kAmbient) * std::max(0.0, cosine) / kLight[2];
-    const auto place = [&](const Corner& corner) { return view_.frame.at(corner.x, corner.y, corner.z); };
-    painter.triangle(place(a), place(b), place(c), lit(colours_[level], light));
+    painter.triangle(vertex(a), vertex(b), vertex(c), colours_, light);
+  }
+
+  /// From the border down to the base: what is cut there is seen as solid.
+  void wall(Painter& painter, const Corner& a, const Corner& b, double light) const {
+    if (std::isnan(a.z) || std::isnan(b.z)) return;
+    const Vertex low_a = vertex({a.x, a.y, view_.frame.low_um});
+    const Vertex low_b = vertex({b.x, b.y, view_.frame.low_um});
+    constexpr std::array kGrey{kWall};
+    painter.triangle(vertex(a), low_a, vertex(b), kGrey, light);
+    painter.triangle(vertex(b), low_a, low_b, kGrey, light);
+  }
+
+  [[nodiscard]] Vertex vertex(const Corner& corner) const {
+    return {view_.frame.at(corner.x, corner.y, corner.z),
+            (corner.z - view_.range.low) / (view_.range.high - view_.range.low)};
   }
 
   const ScalarImage& image_;

@@ -32,9 +32,9 @@ struct ShadedView {
   ValueRange range;  ///< of the colours, and of the heights that are shown: what lies further out is drawn at its ends
 };
 
-/// Coloured as the height map is, lit from the left; holes are gaps. width, height: of the picture in pixels. Where the
-/// pitch is not known a pixel is taken for 1 um. Heights are exaggerated until they are about a quarter of the longer
-/// side, never reduced.
+/// Coloured as the height map is, lit from the left; holes are gaps, and the front and left borders stand on the base.
+/// width, height: of the picture in pixels. Where the pitch is not known a pixel is taken for 1 um. Heights are
+/// exaggerated until they are about a quarter of the longer side, never reduced.
 [[nodiscard]] ShadedView shaded_view(const PictureSurface& surface, int width, int height);
 
 }  // namespace fvd

@@ -49,7 +49,8 @@ void draw_view(Canvas& canvas, const PageRect& place, const PictureSurface& surf
   const double low = view.frame.low_um;
   const double width = surface.width_um();
   const double height = surface.height_um();
-  const PagePoint base[] = {at(0.0, 0.0, low), at(0.0, height, low), at(width, height, low), at(width, 0.0, low)};
+  // The other two sides may be hidden.
+  const PagePoint base[] = {at(0.0, 0.0, low), at(0.0, height, low), at(width, height, low)};
   canvas.polyline(base, colour::kPaleInk, 0.4);
   const std::string unit = std::string(" ") + surface.lateral_unit();
   const auto middle = [](PagePoint a, PagePoint b) { return PagePoint{(a.x + b.x) / 2.0, (a.y + b.y) / 2.0}; };

@@ -2,7 +2,6 @@
 
 /// Where a measurement looked at the surface, as a line with regions that pictures show.
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,14 +25,5 @@ struct CrossSection {
   [[nodiscard]] double length_um() const;
   bool operator==(const CrossSection&) const = default;
 };
-
-/// The key of EvaluatedMeasurement::details under which the section stands.
-inline constexpr const char* kCrossSectionKey = "cross_section";
-
-/// As JSON text: {"from_um": [x, y], "to_um": [x, y], "band_width_um": w, "regions": [{"name", "from_um", "to_um"}]}.
-[[nodiscard]] std::string cross_section_json(const CrossSection& section);
-
-/// Of the details of a measurement; nothing where they tell none.
-[[nodiscard]] std::optional<CrossSection> cross_section_of(const std::string& details);
 
 }  // namespace fvd

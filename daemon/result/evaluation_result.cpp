@@ -68,6 +68,22 @@ void describe(EvaluatedValue& value, Fields& fields) {
   describe_warnings(value.warnings, fields);
 }
 
+void describe(CrossSection::Region& region, Fields& fields) {
+  fields.text("name", region.name, kMaxText_bytes, "of the region");
+  fields.number("from_um", region.from_um, kAnyNumber, "along the line");
+  fields.number("to_um", region.to_um, kAnyNumber, "along the line");
+}
+
+void describe(CrossSection& section, Fields& fields) {
+  fields.number("from_x_um", section.from_x_um, kAnyNumber, "where the line begins");
+  fields.number("from_y_um", section.from_y_um, kAnyNumber, "likewise, downwards");
+  fields.number("to_x_um", section.to_x_um, kAnyNumber, "where it ends");
+  fields.number("to_y_um", section.to_y_um, kAnyNumber, "likewise");
+  fields.number("band_width_um", section.band_width_um, kAnyNumber, "across the line");
+  fields.list("regions", section.regions, {0, 100}, "that count",
+              [](Fields& in, CrossSection::Region& region) { describe(region, in); });
+}
+
 void describe(EvaluatedMeasurement& measurement, Fields& fields) {
   fields.text("id", measurement.id, 4, "for PLCs");
   fields.text("kind", measurement.kind, kMaxText_bytes, "what was measured");
@@ -88,6 +104,9 @@ void describe(EvaluatedMeasurement& measurement, Fields& fields) {
              });
   fields.choices("not_evaluated", measurement.not_evaluated, {}, "what no budget contains");
   fields.any("details", measurement.details, kMaxDetails_bytes, "traces, sections, conditions");
+  fields.optional("cross_section", measurement.cross_section, [](Fields& in, CrossSection& section) {
+    in.group("cross_section", "where it looked, for pictures", [&](Fields& group) { describe(section, group); });
+  });
   describe_warnings(measurement.warnings, fields);
   optional_verdict(fields, "verdict", measurement.verdict, "the worst of its values'");
 }

@@ -10,6 +10,7 @@
 
 #include "config/fields.hpp"
 #include "core/surface/verdict.hpp"
+#include "daemon/result/cross_section.hpp"
 
 namespace fvd {
 
@@ -70,6 +71,7 @@ struct EvaluatedMeasurement {
   std::map<std::string, EvaluatedValue> values;  ///< by name with unit, e.g. "height_um"
   std::vector<std::string> not_evaluated;        ///< what no budget above contains
   std::string details;                           ///< JSON object: traces, sections, conditions; empty = none
+  std::optional<CrossSection> cross_section;     ///< where it looked, for pictures
   std::vector<EvaluationWarning> warnings;
   std::optional<Verdict> verdict;  ///< the worst of its values'; absent where nothing is limited
   bool operator==(const EvaluatedMeasurement&) const = default;

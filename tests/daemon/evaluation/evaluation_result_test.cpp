@@ -28,6 +28,7 @@ Evaluation sample() {
   step.main_value = "height_um";
   step.not_evaluated = {"temperature"};
   step.details = R"({"slope":0.0203})";
+  step.cross_section = CrossSection{1.5, 2.25, 100.0, 2.0, 9.0, {{"A", 0.125, 7.0}, {"C", 8.0, 9.5}}};
   step.verdict = Verdict::kUncertain;
   EvaluatedValue height;
   height.value = 49.985;

@@ -141,7 +141,8 @@ TEST(ReportPdf, SaysAsTextWhatWasMeasuredAndUnderWhichConditions) {
                                "heights to scale",
                                "height / µm",
                                "x / µm",
-                               "step: measured heights, mean over 200 µm",
+                               "step: mean over 200 µm",
+                               "measured z / µm",
                                "page 1 of 1"}) {
     EXPECT_THAT(words, HasSubstr(expected));
   }

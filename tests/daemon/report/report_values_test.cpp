@@ -144,15 +144,6 @@ TEST(SectionPoints, FollowALineDownwards) {
   EXPECT_NEAR(points.back().height_um, 20.0, 1e-5);
 }
 
-TEST(CrossSection, ReadsBackAsItWasWritten) {
-  const CrossSection section{1.5, 2.25, 100.0, 2.0, 9.0, {{"A", 0.125, 7.0}, {"C", 8.0, 9.5}}};
-
-  EXPECT_EQ(cross_section_of(R"({"x": 1, "cross_section":)" + cross_section_json(section) + "}"), section);
-  EXPECT_EQ(cross_section_of(""), std::nullopt);
-  EXPECT_EQ(cross_section_of(R"({"cross_section": {"from_um": [1]}})"), std::nullopt);
-  EXPECT_EQ(cross_section_of(R"({"cross_section": 3})"), std::nullopt);
-}
-
 TEST(ScalarImage, IsTheMeanOfTheValidPointsOfABlock) {
   Plane<float> metres(5, 4, 2e-6F);
   metres.at(0, 0) = std::numeric_limits<float>::quiet_NaN();

@@ -74,8 +74,7 @@ inline Evaluation sample_evaluation() {
   step.values["height_areal_um"] = value_of(49.9913, "um", 0.04);
   step.verdict = Verdict::kPass;
   step.not_evaluated = {"temperature", "lateral"};
-  const CrossSection section{0.0, 120.0, 320.0, 120.0, 200.0, {{"A", 16.0, 96.0}, {"C", 144.0, 176.0}}};
-  step.details = std::string(R"({"cross_section":)") + cross_section_json(section) + "}";
+  step.cross_section = CrossSection{0.0, 120.0, 320.0, 120.0, 200.0, {{"A", 16.0, 96.0}, {"C", 144.0, 176.0}}};
   evaluation.measurements["step"] = std::move(step);
   EvaluatedMeasurement land;
   land.kind = "areal";
