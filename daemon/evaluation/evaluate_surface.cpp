@@ -74,6 +74,7 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
   made.kind = input.planned.kind;
   made.surface = input.planned.surface;
   add_missing(never_evaluated(), made.not_evaluated);
+  if (!knows_window(input.measured.field)) add_missing({"correlation"}, made.not_evaluated);
   made.warnings.insert(made.warnings.end(), input.surface.warnings.begin(), input.surface.warnings.end());
   if (!made.reason.empty()) {
     add_invalid_values(input, made);

@@ -29,9 +29,12 @@ void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Bu
 
 /// Adds the errors of the slices' z, which whole plateaus share. weights: of the value, on the measured field, whose
 /// heights tell which slices each point rests on. "slice_z" is not evaluated where the context does not know the
-/// slices.
+/// slices, or where their z neither rise nor fall throughout.
 void add_slice_z(const EvaluationContext& context, const metrology::HeightField& measured,
                  const metrology::WeightMap& weights, metrology::Budget& budget);
+
+/// Adds what this budget does not contain to what the measurement says of all its budgets.
+void note_not_evaluated(const metrology::Budget& budget, EvaluatedMeasurement& made);
 
 /// key: of the value in `planned`, whose limits and `decision` make the verdict.
 [[nodiscard]] EvaluatedValue judged_value(const ValueInput& input, const std::string& key,
