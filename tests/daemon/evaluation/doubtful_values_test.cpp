@@ -161,6 +161,33 @@ TEST(ADoubtfulValue, OfAnEdgeSharperThanTheWindowIsJudgedByTheBoundAlone) {
   EXPECT_EQ(verdict(R"({"lower": 5})"), Verdict::kFail);
 }
 
+TEST(ADoubtfulValue, OfTheDeepestNotchPassesNoUpperLimitWhileANotchIsNotResolved) {
+  // A window of 3 um resolves 12 um and does not resolve 4 um.
+  const auto made = [](double width_um) {
+    Surface notched = surface_of(
+        [width_um](double x_um, double y_um) {
+          const double wedge_um = 100.0 - std::hypot(x_um - 100.0, 4.0);
+          return std::abs(y_um - 30.0) < width_um / 2.0 ? std::min(wedge_um, 90.0) : wedge_um;
+        },
+        0.02F);
+    notched.kernel.weights.assign(3, 1.0 / 3.0);
+    return evaluated(notched, R"({"measurements": {"e": {"kind": "cutting_edge", "flank_um": [25, 80],
+                       "chipping": {"min_width_um": 2, "max_unmeasured_fraction": 1},
+                       "limits": {"chipping_max_um": {"upper": 50}}}}})")
+        .measurements.at("e");
+  };
+
+  const EvaluatedMeasurement narrow = made(4.0);
+  const EvaluatedMeasurement wide = made(12.0);
+  ASSERT_GT(narrow.values.at("chipping_max_um").value.value(), 3.0);
+  ASSERT_GT(wide.values.at("chipping_max_um").value.value(), 3.0);
+
+  EXPECT_THAT(narrow.warnings, warning("notch_not_resolved"));
+  EXPECT_EQ(narrow.verdict, Verdict::kUncertain);
+  EXPECT_THAT(wide.warnings, Not(warning("notch_not_resolved")));
+  EXPECT_EQ(wide.verdict, Verdict::kPass);
+}
+
 TEST(ADoubtfulValue, OfAnEdgeIsRefusedForSectionsBelowThePitch) {
   const Evaluation evaluation = evaluated(sharp_edge(), edge(R"({"upper": 5})", R"(, "sections_every_um": 0.5)"));
 
