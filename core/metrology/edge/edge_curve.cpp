@@ -93,9 +93,11 @@ void EdgeCurve::cut(const HeightField& field, const Region& region) {
 
 void EdgeCurve::measure_length() {
   lengths_.assign(1, 0.0);
+  most_across_um_ = std::abs(value_beyond(across_, from_um_));
   const double step = (to_um_ - from_um_) / kLengthSteps;
   for (int i = 0; i < kLengthSteps; ++i) {
     const double middle = from_um_ + (i + 0.5) * step;
+    most_across_um_ = std::max(most_across_um_, std::abs(value_beyond(across_, middle + step / 2.0)));
     const double across = slope_beyond(across_, middle);
     const double rise = slope_beyond(height_, middle);
     lengths_.push_back(lengths_.back() + step * std::sqrt(1.0 + across * across + rise * rise));
@@ -131,6 +133,12 @@ EdgeFrame EdgeCurve::frame(double place_um) const {
   frame.tilt = slope_beyond(height_, place_um) / norm;
   frame.stretch = std::sqrt(1.0 + frame.tilt * frame.tilt);
   return frame;
+}
+
+bool EdgeCurve::may_be_within(double x_um, double y_um, double distance_um) const {
+  const double across = (x_um - straight_.origin_x_um) * straight_.u_x + (y_um - straight_.origin_y_um) * straight_.u_y;
+  // A little more for what the bend does between the places looked at.
+  return std::abs(across) <= 1.01 * (distance_um + most_across_um_);
 }
 
 EdgePlace EdgeCurve::place_of(double x_um, double y_um) const {

@@ -63,6 +63,7 @@ class Cutter {
   void sort_in(int column, int row) {
     const double x = field_.x_um(column);
     const double y = field_.y_um(row);
+    if (!curve_.may_be_within(x, y, options_.flank_to_um)) return;
     const EdgePlace place = curve_.place_of(x, y);
     if (std::abs(place.s_um) > options_.flank_to_um) return;
     const EdgeFrame frame = curve_.frame(place.place_um);

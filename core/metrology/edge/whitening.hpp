@@ -12,8 +12,8 @@ namespace fvd::metrology::edge {
 
 /// Errors of nodes at a distance d are taken to be correlated by 1 - d / window (white noise averaged over a box), and
 /// each has an independent part of 0.3 of their variance. That part keeps small faults of the window's model from being
-/// amplified, and costs a sharp edge's radius a sixth of the information. With C = L L^T, apply() multiplies by the
-/// inverse of L: least squares of what it gives are those of C. Own definition.
+/// amplified, and makes a sharp edge's squared radius vary 1.2 times as much as a full inverse would. With C = L L^T,
+/// apply() multiplies by the inverse of L: least squares of what it gives are those of C. Own definition.
 class Whitening {
  public:
   /// s_um: rising. window_um: 0 = nothing is correlated.
