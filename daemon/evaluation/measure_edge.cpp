@@ -99,6 +99,16 @@ void add_figure(const MeasurementInput& input, const std::string& key, std::opti
   add_value(input, key, value, made);
 }
 
+/// A count or a share, which is what it is.
+void add_share(const MeasurementInput& input, const std::string& key, std::optional<double> figure,
+               const std::string& reason, EvaluatedMeasurement& made) {
+  ValueInput value;
+  value.value = figure;
+  value.exact = true;
+  if (!figure) value.reason = reason;
+  add_value(input, key, value, made);
+}
+
 ordered_json section_json(const metrology::EdgeSection& section) {
   ordered_json json{{"along_um", section.along_um}, {"x_um", section.x_um}, {"y_um", section.y_um}};
   if (section.state != EdgeReason::kNone) {
@@ -177,8 +187,8 @@ void add_chipping(const MeasurementInput& input, const CuttingEdge& edge, Evalua
     deepest.u_method = "spread";
   }
   add_value(input, "chipping_max_um", deepest, made);
-  add_figure(input, "notches", when_there(static_cast<double>(chipping.notches.size())), reason, made);
-  add_figure(input, "unmeasured_fraction", chipping.unmeasured_fraction(), reason, made);
+  add_share(input, "notches", when_there(static_cast<double>(chipping.notches.size())), reason, made);
+  add_share(input, "unmeasured_fraction", chipping.unmeasured_fraction(), reason, made);
   const auto any_notch = [&chipping](bool (*is)(const metrology::Notch&)) {
     return std::any_of(chipping.notches.begin(), chipping.notches.end(), is);
   };

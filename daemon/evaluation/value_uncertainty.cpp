@@ -119,15 +119,16 @@ EvaluatedValue judged_value(const ValueInput& input, const std::string& key, con
   const auto limits = planned.limits.find(key);
   if (limits == planned.limits.end()) return value;
   value.limits = limits->second;
-  const metrology::Decision decided = metrology::decide(input.value, uncertainty, limits->second,
-                                                        {rule_of(decision), decision.probability}, input.below_noise);
+  const metrology::DecisionRule rule = input.exact ? metrology::DecisionRule::kSimple : rule_of(decision);
+  const metrology::Decision decided =
+      metrology::decide(input.value, uncertainty, limits->second, {rule, decision.probability}, input.below_noise);
   value.verdict = decided.verdict;
   value.probability = decided.conformity;
   if (decided.u_above_third_of_tolerance) warn_of_tolerance(value, value.warnings);
   if (decided.held_back_below_noise) {
     value.warnings.push_back({"below_noise", "is below twice the noise floor, so that a lower limit cannot pass"});
   }
-  if (input.value && !uncertainty && decision.rule != "simple") {
+  if (input.value && !uncertainty && rule != metrology::DecisionRule::kSimple) {
     value.warnings.push_back({"no_uncertainty", "U is not known, so that limits cannot be judged"});
   }
   return value;

@@ -22,6 +22,7 @@ struct ValueInput {
   metrology::Budget budget;  ///< without entries: U is not known
   std::string u_method;      ///< "linear", "monte_carlo", "jacobian", "spread"
   bool below_noise = false;  ///< of a texture value
+  bool exact = false;        ///< a count or a share of points: judged by itself
 };
 
 /// Adds noise to the budget, or "noise" to what is not evaluated where the field has no standard errors.

@@ -17,7 +17,7 @@ using nlohmann::json;
 std::string recipe_of(const std::string& upper_region, const std::string& limits) {
   return R"({"format": 2, "acquire": {"scan": {"start_um": -7, "step_um": 10, "slices": 21},
       "camera": {"exposure_us": 2000}},
-    "reconstruct": {"focus": {"curve_width_um": 28}},
+    "reconstruct": {"focus": {"curve_width_um": 28}, "lateral": {"pixel_pitch_x_um": 1, "pixel_pitch_y_um": 1}},
     "evaluation": {
       "surfaces": {"level": {"steps": [{"op": "outliers"}]}},
       "regions": {"a": {"rectangle_um": {"x": 20, "y": 20, "width": 80, "height": 300}}, "b": )" +
