@@ -8,12 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/report/axis_ticks.hpp"
+#include "daemon/report/value_rows.hpp"
 
 namespace fvd {
 
 namespace {
 
-using nlohmann::ordered_json;
+/// Keys in the order of the alphabet: a result that was read back tells the same words.
+using nlohmann::json;
 
 std::string number_text(double number) {
   std::ostringstream text;
@@ -45,23 +47,24 @@ std::string entry_text(const std::string& key, const std::string& value) {
   return key + " " + value;
 }
 
-std::string scalar_text(const ordered_json& json) {
-  if (json.is_string()) return json.get<std::string>();
-  if (json.is_boolean()) return json.get<bool>() ? "yes" : "no";
-  return json.is_number() ? number_text(json.get<double>()) : std::string();
+std::string scalar_text(const json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_integer()) return value.dump();
+  return value.is_number() ? number_text(value.get<double>()) : std::string();
 }
 
 /// Of a list of plain values "a, b"; of anything else nothing.
-std::string value_text(const ordered_json& json) {
-  if (!json.is_array()) return scalar_text(json);
+std::string value_text(const json& value) {
+  if (!value.is_array()) return scalar_text(value);
   std::vector<std::string> words;
-  for (const ordered_json& item : json) {
+  for (const json& item : value) {
     if (const std::string word = scalar_text(item); !word.empty()) words.push_back(word);
   }
   return joined(words);
 }
 
-std::string done_text(const ordered_json& did) {
+std::string done_text(const json& did) {
   std::vector<std::string> words;
   if (did.contains("points_used")) words.push_back(scalar_text(did.at("points_used")) + " points used");
   if (did.value("points_removed", 0.0) > 0.0) words.push_back(scalar_text(did.at("points_removed")) + " removed");
@@ -75,7 +78,7 @@ std::string done_text(const ordered_json& did) {
   return joined(words);
 }
 
-std::string step_text(const ordered_json& step) {
+std::string step_text(const json& step) {
   std::vector<std::string> settings;
   std::string done;
   for (const auto& [key, value] : step.items()) {
@@ -92,11 +95,11 @@ std::string step_text(const ordered_json& step) {
   return text;
 }
 
-std::string steps_text(const std::string& json) {
-  const auto steps = ordered_json::parse(json, nullptr, false);
+std::string steps_text(const std::string& steps_json) {
+  const auto steps = json::parse(steps_json, nullptr, false);
   if (!steps.is_array() || steps.empty()) return "as measured";
   std::string text;
-  for (const ordered_json& step : steps) {
+  for (const json& step : steps) {
     if (step.is_object()) text += (text.empty() ? "" : "; ") + step_text(step);
   }
   return text;
@@ -104,7 +107,7 @@ std::string steps_text(const std::string& json) {
 
 /// Figures of a measurement's details that are conditions of texture values.
 std::string texture_text(const EvaluatedMeasurement& made) {
-  const auto details = ordered_json::parse(made.details, nullptr, false);
+  const auto details = json::parse(made.details, nullptr, false);
   if (!details.is_object()) return {};
   constexpr std::pair<const char*, const char*> kKeys[] = {{"noise_floor_Sq_um", "noise floor Sq_um"},
                                                            {"window_um", "focus window_um"},
@@ -177,6 +180,7 @@ std::vector<ConditionLine> condition_lines(const Result& result) {
   }
   lines.push_back({"Measured surface", surface_text(result)});
   for (const Warning& warning : result.warnings) lines.push_back({"Warning", warning.text});
+  for (ConditionLine& line : lines) line.text = with_micro_sign(std::move(line.text));
   return lines;
 }
 

@@ -53,7 +53,7 @@ ValueRow row_of(const std::string& name, const EvaluatedValue& value) {
   if (value.limits) row.limits = limits_text(*value.limits);
   row.value = row.uncertainty = "-";
   if (!value.value) {
-    row.reason = value.reason;
+    row.reason = with_micro_sign(value.reason);
     return row;
   }
   const int digits = digits_behind_point(value);
@@ -84,7 +84,7 @@ void add_measurement(const std::string& name, const EvaluatedMeasurement& made, 
   if (rows.size() == first) {
     ValueRow row;
     row.value = row.uncertainty = "-";
-    row.reason = made.reason;
+    row.reason = with_micro_sign(made.reason);
     row.verdict = made.verdict;
     rows.push_back(std::move(row));
   }
@@ -104,6 +104,19 @@ ValueRow row_of(const MeasuredValue& measured) {
 }
 
 }  // namespace
+
+std::string with_micro_sign(std::string text) {
+  constexpr std::string_view kPlain = " um";
+  constexpr std::string_view kShown = " µm";
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto goes_on = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  for (auto place = text.find(kPlain); place != std::string::npos; place = text.find(kPlain, place + 1)) {
+    const std::size_t end = place + kPlain.size();
+    if (place == 0 || !is_digit(text[place - 1]) || (end < text.size() && goes_on(text[end]))) continue;
+    text.replace(place, kPlain.size(), kShown);
+  }
+  return text;
+}
 
 std::string unit_text(const std::string& unit) {
   if (unit == "1" || unit == "um/um") return {};

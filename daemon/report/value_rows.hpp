@@ -27,6 +27,9 @@ struct ValueRow {
 /// Behind them what of the map was judged; all values of the map where nothing was evaluated.
 [[nodiscard]] std::vector<ValueRow> value_rows(const Result& result);
 
+/// " um" behind a number in a text of the program as " µm".
+[[nodiscard]] std::string with_micro_sign(std::string text);
+
 /// "um" as "µm", "deg" as "°" and so on.
 [[nodiscard]] std::string unit_text(const std::string& unit);
 

@@ -31,8 +31,10 @@ std::string three_digits(double value) {
 }
 
 std::string caption(const ShadedView& view) {
-  if (view.frame.exaggeration == 1.0) return "heights to scale";
-  return "heights " + short_text(view.frame.exaggeration) + " times exaggerated";
+  if (!view.range.any) return "no valid point";
+  const double exaggeration = view.frame.exaggeration;
+  return "heights shown " + three_digits(view.range.high - view.range.low) + " µm, " +
+         (exaggeration == 1.0 ? "to scale" : short_text(exaggeration) + " times exaggerated");
 }
 
 }  // namespace
@@ -62,8 +64,6 @@ void draw_view(Canvas& canvas, const PageRect& place, const PictureSurface& surf
   if (view.range.any) {
     const PagePoint top = at(0.0, 0.0, view.range.high);
     canvas.line(base[0], top, colour::kPaleInk, 0.4);
-    canvas.text({std::max(place.x, top.x - 14.0), top.y - 3.0}, "z " + three_digits(view.range.high - low) + " µm",
-                {.size = kLabel});
   }
   canvas.text({place.x + place.width / 2.0, place.bottom() - 2.0}, caption(view),
               {.size = kLabel, .align = TextAlign::kCentre});

@@ -138,7 +138,7 @@ TEST(ReportPdf, SaysAsTextWhatWasMeasuredAndUnderWhichConditions) {
                                "the light varies by 3 %",
                                "fvd 1.2.3",
                                "surface SHA-256",
-                               "heights to scale",
+                               "heights shown 50.0 µm, to scale",
                                "height / µm",
                                "x / µm",
                                "step: mean over 200 µm",

@@ -94,6 +94,24 @@ TEST(UnitText, IsForPeople) {
   EXPECT_EQ(unit_text("um/um"), "");
 }
 
+TEST(WithMicroSign, ReplacesTheUnitBehindNumbersOnly) {
+  EXPECT_EQ(with_micro_sign("0.135 um is below 0.1 um"), "0.135 µm is below 0.1 µm");
+  EXPECT_EQ(with_micro_sign("3 umbrellas, the um, 2 um_x"), "3 umbrellas, the um, 2 um_x");
+  EXPECT_EQ(with_micro_sign(" um"), " um");
+}
+
+TEST(ConditionLines, TellTheSameOfASurfaceWhoseKeysAreInAnotherOrder) {
+  Result result = test::sample_report_result();
+  std::string& steps = result.evaluation->surfaces["texture"];
+  steps = R"([{"op":"filter","side":"S","nesting_um":80.5,"did":{"points_used":44800}}])";
+  const std::string words = condition_lines(result)[2].text;
+
+  steps = R"([{"did":{"points_used":44800},"nesting_um":80.5,"side":"S","op":"filter"}])";
+
+  EXPECT_EQ(condition_lines(result)[2].text, words);
+  EXPECT_EQ(words, "filter (nesting 80.5 µm, side S): 44800 points used");
+}
+
 TEST(ConditionLines, SayWhyAValueIsNotThere) {
   const auto lines = condition_lines(test::sample_report_result());
 
