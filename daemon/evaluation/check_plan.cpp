@@ -15,6 +15,7 @@ namespace fvd {
 namespace {
 
 constexpr std::size_t kMaxNameLength = 32;
+constexpr std::size_t kMostLevels = 12;  ///< every pair has a value, and a map of weights
 
 bool is_name(std::string_view name) {
   const auto allowed = [](char c) {
@@ -160,7 +161,9 @@ class Checker {
       if (measurement.lower == measurement.upper) refuse(pointer + "/upper", "is the lower region too");
     }
     if (measurement.kind == "levels") {
-      if (measurement.regions.size() < 2) refuse(pointer + "/regions", "expected two or more");
+      if (measurement.regions.size() < 2 || measurement.regions.size() > kMostLevels) {
+        refuse(pointer + "/regions", "expected 2.." + std::to_string(kMostLevels) + " regions");
+      }
       for (const std::string& region : measurement.regions) check_region_name(pointer + "/regions", region);
     }
     if ((measurement.kind == "areal" || measurement.kind == "profile") && measurement.parameters.empty()) {

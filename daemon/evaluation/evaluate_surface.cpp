@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <new>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "core/base/error.hpp"
 #include "core/surface/verdict.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/surface_chain.hpp"
@@ -27,20 +28,25 @@ constexpr std::array<std::pair<std::string_view, Measure>, 6> kKinds{{{"step_hei
                                                                       {"profile", measure_profile},
                                                                       {"cutting_edge", measure_edge}}};
 
+EvaluatedMeasurement invalid_for(const std::string& reason) {
+  EvaluatedMeasurement invalid;
+  invalid.reason = reason;
+  return invalid;
+}
+
+/// A measurement that cannot be made costs its values alone, never the heights of the job.
 EvaluatedMeasurement measured_by_kind(const MeasurementInput& input) {
   const auto kind = std::find_if(kKinds.begin(), kKinds.end(),
                                  [&input](const auto& known) { return known.first == input.planned.kind; });
   if (!input.surface.refused.empty()) {
-    EvaluatedMeasurement invalid;
-    invalid.reason = "the surface " + input.planned.surface + " cannot be made: " + input.surface.refused;
-    return invalid;
+    return invalid_for("the surface " + input.planned.surface + " cannot be made: " + input.surface.refused);
   }
   try {
     return kind->second(input);
-  } catch (const Error& error) {
-    EvaluatedMeasurement invalid;
-    invalid.reason = error.what();
-    return invalid;
+  } catch (const std::bad_alloc&) {
+    return invalid_for("there is not enough memory for it");
+  } catch (const std::exception& error) {
+    return invalid_for(error.what());
   }
 }
 
@@ -74,6 +80,7 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
   made.kind = input.planned.kind;
   made.surface = input.planned.surface;
   add_missing(never_evaluated(), made.not_evaluated);
+  if (!knows_window(input.measured.field)) add_missing({"correlation"}, made.not_evaluated);
   made.warnings.insert(made.warnings.end(), input.surface.warnings.begin(), input.surface.warnings.end());
   if (!made.reason.empty()) {
     add_invalid_values(input, made);

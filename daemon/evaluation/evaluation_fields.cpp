@@ -1,5 +1,7 @@
 #include "daemon/evaluation/evaluation_fields.hpp"
 
+#include <algorithm>
+
 #include "daemon/evaluation/value_names.hpp"
 
 namespace fvd {
@@ -159,10 +161,17 @@ void describe_region_of(PlannedMeasurement& measurement, Fields& fields) {
   fields.text("region", measurement.region, kMaxNameLength, "what is measured; empty = everywhere");
 }
 
-void describe_step_height(PlannedMeasurement& measurement, Fields& fields) {
-  std::string method = measurement.method.empty() ? "iso5436_a1" : measurement.method;
-  fields.choice("method", method, {"iso5436_a1", "iso5436_a2"}, "a groove or ridge of flat or of rounded bottom");
+/// Kinds share the member, and a schema describes them all: what another kind has is not this one's default.
+void describe_method(PlannedMeasurement& measurement, Fields& fields, const std::vector<std::string>& methods,
+                     const char* meaning) {
+  const bool own = std::find(methods.begin(), methods.end(), measurement.method) != methods.end();
+  std::string method = own ? measurement.method : methods.front();
+  fields.choice("method", method, methods, meaning);
   measurement.method = method;
+}
+
+void describe_step_height(PlannedMeasurement& measurement, Fields& fields) {
+  describe_method(measurement, fields, {"iso5436_a1", "iso5436_a2"}, "a groove or ridge of flat or of rounded bottom");
   fields.choice("across", measurement.across, {"x", "y"}, "direction of the traces, across the groove");
   fields.numbers("band_from_to_um", measurement.band_from_to_um, kLength_um, {0, 2},
                  "the traces lie in this band of the other direction; empty = everywhere");
@@ -211,18 +220,16 @@ void describe_chipping(PlannedChipping& chipping, Fields& fields) {
 
 void describe_edge(PlannedMeasurement& measurement, Fields& fields) {
   describe_region_of(measurement, fields);
-  std::string method = measurement.method.empty() ? "model" : measurement.method;
-  fields.choice(
-      "method", method, {"model", "tolerance"},
+  describe_method(
+      measurement, fields, {"model", "tolerance"},
       "model: where the rounding ends follows from the fit; tolerance: where it leaves the flank by this much");
-  measurement.method = method;
   fields.number("tolerance_um", measurement.tolerance_um, positive(100.0), "of the method tolerance");
   fields.choice("rake_side", measurement.rake_side, {"left", "right", "top", "bottom"},
                 "where the rake face lies in the image");
   fields.number("sections_every_um", measurement.sections_every_um, positive(1e5),
                 "each section is the mean over so much along the edge");
   fields.choice("model", measurement.model, {"conic", "circle"}, "of the rounding");
-  fields.numbers("flank_um", measurement.flank_um, {0.0, 1e6}, {2, 2},
+  fields.numbers("flank_um", measurement.flank_um, positive(1e6), {2, 2},
                  "nearest and farthest distance from the edge at which the flanks are flat");
   fields.require("flank_um");
   fields.optional("chipping", measurement.chipping, [](Fields& in, PlannedChipping& chipping) {
@@ -274,7 +281,7 @@ void describe(EvaluationPlan& plan, Fields& fields) {
   fields.group("decision", "how limits are judged", [&](Fields& in) {
     in.choice("rule", plan.decision.rule, {"iso14253_1", "simple", "guard_U"},
               "iso14253_1: by the probability of conformity; simple: by the value alone; guard_U: U inside the limits");
-    in.number("probability", plan.decision.probability, {0.5, 0.9999}, "that pass and fail need");
+    in.number("probability", plan.decision.probability, {0.5, 0.9999, true}, "that pass and fail need");
   });
 }
 

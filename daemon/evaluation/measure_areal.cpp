@@ -86,6 +86,7 @@ class ArealUncertainty {
     entry.u = *drawn.u;
     entry.dof = drawn.draws - 1;
     value.budget.entries.push_back(entry);
+    value.budget.not_evaluated.emplace_back("slice_z");
     value.u_method = "monte_carlo";
   }
 
@@ -127,6 +128,7 @@ EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
   if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
   const std::optional<double> sq_um = found.values.back().value;
   const bool below_noise = is_below_noise(sq_um, floor);
+  made.not_evaluated = texture_not_evaluated(input);
   const ArealUncertainty uncertainty(input, region, settings, parameters);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string key = areal_value_key(input.planned.parameters[i]);
@@ -135,11 +137,11 @@ EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
     value.reason = found.values[i].reason;
     value.below_noise = below_noise;
     if (value.value) uncertainty.add_to(value, parameters[i]);
+    note_not_evaluated(value.budget, made);
     EvaluatedValue judged = judged_value(value, key, input.planned, input.plan.decision);
     if (found.values[i].tie) judged.warnings.push_back({"tie", "two candidates are equal; the first was taken"});
     made.values[key] = std::move(judged);
   }
-  made.not_evaluated = texture_not_evaluated(input);
   if (below_noise) warn_below_noise(*sq_um, floor, made);
   ordered_json details = texture_conditions(input, floor);
   details["mean_um"] = found.mean_um;

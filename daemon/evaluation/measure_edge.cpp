@@ -1,14 +1,17 @@
 /// Cutting edges: rounding and chipping.
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "core/metrology/edge/cutting_edge.hpp"
+#include "core/metrology/operations/region.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/measured_section.hpp"
+#include "daemon/evaluation/noise_floor.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
 
@@ -21,6 +24,8 @@ using metrology::EdgeQuantity;
 using metrology::EdgeReason;
 using metrology::EdgeValue;
 using nlohmann::ordered_json;
+
+constexpr std::size_t kMostSectionsTold = 1000;  ///< details that are longer than 1 MiB do not read back
 
 metrology::RakeSide rake_side(const std::string& name) {
   if (name == "right") return metrology::RakeSide::kRight;
@@ -64,6 +69,23 @@ ValueInput value_input(const EdgeValue& value, int sections) {
   return input;
 }
 
+/// Where the truth may be anything from 0 to a bound, only the bound against the limits tells something.
+void judge_at_most(double bound, EvaluatedValue& value) {
+  if (!value.limits) return;
+  const Limits& limits = *value.limits;
+  const bool none_conforms = limits.lower && bound < *limits.lower;
+  const bool all_conform = limits.lower.value_or(0.0) <= 0.0 && (!limits.upper || bound <= *limits.upper);
+  value.probability.reset();
+  value.verdict = none_conforms ? Verdict::kFail : (all_conform ? Verdict::kPass : Verdict::kUncertain);
+}
+
+/// Where the truth may be larger than what was read, an upper limit is not shown to be kept.
+void judge_at_least(EvaluatedValue& value) {
+  if (!value.limits || !value.limits->upper || value.verdict != Verdict::kPass) return;
+  value.verdict = Verdict::kUncertain;
+  value.probability.reset();
+}
+
 void add_value(const MeasurementInput& input, const std::string& key, const ValueInput& value,
                EvaluatedMeasurement& made) {
   made.values[key] = judged_value(value, key, input.planned, input.plan.decision);
@@ -73,6 +95,16 @@ void add_figure(const MeasurementInput& input, const std::string& key, std::opti
                 const std::string& reason, EvaluatedMeasurement& made) {
   ValueInput value;
   value.value = figure;
+  if (!figure) value.reason = reason;
+  add_value(input, key, value, made);
+}
+
+/// A count or a share, which is what it is.
+void add_share(const MeasurementInput& input, const std::string& key, std::optional<double> figure,
+               const std::string& reason, EvaluatedMeasurement& made) {
+  ValueInput value;
+  value.value = figure;
+  value.exact = true;
   if (!figure) value.reason = reason;
   add_value(input, key, value, made);
 }
@@ -118,7 +150,12 @@ ordered_json details_json(const CuttingEdge& edge) {
                     {"sections_measured", edge.sections_measured}};
   if (edge.method == metrology::EdgeMethod::kTolerance) json["tolerance_um"] = edge.tolerance_um;
   json["spread"] = spreads_json(edge);
-  for (const auto& section : edge.sections) json["sections"].push_back(section_json(section));
+  json["sections"] = ordered_json::array();
+  for (const auto& section : edge.sections) {
+    if (json["sections"].size() == kMostSectionsTold) break;
+    json["sections"].push_back(section_json(section));
+  }
+  json["sections_not_told"] = edge.sections.size() - json["sections"].size();
   const metrology::ChippingResult& chipping = edge.chipping;
   ordered_json chips{{"depth_limit_um", chipping.depth_limit_um},
                      {"robust_sd_um", chipping.robust_sd_um},
@@ -150,14 +187,35 @@ void add_chipping(const MeasurementInput& input, const CuttingEdge& edge, Evalua
     deepest.u_method = "spread";
   }
   add_value(input, "chipping_max_um", deepest, made);
-  add_figure(input, "notches", when_there(static_cast<double>(chipping.notches.size())), reason, made);
-  add_figure(input, "unmeasured_fraction", chipping.unmeasured_fraction(), reason, made);
-  for (const metrology::Notch& notch : chipping.notches) {
-    if (notch.resolved) continue;
-    made.warnings.push_back(
-        {"notch_not_resolved", "a notch is narrower than two focus windows: it is deeper than it reads"});
-    break;
+  add_share(input, "notches", when_there(static_cast<double>(chipping.notches.size())), reason, made);
+  add_share(input, "unmeasured_fraction", chipping.unmeasured_fraction(), reason, made);
+  const auto any_notch = [&chipping](bool (*is)(const metrology::Notch&)) {
+    return std::any_of(chipping.notches.begin(), chipping.notches.end(), is);
+  };
+  const auto tell = [&made](const char* code, const char* text) {
+    made.warnings.push_back({code, text});
+    judge_at_least(made.values.at("chipping_max_um"));
+  };
+  if (any_notch([](const metrology::Notch& notch) { return !notch.resolved; })) {
+    tell("notch_not_resolved", "a notch is narrower than two focus windows: it is deeper than it reads");
   }
+  if (any_notch([](const metrology::Notch& notch) { return notch.open; })) {
+    tell("notch_open", "a notch reaches into a part that is not measured: it is at least as deep as it reads");
+  }
+}
+
+/// Why nothing can be measured with this recipe on this surface; empty where something can.
+std::string refused(const MeasurementInput& input, const metrology::Region& region, EvaluatedMeasurement& made) {
+  const metrology::HeightField& field = input.surface.field;
+  if (!region.empty() && metrology::count_points(region) == 0) {
+    made.reason_code = evaluation_code::kRegionOutside;
+    return "the region " + input.planned.region + " has no point in the field of view";
+  }
+  if (input.planned.sections_every_um >= std::min(field.pitch_x_um, field.pitch_y_um)) return {};
+  std::ostringstream text;
+  text << "sections_every_um of " << input.planned.sections_every_um << " um is below the distance of the points, "
+       << std::min(field.pitch_x_um, field.pitch_y_um) << " um";
+  return text.str();
 }
 
 }  // namespace
@@ -168,24 +226,29 @@ EvaluatedMeasurement measure_edge(const MeasurementInput& input) {
   made.main_value = "radius_um";
   made.region = input.planned.region;
   const metrology::HeightField& field = input.surface.field;
-  const CuttingEdge edge = metrology::measure_cutting_edge(
-      field, region_points(input.plan, input.planned.region, field), options_of(input.planned));
+  const metrology::Region region = region_points(input.plan, input.planned.region, field);
+  made.reason = refused(input, region, made);
+  if (!made.reason.empty()) return made;
+  const CuttingEdge edge = metrology::measure_cutting_edge(field, region, options_of(input.planned));
   if (edge.reason != EdgeReason::kNone) {
     made.reason = metrology::edge_reason_text(edge.reason);
     return made;
   }
   made.points = edge.points;
   made.valid_fraction = edge.valid_fraction;
+  made.reason = too_few_valid(edge.valid_fraction, input.planned);
+  if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
   for (std::size_t i = 0; i < metrology::kEdgeQuantityCount; ++i) {
     const std::string key(metrology::edge_quantity_key(static_cast<EdgeQuantity>(i)));
     add_value(input, key, value_input(edge.values[i], edge.sections_measured), made);
     if (!edge.values[i].at_most) continue;
+    judge_at_most(edge.radius_smallest_resolvable_um, made.values.at(key));
     made.warnings.push_back({"at_most", key + " is below what the focus window resolves: read it as at most " +
                                             std::to_string(edge.radius_smallest_resolvable_um) + " um"});
   }
   if (input.planned.chipping) {
     add_chipping(input, edge, made);
-    if (edge.chipping.unmeasured_fraction() > input.planned.chipping->max_unmeasured_fraction) {
+    if (made.reason.empty() && edge.chipping.unmeasured_fraction() > input.planned.chipping->max_unmeasured_fraction) {
       made.reason = "too much of the edge could not be measured: see unmeasured_fraction";
     }
   }

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.hpp"
 #include "core/metrology/operations/region.hpp"
 #include "core/metrology/profile/profile_evaluation.hpp"
 #include "core/metrology/uncertainty/monte_carlo.hpp"
@@ -93,6 +96,52 @@ std::optional<metrology::MonteCarlo> drawn(const HeightField& field, const Profi
   });
 }
 
+/// Whether the line with its band leaves the field.
+bool leaves(const HeightField& field, const ProfileLine& line) {
+  const double length_um = std::hypot(line.to_x_um - line.from_x_um, line.to_y_um - line.from_y_um);
+  const double aside_x_um = line.band_width_um / 2.0 * std::abs(line.to_y_um - line.from_y_um) / length_um;
+  const double aside_y_um = line.band_width_um / 2.0 * std::abs(line.to_x_um - line.from_x_um) / length_um;
+  return std::min(line.from_x_um, line.to_x_um) - aside_x_um < 0.0 ||
+         std::min(line.from_y_um, line.to_y_um) - aside_y_um < 0.0 ||
+         std::max(line.from_x_um, line.to_x_um) + aside_x_um > field.width() * field.pitch_x_um ||
+         std::max(line.from_y_um, line.to_y_um) + aside_y_um > field.height() * field.pitch_y_um;
+}
+
+/// The profile, or why there is none in made.
+std::optional<Profile> extracted(const HeightField& field, const ProfileLine& line, EvaluatedMeasurement& made) {
+  try {
+    return metrology::extract_profile(field, line);
+  } catch (const Error& error) {
+    made.reason = error.what();
+    made.reason_code = leaves(field, line) ? evaluation_code::kRegionOutside : evaluation_code::kInvalid;
+    return std::nullopt;
+  }
+}
+
+/// The root mean square of the profile that a parameter is of: what decides whether it is told from noise.
+ProfileParameter root_mean_square_of(ProfileParameter parameter) {
+  switch (metrology::profile_parameter_info(parameter).kind) {
+    case metrology::ProfileKind::kP:
+      return ProfileParameter::kPq;
+    case metrology::ProfileKind::kW:
+      return ProfileParameter::kWq;
+    case metrology::ProfileKind::kR:
+      return ProfileParameter::kRq;
+  }
+  return ProfileParameter::kRq;
+}
+
+void judge_points(const MeasurementInput& input, const ProfileResult& found, EvaluatedMeasurement& made) {
+  made.points = static_cast<std::int64_t>(found.points);
+  made.valid_fraction = found.valid_fraction;
+  if (found.values.front().reason == metrology::ProfileReason::kEvaluationLength) {
+    made.reason = found.values.front().detail;  // no point was looked at
+    return;
+  }
+  made.reason = too_few_valid(found.valid_fraction, input.planned);
+  if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
+}
+
 ordered_json number_or_null(std::optional<double> value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
@@ -121,7 +170,8 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   made.main_value = profile_value_key(input.planned.parameters.front());
   const HeightField& field = input.surface.field;
   const ProfileLine line = line_of(input.planned);
-  const Profile profile = metrology::extract_profile(field, line);
+  const std::optional<Profile> profile = extracted(field, line, made);
+  if (!profile) return made;
   std::vector<ProfileParameter> parameters;
   for (const std::string& name : input.planned.parameters) {
     parameters.push_back(metrology::profile_parameter_from_name(name).value());
@@ -131,17 +181,23 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   settings.sections = input.planned.sections;
   const NoiseFloor floor = noise_floor(field, band_region(field, line));
   settings.noise_floor_um = floor.sq_um;
-  const ProfileResult found = metrology::evaluate_profile(profile, parameters, settings);
-  made.points = static_cast<std::int64_t>(found.points);
-  made.valid_fraction = found.valid_fraction;
-  made.reason = too_few_valid(found.valid_fraction, input.planned);
-  if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
+  std::vector<ProfileParameter> with_squares = parameters;
+  std::transform(parameters.begin(), parameters.end(), std::back_inserter(with_squares), root_mean_square_of);
+  const ProfileResult found = metrology::evaluate_profile(*profile, with_squares, settings);
+  judge_points(input, found, made);
   const auto draws = drawn(field, line, parameters, settings);
+  bool told_below_noise = false;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string key = profile_value_key(input.planned.parameters[i]);
     ValueInput value;
     value.value = found.values[i].value;
     value.reason = found.values[i].detail;
+    const std::optional<double> square_um = found.values[parameters.size() + i].value;
+    value.below_noise = is_below_noise(square_um, floor);
+    if (value.below_noise && !told_below_noise) {
+      warn_below_noise(*square_um, floor, made);
+      told_below_noise = true;
+    }
     if (value.value && draws && draws->values[i].u) {
       metrology::BudgetEntry entry;
       entry.source = "noise";
@@ -159,7 +215,7 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   if (std::find(made.not_evaluated.begin(), made.not_evaluated.end(), "slice_z") == made.not_evaluated.end()) {
     made.not_evaluated.emplace_back("slice_z");
   }
-  ordered_json details = details_json(input, floor, profile, found);
+  ordered_json details = details_json(input, floor, *profile, found);
   details["monte_carlo"] = draws ? ordered_json{{"draws", draws->draws}, {"seed", draws->seed}} : ordered_json(nullptr);
   made.details = details.dump();
   made.cross_section = profile_section(input.planned);

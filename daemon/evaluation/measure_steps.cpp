@@ -33,13 +33,12 @@ void add_height(const MeasurementInput& input, const std::string& key, const Ste
   value.value = step.height_um;
   value.u_method = "linear";
   add_noise(step.noise, value.budget);
-  add_slice_z(input.context, input.measured.field, step.weights, value.budget);
-  // What is not known of one value of a measurement is not known of the others either.
-  for (const std::string& source : value.budget.not_evaluated) {
-    if (std::find(made.not_evaluated.begin(), made.not_evaluated.end(), source) == made.not_evaluated.end()) {
-      made.not_evaluated.push_back(source);
-    }
+  if (step.noise) {
+    add_slice_z(input.context, input.measured.field, step.weights, value.budget);
+  } else {
+    value.budget.not_evaluated.emplace_back("slice_z");  // alone it would pass for all of U
   }
+  note_not_evaluated(value.budget, made);
   made.values[key] = judged_value(value, key, input.planned, input.plan.decision);
 }
 
@@ -190,6 +189,12 @@ EvaluatedMeasurement measure_step_between(const MeasurementInput& input) {
                      .dump();
   const std::array sections{SectionRegion{input.planned.lower, &lower}, SectionRegion{input.planned.upper, &upper}};
   made.cross_section = regions_section(field, sections);
+  if (input.planned.slope == "fixed" && input.surface.levelled) {
+    made.not_evaluated.emplace_back("levelling");
+    made.warnings.push_back({"levelling_not_in_u",
+                             "the slope is that of the surface's levelling, whose error U does not contain: it grows "
+                             "with the distance of the regions from what was levelled by"});
+  }
   if (step.correlation_factor > kWarnFactor) made.warnings.push_back({"slope_and_step_correlated", step.suggestion});
   return made;
 }

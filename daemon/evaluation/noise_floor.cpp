@@ -42,9 +42,8 @@ ordered_json texture_conditions(const MeasurementInput& input, const NoiseFloor&
   const metrology::HeightField& field = input.surface.field;
   const double s_um = std::max(input.surface.s_nesting_um.value_or(0.0), input.lateral_period_um);
   const double window_um = input.measured.field.kernel.width_px() * field.pitch_x_um;
-  const bool window_known = input.measured.field.kernel.weights.size() > 1;
   return {{"noise_floor_Sq_um", number_or_null(floor.sq_um)},
-          {"window_um", window_known ? ordered_json(window_um) : ordered_json(nullptr)},
+          {"window_um", knows_window(input.measured.field) ? ordered_json(window_um) : ordered_json(nullptr)},
           {"S_um", number_or_null(input.surface.s_nesting_um)},
           {"L_um", number_or_null(input.surface.l_nesting_um)},
           {"S_effective_um", s_um > 0.0 ? ordered_json(s_um) : ordered_json(nullptr)}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -38,6 +39,20 @@ void note_filter(const PlannedOperation& step, SurfaceState& state) {
   }
 }
 
+/// What files may have and a field must not: heights that are no number, and heights whose standard error is none. The
+/// latter could not be weighed, and count as holes.
+void hide_unusable(metrology::HeightField& field) {
+  const std::span<double> heights = field.z_um.pixels();
+  const std::span<float> errors = field.sigma_um.pixels();
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const bool usable =
+        std::isfinite(heights[i]) && (errors.empty() || (std::isfinite(errors[i]) && errors[i] >= 0.0F));
+    if (usable) continue;
+    heights[i] = std::nan("");
+    if (!errors.empty()) errors[i] = std::nanf("");
+  }
+}
+
 bool looks_at_sigma(const PlannedOperation& step, const metrology::HeightField& field) {
   return step.op == "mask_sigma" || (step.op == "outliers" && field.has_sigma()) || step.fit == "weighted";
 }
@@ -64,10 +79,16 @@ SurfaceState SurfaceChain::measured() const {
   };
   in_um(surface_.height_m, field.z_um);
   if (surface_.has_sigma()) in_um(surface_.sigma_m, field.sigma_um);
+  hide_unusable(field);
   field.pitch_x_um = surface_.pitch_x_um;
   field.pitch_y_um = surface_.pitch_y_um;
   field.kernel = surface_.kernel;
   state.steps_json = "[]";
+  if (field.has_sigma() && !knows_window(field)) {
+    state.warnings.push_back({"window_unknown",
+                              "the focus window of the surface is not known: its points' errors are taken to be "
+                              "independent, and where they are not U is too small, by the window's width in points"});
+  }
   return state;
 }
 
@@ -75,11 +96,13 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
   const SurfaceState& source = state(planned.from);
   SurfaceState made;
   made.refused = source.refused;
+  made.steps_json = source.steps_json;  // of which the last says why
   if (!made.refused.empty()) return made;
   made.field = source.field.clone();
   made.s_nesting_um = source.s_nesting_um;
   made.l_nesting_um = source.l_nesting_um;
   made.uses_sigma = source.uses_sigma;
+  made.levelled = source.levelled;
   made.warnings = source.warnings;
   ordered_json steps = ordered_json::parse(source.steps_json);
   for (PlannedOperation step : planned.steps) {
@@ -92,6 +115,7 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
       break;
     }
     if (step.op == "filter") note_filter(step, made);
+    made.levelled = made.levelled || step.op == "level" || step.op == "form";
     made.uses_sigma = made.uses_sigma || looks_at_sigma(step, made.field);
     for (const std::string& text : report.warnings) made.warnings.push_back({step.op, text});
     json["did"] = report_json(report);

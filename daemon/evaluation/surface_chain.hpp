@@ -22,9 +22,15 @@ struct SurfaceState {
   std::optional<double> s_nesting_um;  ///< the longest S filter on the way from the measured surface
   std::optional<double> l_nesting_um;  ///< the shortest L filter
   bool uses_sigma = false;             ///< a step on that way looked at the standard errors
+  bool levelled = false;               ///< a form was fitted and taken away on that way, with errors of its own
   std::vector<EvaluationWarning> warnings;
   std::string refused;  ///< why the surface cannot be made; empty = it is there
 };
+
+/// Whether the surface tells what its focus window did: which neighbours share their errors.
+[[nodiscard]] inline bool knows_window(const metrology::HeightField& measured) {
+  return measured.kernel.weights.size() > 1;
+}
 
 /// surface, plan and pool outlive it; pool may be null. context: one thread.
 class SurfaceChain {

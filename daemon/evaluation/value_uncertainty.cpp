@@ -1,5 +1,6 @@
 #include "daemon/evaluation/value_uncertainty.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <sstream>
@@ -14,6 +15,18 @@ namespace fvd {
 namespace {
 
 constexpr std::size_t kLeastSamples = 3;
+
+/// A stage that stood still or went back between two samples has no curve that a derivative could be taken of.
+bool rise_or_fall(const std::vector<CurveSample>& samples) {
+  const bool rising = samples.back().z_um > samples.front().z_um;
+  return std::adjacent_find(samples.begin(), samples.end(), [rising](const CurveSample& a, const CurveSample& b) {
+           return rising ? !(b.z_um > a.z_um) : !(b.z_um < a.z_um);
+         }) == samples.end();
+}
+
+bool are_known(const EvaluationContext& context) {
+  return context.samples.size() >= kLeastSamples && context.curve_width_um > 0.0 && rise_or_fall(context.samples);
+}
 
 metrology::DecisionRule rule_of(const PlannedDecision& decision) {
   if (decision.rule == "simple") return metrology::DecisionRule::kSimple;
@@ -57,7 +70,7 @@ void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Bu
 
 void add_slice_z(const EvaluationContext& context, const metrology::HeightField& measured,
                  const metrology::WeightMap& map, metrology::Budget& budget) {
-  if (context.samples.size() < kLeastSamples || !(context.curve_width_um > 0.0)) {
+  if (!are_known(context)) {
     budget.not_evaluated.emplace_back("slice_z");
     return;
   }
@@ -79,6 +92,14 @@ void add_slice_z(const EvaluationContext& context, const metrology::HeightField&
   budget.entries.push_back(metrology::slice_z_entry(slice_sensitivities(z_um, context.curve_width_um, heights), u_um));
 }
 
+void note_not_evaluated(const metrology::Budget& budget, EvaluatedMeasurement& made) {
+  for (const std::string& source : budget.not_evaluated) {
+    const bool is_new =
+        std::find(made.not_evaluated.begin(), made.not_evaluated.end(), source) == made.not_evaluated.end();
+    if (is_new) made.not_evaluated.push_back(source);
+  }
+}
+
 EvaluatedValue judged_value(const ValueInput& input, const std::string& key, const PlannedMeasurement& planned,
                             const PlannedDecision& decision) {
   EvaluatedValue value;
@@ -98,15 +119,16 @@ EvaluatedValue judged_value(const ValueInput& input, const std::string& key, con
   const auto limits = planned.limits.find(key);
   if (limits == planned.limits.end()) return value;
   value.limits = limits->second;
-  const metrology::Decision decided = metrology::decide(input.value, uncertainty, limits->second,
-                                                        {rule_of(decision), decision.probability}, input.below_noise);
+  const metrology::DecisionRule rule = input.exact ? metrology::DecisionRule::kSimple : rule_of(decision);
+  const metrology::Decision decided =
+      metrology::decide(input.value, uncertainty, limits->second, {rule, decision.probability}, input.below_noise);
   value.verdict = decided.verdict;
   value.probability = decided.conformity;
   if (decided.u_above_third_of_tolerance) warn_of_tolerance(value, value.warnings);
   if (decided.held_back_below_noise) {
     value.warnings.push_back({"below_noise", "is below twice the noise floor, so that a lower limit cannot pass"});
   }
-  if (input.value && !uncertainty && decision.rule != "simple") {
+  if (input.value && !uncertainty && rule != metrology::DecisionRule::kSimple) {
     value.warnings.push_back({"no_uncertainty", "U is not known, so that limits cannot be judged"});
   }
   return value;

@@ -22,6 +22,7 @@ struct ValueInput {
   metrology::Budget budget;  ///< without entries: U is not known
   std::string u_method;      ///< "linear", "monte_carlo", "jacobian", "spread"
   bool below_noise = false;  ///< of a texture value
+  bool exact = false;        ///< a count or a share of points: judged by itself
 };
 
 /// Adds noise to the budget, or "noise" to what is not evaluated where the field has no standard errors.
@@ -29,9 +30,12 @@ void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Bu
 
 /// Adds the errors of the slices' z, which whole plateaus share. weights: of the value, on the measured field, whose
 /// heights tell which slices each point rests on. "slice_z" is not evaluated where the context does not know the
-/// slices.
+/// slices, or where their z neither rise nor fall throughout.
 void add_slice_z(const EvaluationContext& context, const metrology::HeightField& measured,
                  const metrology::WeightMap& weights, metrology::Budget& budget);
+
+/// Adds what this budget does not contain to what the measurement says of all its budgets.
+void note_not_evaluated(const metrology::Budget& budget, EvaluatedMeasurement& made);
 
 /// key: of the value in `planned`, whose limits and `decision` make the verdict.
 [[nodiscard]] EvaluatedValue judged_value(const ValueInput& input, const std::string& key,

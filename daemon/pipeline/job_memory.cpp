@@ -20,9 +20,9 @@ constexpr std::size_t kEncodingBytesPerPixel = 12;
 /// The measured surface as it was and in double precision, with its standard errors.
 constexpr std::size_t kMeasuredSurfaceBytesPerPixel = 2 * sizeof(float) + sizeof(double) + sizeof(float);
 constexpr std::size_t kSurfaceBytesPerPixel = sizeof(double) + sizeof(float);
-/// While one measurement is made: regions, weights, sorted heights; with filters their moments; with the
-/// autocorrelation the transforms of three times the region (400 MiB for 5 Mpx were measured).
-constexpr std::size_t kMeasurementBytesPerPixel = 40;
+/// While one measurement is made: regions, weights, sorted heights, draws of noise (41 bytes); with filters their
+/// moments; with the autocorrelation the transforms of three times the region (400 MiB for 5 Mpx were measured).
+constexpr std::size_t kMeasurementBytesPerPixel = 80;
 constexpr std::size_t kFilterBytesPerPixel = 100;
 constexpr std::size_t kAutocorrelationBytesPerPixel = 90;
 
@@ -41,10 +41,20 @@ bool has_autocorrelation(const EvaluationPlan& plan) {
   });
 }
 
+/// Levels keep a map of weights for each pair of regions.
+std::size_t weight_map_bytes(const EvaluationPlan& plan) {
+  std::size_t most = 0;
+  for (const auto& [name, measurement] : plan.measurements) {
+    const std::size_t regions = measurement.kind == "levels" ? measurement.regions.size() : 0;
+    if (regions > 1) most = std::max(most, regions * (regions - 1) / 2);
+  }
+  return most * sizeof(double);
+}
+
 std::size_t evaluation_bytes(const EvaluationPlan& plan, std::size_t pixels) {
   if (plan.empty()) return 0;
   std::size_t bytes = kMeasuredSurfaceBytesPerPixel + kSurfaceBytesPerPixel * plan.surfaces.size();
-  std::size_t working = kMeasurementBytesPerPixel;
+  std::size_t working = kMeasurementBytesPerPixel + weight_map_bytes(plan);
   if (has_filter(plan)) working = std::max(working, kFilterBytesPerPixel);
   if (has_autocorrelation(plan)) working = std::max(working, kMeasurementBytesPerPixel + kAutocorrelationBytesPerPixel);
   bytes += working;

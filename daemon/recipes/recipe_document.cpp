@@ -54,6 +54,15 @@ std::vector<std::string> measurement_order(std::string_view json_text) {
   return names;
 }
 
+/// A default of 1 um would turn pixels into micrometres that nobody said.
+void require_pitch(const Recipe& recipe, const nlohmann::json& document, Problems& problems) {
+  if (recipe.evaluation.empty()) return;
+  for (const char* key : {"/reconstruct/lateral/pixel_pitch_x_um", "/reconstruct/lateral/pixel_pitch_y_um"}) {
+    if (document.contains(nlohmann::json::json_pointer(key))) continue;
+    problems.push_back({key, "is missing; an evaluation needs the distance of the pixels on the object"});
+  }
+}
+
 /// What keys say together; a rule is passed over where a value that it rests on was refused.
 void check_together(const Recipe& recipe, const Places& places, Problems& problems) {
   const auto judged = [read = problems](std::initializer_list<std::string> pointers) {
@@ -129,6 +138,7 @@ Recipe read_recipe(std::string_view json_text, const std::string& id, Problems& 
     recipe.format = format_1 ? 1 : 2;
     check_together(recipe, format_1 ? kFormat1Places : kFormat2Places, problems);
     check_plan(recipe.evaluation, "/evaluation", problems);
+    require_pitch(recipe, *document, problems);
     recipe.evaluation.order = measurement_order(json_text);
     if (format_1) recipe.notes.emplace_back("has format 1, read as format 2; 'fvdctl recipe convert FILE' writes that");
   }

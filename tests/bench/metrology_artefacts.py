@@ -51,7 +51,7 @@ class Plant:
         recipe.write_text(json.dumps({
             "format": 2,
             "acquire": {"scan": {"start_um": float(z[0]), "step_um": float(z[1] - z[0]), "slices": len(z)}},
-            "reconstruct": {"focus": focus},
+            "reconstruct": {"focus": focus, "lateral": {"pixel_pitch_x_um": 1, "pixel_pitch_y_um": 1}},
             "evaluation": evaluation,
         }))
         self.run(self.fvdctl, "process", slices, "--recipe", recipe, "--out", out)

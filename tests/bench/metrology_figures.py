@@ -169,6 +169,7 @@ def times(plant):
     def timed(file, evaluation):
         recipe = plant.work / "big.json"
         recipe.write_text(json.dumps({"format": 2, "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 21}},
+                                      "reconstruct": {"lateral": {"pixel_pitch_x_um": 1, "pixel_pitch_y_um": 1}},
                                       "evaluation": evaluation}))
         start = time.monotonic()
         plant.run(plant.fvdctl, "measure", file, "--recipe", recipe, "--json")

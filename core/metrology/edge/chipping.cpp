@@ -17,10 +17,16 @@ constexpr double kRobustLimit = 5.0;
 constexpr std::size_t kParts = 5;
 constexpr double kLeastShare = 0.5;
 
+// A place this near to a point, in pixels, is the point: its neighbour may be missing.
+double snapped(double place) {
+  const double nearest = std::round(place);
+  return std::abs(place - nearest) < 0.02 ? nearest : place;
+}
+
 // Height between the points; absent beside a hole and at the border.
 std::optional<double> height_at(const HeightField& field, const Region& region, double x_um, double y_um) {
-  const double column = x_um / field.pitch_x_um - 0.5;
-  const double row = y_um / field.pitch_y_um - 0.5;
+  const double column = snapped(x_um / field.pitch_x_um - 0.5);
+  const double row = snapped(y_um / field.pitch_y_um - 0.5);
   const double left = std::floor(column);
   const double top = std::floor(row);
   double sum = 0.0;
@@ -28,7 +34,7 @@ std::optional<double> height_at(const HeightField& field, const Region& region, 
     const double share_x = corner % 2 == 0 ? 1.0 - (column - left) : column - left;
     const double share_y = corner < 2 ? 1.0 - (row - top) : row - top;
     // A neighbour without a part may be missing.
-    if (share_x * share_y < 1e-9) continue;
+    if (share_x * share_y == 0.0) continue;
     const double i = left + corner % 2;
     const double j = top + static_cast<double>(corner / 2);
     if (i < 0.0 || j < 0.0 || i >= field.width() || j >= field.height()) return std::nullopt;

@@ -15,6 +15,7 @@
 #include "core/metrology/edge/flank_lines.hpp"
 #include "core/metrology/edge/section_data.hpp"
 #include "core/metrology/edge/section_evaluation.hpp"
+#include "core/metrology/edge/section_values.hpp"
 #include "core/metrology/edge/window_profile.hpp"
 
 namespace fvd::metrology {
@@ -22,6 +23,7 @@ namespace {
 
 using edge::EdgeCurve;
 using edge::EvaluatedSection;
+using edge::is_length;
 using edge::SectionData;
 
 constexpr int kCurveRounds = 2;
@@ -50,12 +52,6 @@ bool needs_resolution(EdgeQuantity quantity) {
          quantity == EdgeQuantity::kDeltaR || quantity == EdgeQuantity::kPhi || quantity == EdgeQuantity::kRMin;
 }
 
-bool is_length(EdgeQuantity quantity) {
-  return quantity == EdgeQuantity::kRadius || quantity == EdgeQuantity::kRadiusApparent ||
-         quantity == EdgeQuantity::kSGamma || quantity == EdgeQuantity::kSAlpha || quantity == EdgeQuantity::kDeltaR ||
-         quantity == EdgeQuantity::kRMin;
-}
-
 void not_below_nothing(std::optional<double>& value) {
   if (value) value = std::max(0.0, *value);
 }
@@ -80,7 +76,8 @@ EdgeValue over_sections(EdgeQuantity quantity, const std::vector<EvaluatedSectio
     value.u_reason = value.reason;
     return value;
   }
-  EdgeValue value = edge::summarise(values, noise, edge::shared_noise(along, options.sections_every_um, window_um));
+  EdgeValue value = edge::summarise(values, noise, edge::shared_noise(along, options.sections_every_um, window_um),
+                                    is_length(quantity));
   if (!has_sigma) {
     value.u.reset();
     value.u_reason = EdgeReason::kNoSigma;

@@ -20,6 +20,16 @@ double slope_beyond(const Polynomial& polynomial, double x) {
   return polynomial.slope(std::clamp(x, polynomial.centre - polynomial.half, polynomial.centre + polynomial.half));
 }
 
+// The last place towards `outer` that is inside.
+template <typename Inside>
+double border(const Inside& inside, double inner, double outer) {
+  for (int round = 0; round < 20; ++round) {
+    const double middle = (inner + outer) / 2.0;
+    (inside(middle) ? inner : outer) = middle;
+  }
+  return inner;
+}
+
 }  // namespace
 
 SpacePoint EdgeFrame::at(double s_um, double h_um) const {
@@ -63,23 +73,31 @@ void EdgeCurve::cut(const HeightField& field, const Region& region) {
   const double reach = std::hypot(field.width() * field.pitch_x_um, field.height() * field.pitch_y_um);
   from_um_ = to_um_ = 0.0;
   bool found = false;
-  for (double place = -reach; place <= reach; place += step) {
+  const auto inside = [&](double place) {
     const double across = value_beyond(across_, place);
-    const double x = straight_.origin_x_um + place * straight_.e_x + across * straight_.u_x;
-    const double y = straight_.origin_y_um + place * straight_.e_y + across * straight_.u_y;
-    if (!is_in_region(field, region, x, y)) continue;
+    return is_in_region(field, region, straight_.origin_x_um + place * straight_.e_x + across * straight_.u_x,
+                        straight_.origin_y_um + place * straight_.e_y + across * straight_.u_y);
+  };
+  for (double place = -reach; place <= reach; place += step) {
+    if (!inside(place)) continue;
     if (!found) from_um_ = place;
     to_um_ = place;
     found = true;
+  }
+  if (found) {
+    from_um_ = border(inside, from_um_, from_um_ - step);
+    to_um_ = border(inside, to_um_, to_um_ + step);
   }
   measure_length();
 }
 
 void EdgeCurve::measure_length() {
   lengths_.assign(1, 0.0);
+  most_across_um_ = std::abs(value_beyond(across_, from_um_));
   const double step = (to_um_ - from_um_) / kLengthSteps;
   for (int i = 0; i < kLengthSteps; ++i) {
     const double middle = from_um_ + (i + 0.5) * step;
+    most_across_um_ = std::max(most_across_um_, std::abs(value_beyond(across_, middle + step / 2.0)));
     const double across = slope_beyond(across_, middle);
     const double rise = slope_beyond(height_, middle);
     lengths_.push_back(lengths_.back() + step * std::sqrt(1.0 + across * across + rise * rise));
@@ -115,6 +133,12 @@ EdgeFrame EdgeCurve::frame(double place_um) const {
   frame.tilt = slope_beyond(height_, place_um) / norm;
   frame.stretch = std::sqrt(1.0 + frame.tilt * frame.tilt);
   return frame;
+}
+
+bool EdgeCurve::may_be_within(double x_um, double y_um, double distance_um) const {
+  const double across = (x_um - straight_.origin_x_um) * straight_.u_x + (y_um - straight_.origin_y_um) * straight_.u_y;
+  // A little more for what the bend does between the places looked at.
+  return std::abs(across) <= 1.01 * (distance_um + most_across_um_);
 }
 
 EdgePlace EdgeCurve::place_of(double x_um, double y_um) const {

@@ -46,6 +46,8 @@ class EdgeCurve {
   /// False where no point of the edge is in the region.
   [[nodiscard]] bool is_there() const { return to_um_ > from_um_; }
   [[nodiscard]] EdgeFrame frame(double place_um) const;
+  /// False only for places of the image further than this from every point of the edge in the region; quick.
+  [[nodiscard]] bool may_be_within(double x_um, double y_um, double distance_um) const;
   [[nodiscard]] EdgePlace place_of(double x_um, double y_um) const;
   /// Along the edge in space, from its first point in the region. length(to) is the whole.
   [[nodiscard]] double length_um(double place_um) const;
@@ -61,6 +63,7 @@ class EdgeCurve {
   Polynomial height_;
   double from_um_ = 0.0;
   double to_um_ = 0.0;
+  double most_across_um_ = 0.0;  ///< the bend's largest deviation from the straight line
   std::vector<double> lengths_;  ///< at equal steps from from_um_ to to_um_
 };
 

@@ -15,7 +15,8 @@ namespace fvd::metrology {
 /// Words after ISO 3002-1 and DIN 6581. radius: of the circle that is tangent to both flanks and fits best (own
 /// definition), corrected for the focus window; radius_apparent: the same without the correction. beta: wedge angle.
 /// s_gamma, s_alpha: from the ideal apex to where the rounding leaves rake and clearance. k = s_gamma / s_alpha.
-/// delta_r: least distance from apex to contour; phi: its direction against the bisector, positive towards the rake.
+/// delta_r: least distance from apex to contour; phi: its direction against the bisector, positive towards the rake,
+/// that is where K > 1.
 /// r_min: least radius of curvature of the rounding. residual_rms: of the model's orthogonal distances.
 enum class EdgeQuantity { kRadius, kRadiusApparent, kBeta, kSGamma, kSAlpha, kK, kDeltaR, kPhi, kRMin, kResidualRms };
 inline constexpr std::size_t kEdgeQuantityCount = 10;

@@ -1,8 +1,10 @@
 #include "core/metrology/edge/edge_statistics.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/metrology/edge/robust.hpp"
@@ -59,21 +61,32 @@ double shared_noise(std::span<const double> along_um, double every_um, double wi
   return std::max(1.0, sum / covariance[0] / static_cast<double>(along_um.size()));
 }
 
-EdgeValue summarise(std::span<const double> values, std::span<const double> u_noise, double shared) {
+EdgeValue summarise(std::span<const double> values, std::span<const double> u_noise, double shared, bool squares) {
+  assert(u_noise.empty() || u_noise.size() == values.size());
   EdgeValue value;
-  const std::vector<double> copy(values.begin(), values.end());
-  const auto n = static_cast<double>(values.size());
-  value.median = median(copy);
-  value.p10 = quantile(copy, 0.1);
-  value.p90 = quantile(copy, 0.9);
-  // One value is its own median, and the median of two is their mean.
-  const double factor = (values.size() > 2 ? kMedianOverMean : 1.0) / std::sqrt(n);
-  if (values.size() > 1) value.standard_error = factor * spread(values);
-  if (!u_noise.empty()) {
-    value.u_noise = factor * std::sqrt(shared) * median(std::vector<double>(u_noise.begin(), u_noise.end()));
+  std::vector<double> scaled(values.begin(), values.end());
+  std::vector<double> noise(u_noise.begin(), u_noise.end());
+  value.median = median(scaled);
+  value.p10 = quantile(scaled, 0.1);
+  value.p90 = quantile(scaled, 0.9);
+  if (squares) {
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] *= noise[i] + 2.0 * std::abs(values[i]);
+    for (double& v : scaled) v *= std::abs(v);
   }
-  if (value.standard_error) value.u = *value.standard_error * std::sqrt(shared);
-  if (value.u_noise) value.u = std::max(value.u.value_or(0.0), *value.u_noise);
+  const auto from_square = [&](double u) {
+    return squares ? std::sqrt(*value.median * *value.median + u) - std::abs(*value.median) : u;
+  };
+  // One value is its own median, and the median of two is their mean.
+  const double factor = (values.size() > 2 ? kMedianOverMean : 1.0) / std::sqrt(static_cast<double>(values.size()));
+  if (values.size() > 1) {
+    const double error = factor * spread(scaled);
+    value.standard_error = from_square(error);
+    value.u = from_square(error * std::sqrt(shared));
+  }
+  if (!noise.empty()) {
+    value.u_noise = from_square(factor * std::sqrt(shared) * median(std::move(noise)));
+    value.u = std::max(value.u.value_or(0.0), *value.u_noise);
+  }
   if (!value.u) value.u_reason = EdgeReason::kTooFewSections;
   return value;
 }

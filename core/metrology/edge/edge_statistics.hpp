@@ -13,9 +13,12 @@ namespace fvd::metrology::edge {
 /// along_um: of the measured sections, multiples of every_um apart. At least 1. Own definition.
 [[nodiscard]] double shared_noise(std::span<const double> along_um, double every_um, double window_um);
 
-/// Median, percentiles and spread of the sections' values. u_noise: of each section, empty where it is not known.
+/// Median, percentiles and spread of the sections' values. u_noise: of each section, or empty where it is not known.
 /// shared: of shared_noise. Standard errors are those of a median of normally distributed values, 1.2533 s / sqrt(n).
 /// values: not empty; the reason of a missing u is set by the caller where the field has no sigma.
-[[nodiscard]] EdgeValue summarise(std::span<const double> values, std::span<const double> u_noise, double shared);
+/// squares: for signed lengths, whose squares are what a section tells near nothing: spread and noise are those of
+/// the squares v |v| about the median, and u of the length is sqrt(median^2 + u of the square) - |median|.
+[[nodiscard]] EdgeValue summarise(std::span<const double> values, std::span<const double> u_noise, double shared,
+                                  bool squares = false);
 
 }  // namespace fvd::metrology::edge

@@ -58,9 +58,10 @@ NearestPoint nearest_to_apex(const Rounding& rounding) {
   };
   const double u = place_of_least(squared_distance);
   const Shares p = shares_at(rounding, u);
-  // Along the bisector both directions count cos(beta / 2), across it the rake counts positive.
+  // Along the bisector both directions count cos(beta / 2). Where the rounding reaches further along the rake, the
+  // nearest point lies on the clearance's side of the bisector, and the edge has moved towards the rake: positive.
   const double along = (p.rake + p.clearance) * std::cos(rounding.beta_rad / 2.0);
-  const double across = (p.rake - p.clearance) * std::sin(rounding.beta_rad / 2.0);
+  const double across = (p.clearance - p.rake) * std::sin(rounding.beta_rad / 2.0);
   return {std::sqrt(squared_distance(u)), std::atan2(across, along) * 180.0 / std::numbers::pi};
 }
 

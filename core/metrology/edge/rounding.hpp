@@ -20,7 +20,8 @@ struct Rounding {
 /// The point of the rounding that is nearest to the ideal apex.
 struct NearestPoint {
   double delta_r_um = 0.0;  ///< its distance
-  double phi_deg = 0.0;     ///< its direction against the bisector of the wedge, positive towards the rake
+  double phi_deg = 0.0;     ///< its direction against the bisector of the wedge; positive = moved towards the rake, as
+                            ///< where s_gamma > s_alpha: the point itself is then on the clearance's side
 };
 
 [[nodiscard]] NearestPoint nearest_to_apex(const Rounding& rounding);

@@ -38,7 +38,8 @@ class Cutter {
   Cutter(const HeightField& field, const Region& region, const EdgeCurve& curve, const EdgeOptions& options)
       : field_(field), region_(region), curve_(curve), options_(options), typical_(typical_weight(field)) {
     const double whole = curve.whole_length_um();
-    const auto count = static_cast<std::size_t>(std::max(0.0, std::floor(whole / options.sections_every_um + 1e-9)));
+    // A hundredth of a section may be missing at the ends.
+    const auto count = static_cast<std::size_t>(std::floor(whole / options.sections_every_um + 0.01));
     first_um_ = (whole - static_cast<double>(count) * options.sections_every_um) / 2.0;
     raw_.resize(count);
   }
@@ -62,6 +63,7 @@ class Cutter {
   void sort_in(int column, int row) {
     const double x = field_.x_um(column);
     const double y = field_.y_um(row);
+    if (!curve_.may_be_within(x, y, options_.flank_to_um)) return;
     const EdgePlace place = curve_.place_of(x, y);
     if (std::abs(place.s_um) > options_.flank_to_um) return;
     const EdgeFrame frame = curve_.frame(place.place_um);

@@ -111,7 +111,9 @@ class Evaluator {
     }
     const Eigen::VectorXd u = noise_of(influences, data, field_);
     for (std::size_t i = 0; i < figures.size(); ++i) {
-      section.u[static_cast<std::size_t>(figures[i].first)] = u[static_cast<Eigen::Index>(i)];
+      const EdgeQuantity quantity = figures[i].first;
+      const auto q = static_cast<std::size_t>(quantity);
+      section.u[q] = figure_noise(quantity, *section.values[q], u[static_cast<Eigen::Index>(i)]);
     }
   }
 

@@ -10,6 +10,8 @@
 #include <Eigen/Cholesky>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "core/metrology/edge/whitening.hpp"
+
 namespace fvd::metrology::edge {
 namespace {
 
@@ -36,20 +38,30 @@ class Problem {
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
 
   Problem(const SectionData& section, const WindowProfile& window, Eigen::Index inputs, double prior)
-      : section_(section), window_(window), inputs_(inputs), prior_(prior), root_(at(section.s_um.size())) {
+      : section_(section),
+        window_(window),
+        whitening_(section.s_um, window.width_um()),
+        inputs_(inputs),
+        prior_(prior),
+        root_(at(section.s_um.size())) {
     root_.setOnes();
   }
 
   [[nodiscard]] int inputs() const { return static_cast<int>(inputs_); }
   [[nodiscard]] int values() const { return static_cast<int>(nodes() + (inputs_ > kLogK ? 2 : 0)); }
   [[nodiscard]] Eigen::Index nodes() const { return at(section_.s_um.size()); }
-  [[nodiscard]] const Eigen::VectorXd& root() const { return root_; }
+  // What the nodes' heights do to the right side of the normal equations, one row a parameter.
+  [[nodiscard]] Eigen::MatrixXd by_heights(Eigen::MatrixXd jacobian) const {
+    whitening_.apply_transposed(jacobian);
+    return (jacobian.topRows(nodes()).array().colwise() * root_.array()).transpose();
+  }
 
   int operator()(const InputType& x, ValueType& residual) const {
     const AveragedContour contour(model_of(x), window_);
     for (std::size_t i = 0; i < section_.s_um.size(); ++i) {
       residual[at(i)] = root_[at(i)] * (contour.height_um(section_.s_um[i]) - section_.h_um[i]);
     }
+    whitening_.apply(residual);
     if (inputs_ > kLogK) {
       residual[nodes()] = prior_ / kPriorLogK * x[kLogK];
       residual[nodes() + 1] = prior_ / kPriorLogWeight * x[kLogWeight];
@@ -75,6 +87,7 @@ class Problem {
         jacobian(at(i), k) = root_[at(i)] * (other.height_um(section_.s_um[i]) - heights[at(i)]) / step;
       }
     }
+    whitening_.apply(jacobian);
     if (inputs_ > kLogK) {
       jacobian(nodes(), kLogK) = prior_ / kPriorLogK;
       jacobian(nodes() + 1, kLogWeight) = prior_ / kPriorLogWeight;
@@ -109,6 +122,7 @@ class Problem {
  private:
   const SectionData& section_;
   const WindowProfile& window_;
+  Whitening whitening_;
   Eigen::Index inputs_;
   double prior_;
   Eigen::VectorXd root_;
@@ -169,10 +183,7 @@ SectionFit fit_section(const SectionData& section, const WindowProfile& window, 
   SectionFit fit;
   fit.parameters = start_of(section, window, shape, lines, options, start);
   if (at(section.s_um.size()) <= fit.parameters.size() || !is_inside(fit.model(), options)) return fit;
-  // Neighbouring nodes share their errors: as many as the window is wide count as one.
-  const double spacing = (section.s_um.back() - section.s_um.front()) / static_cast<double>(section.s_um.size());
-  const double as_one = std::max(1.0, window.width_um() / spacing);
-  Problem problem(section, window, fit.parameters.size(), std::max(kLeastNoiseUm, lines.noise_um) * std::sqrt(as_one));
+  Problem problem(section, window, fit.parameters.size(), std::max(kLeastNoiseUm, lines.noise_um));
   problem.reweigh(fit.parameters);
   for (int round = 0; round < kRobustRounds; ++round) {
     Eigen::LevenbergMarquardt<Problem> solver(problem);
@@ -188,8 +199,7 @@ SectionFit fit_section(const SectionData& section, const WindowProfile& window, 
   const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
   const Eigen::LDLT<Eigen::MatrixXd> decomposed(normal);
   if (decomposed.info() != Eigen::Success || !(decomposed.vectorD().minCoeff() > 0.0)) return fit;
-  const Eigen::MatrixXd weighted = (jacobian.topRows(problem.nodes()).array().colwise() * problem.root().array());
-  fit.influence = decomposed.solve(weighted.transpose());
+  fit.influence = decomposed.solve(problem.by_heights(jacobian));
   fit.good = true;
   return fit;
 }

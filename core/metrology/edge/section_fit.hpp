@@ -28,9 +28,11 @@ struct SectionFit {
 };
 
 /// Levenberg and Marquardt's method on distances at right angles to the model, weighted by sigma and by Huber's weights
-/// (cut 1.345 robust standard deviations). Asymmetry and weight of a conic are held by a weak prior, ln K = 0 +- 1.5
-/// and ln(weight / circle's) = 0 +- 0.75 at the noise of the flanks: without it they run away where the rounding is as
-/// small as the window, and where it is large they do not feel it. start: from a fit of the circle, or from the lines.
+/// (cut 1.345 robust standard deviations), with the correlation that the window gives to neighbours' errors taken out:
+/// a sharp edge's radius then varies about 0.9 times as much. Asymmetry and weight of a conic are held by a weak prior,
+/// ln K = 0 +- 1.5 and ln(weight / circle's) = 0 +- 0.75 at the noise of the flanks: without it they run away where the
+/// rounding is as small as the window, and where it is large they do not feel it. start: from a fit of the circle; else
+/// from the lines. Own definition.
 [[nodiscard]] SectionFit fit_section(const SectionData& section, const WindowProfile& window, RoundingShape shape,
                                      const FlankLines& lines, const EdgeOptions& options,
                                      const SectionFit* start = nullptr);

@@ -11,7 +11,22 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
+double smooth_figure(EdgeQuantity quantity, const SectionModel& model) {
+  const double figure = figure_of(quantity, model);
+  return is_length(quantity) ? figure * std::abs(figure) : figure;
+}
+
 }  // namespace
+
+bool is_length(EdgeQuantity quantity) noexcept {
+  return quantity == EdgeQuantity::kRadius || quantity == EdgeQuantity::kRadiusApparent ||
+         quantity == EdgeQuantity::kSGamma || quantity == EdgeQuantity::kSAlpha || quantity == EdgeQuantity::kDeltaR ||
+         quantity == EdgeQuantity::kRMin;
+}
+
+double figure_noise(EdgeQuantity quantity, double figure, double u) {
+  return is_length(quantity) ? std::sqrt(figure * figure + u) - std::abs(figure) : u;
+}
 
 double figure_of(EdgeQuantity quantity, const SectionModel& model) {
   const double sign = model.signed_square_um2 < 0.0 ? -1.0 : 1.0;
@@ -48,7 +63,7 @@ Eigen::VectorXd influence_on(EdgeQuantity quantity, const SectionFit& fit) {
     ModelVector down = fit.parameters;
     up[k] += step;
     down[k] -= step;
-    gradient[k] = (figure_of(quantity, model_of(up)) - figure_of(quantity, model_of(down))) / (2.0 * step);
+    gradient[k] = (smooth_figure(quantity, model_of(up)) - smooth_figure(quantity, model_of(down))) / (2.0 * step);
   }
   return fit.influence.transpose() * gradient;
 }

@@ -1,7 +1,9 @@
 #include "core/metrology/edge/tolerance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -27,6 +29,20 @@ std::optional<double> end_of_rounding(const std::vector<FlankPoint>& points, dou
   return std::nullopt;
 }
 
+struct FootPoint {
+  double distance, angle_rad;  ///< as seen from the apex
+};
+
+// The nearest point of the piece of contour that ends at this node.
+FootPoint nearest_on(const SectionData& section, std::size_t node, const FlankLines& lines) {
+  const double x = section.s_um[node - 1] - lines.apex_s_um;
+  const double y = section.h_um[node - 1] - lines.apex_h_um;
+  const double dx = section.s_um[node] - section.s_um[node - 1];
+  const double dy = section.h_um[node] - section.h_um[node - 1];
+  const double share = std::clamp(-(x * dx + y * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+  return {std::hypot(x + share * dx, y + share * dy), std::atan2(y + share * dy, x + share * dx)};
+}
+
 }  // namespace
 
 std::optional<ToleranceFigures> measure_by_tolerance(const SectionData& section, const FlankLines& lines,
@@ -38,19 +54,21 @@ std::optional<ToleranceFigures> measure_by_tolerance(const SectionData& section,
   const double clearance_x = std::cos(lines.clearance_rad);
   const double clearance_y = std::sin(lines.clearance_rad);
   // Directions of both flanks away from the apex are (-rake_x, -rake_y) and (clearance_x, -clearance_y).
-  double nearest = 1e300;
+  const double bisector = std::atan2(-rake_y - clearance_y, clearance_x - rake_x);
+  double nearest = std::numeric_limits<double>::infinity();
   ToleranceFigures figures;
   for (std::size_t i = 0; i < section.s_um.size(); ++i) {
     const double x = section.s_um[i] - lines.apex_s_um;
     const double y = section.h_um[i] - lines.apex_h_um;
     if (x < 0.0) rake.insert(rake.begin(), {-x * rake_x - y * rake_y, x * rake_y - y * rake_x});
     if (x >= 0.0) clearance.push_back({x * clearance_x - y * clearance_y, -x * clearance_y - y * clearance_x});
-    const double distance = std::hypot(x, y);
-    if (distance >= nearest) continue;
-    nearest = distance;
-    const double bisector = std::atan2(-rake_y - clearance_y, clearance_x - rake_x);
-    // Clockwise against the bisector, which points into the wedge, is towards the rake.
-    figures.phi_deg = std::remainder(bisector - std::atan2(y, x), 2.0 * std::numbers::pi) * kDegrees;
+    if (i > 0) {
+      const FootPoint foot = nearest_on(section, i, lines);
+      if (foot.distance >= nearest) continue;
+      nearest = foot.distance;
+      // Counter-clockwise against the bisector, which points into the wedge, is towards the clearance.
+      figures.phi_deg = std::remainder(foot.angle_rad - bisector, 2.0 * std::numbers::pi) * kDegrees;
+    }
   }
   const auto s_gamma = end_of_rounding(rake, options.tolerance_um);
   const auto s_alpha = end_of_rounding(clearance, options.tolerance_um);

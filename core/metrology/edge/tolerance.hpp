@@ -15,7 +15,7 @@ struct ToleranceFigures {
   double s_gamma_um = 0.0;
   double s_alpha_um = 0.0;
   double delta_r_um = 0.0;
-  double phi_deg = 0.0;  ///< positive towards the rake
+  double phi_deg = 0.0;  ///< positive towards the rake, that is where S_gamma > S_alpha
 };
 
 /// From the apex outwards on each side, the first place where the contour is nearer to its flank's line than

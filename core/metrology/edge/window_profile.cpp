@@ -66,10 +66,11 @@ WindowProfile::WindowProfile(const LateralKernel& kernel, double pitch_x_um, dou
         const double s = n * step_um_ - i * side_x - j * side_y;
         distance_[at] += weight * pixel(s, 0);
         sign_[at] += weight * pixel(s, 1);
-        density += weight * pixel(s, 2) / 2.0;
+        density += weight * pixel(s + step_um_ / 2.0, 2) / 2.0;
       }
     }
-    squares += (n == 0 ? 1.0 : 2.0) * density * density * step_um_;
+    // Between the nodes: a box steps at a node.
+    squares += 2.0 * density * density * step_um_;
   }
   width_um_ = 1.0 / squares;
 }

@@ -19,7 +19,7 @@ const char* step_refusal_name(StepRefusalCode code) noexcept {
     case StepRefusalCode::kNotRounded:
       return "not_rounded";
   }
-  return "unknown";
+  return "too_few_valid";
 }
 
 }  // namespace fvd::metrology

@@ -1,235 +1,201 @@
-/// Rounded bottom: ISO 5436-1 type A2.
-
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
-#include <Eigen/Dense>
-
+#include "core/metrology/step/bottom_curve.hpp"
 #include "core/metrology/step/groove_layout.hpp"
 #include "core/metrology/step/groove_step.hpp"
-#include "core/metrology/step/trace_mean.hpp"
+#include "core/metrology/step/step_parts.hpp"
 
 namespace fvd::metrology {
-
 namespace {
 
-constexpr std::size_t kLeastTraces = 5;
-constexpr int kRounds = 50;
-constexpr double kSettled_um = 1e-12;
+constexpr std::size_t kLeastTraces = 5;  // ISO 5436-1:2000, 7.1
 
-/// Points of a strip in terms of a middle, which keeps the fits well conditioned.
-struct Points {
-  std::vector<int> columns;
-  std::vector<int> rows;
-  Eigen::VectorXd x;
-  Eigen::VectorXd z;
-};
-
-/// z at a place as a linear function of the points' heights.
-struct Prediction {
+struct BottomPoint {
+  int column = 0;
+  int row = 0;
+  double along_um = 0.0;
+  double across_um = 0.0;
   double z_um = 0.0;
-  Eigen::VectorXd by_height;
 };
 
-Points points_of(const HeightField& field, const PointGroups& groups, int group, double middle_um) {
-  Points points;
-  std::vector<double> x;
-  std::vector<double> z;
-  for (int row = 0; row < groups.group.height(); ++row) {
-    for (int column = 0; column < groups.group.width(); ++column) {
-      const int at = groups.left + column;
-      if (groups.group.at(column, row) != group || field.is_hole(at, groups.top + row)) continue;
-      points.columns.push_back(at);
-      points.rows.push_back(groups.top + row);
-      x.push_back(field.x_um(at) - middle_um);
-      z.push_back(field.z_um.at(at, groups.top + row));
+std::vector<BottomPoint> bottom_points(const HeightField& field, const PointGroups& groups, Across across) {
+  std::vector<BottomPoint> points;
+  for (int y = 0; y < groups.group.height(); ++y) {
+    for (int x = 0; x < groups.group.width(); ++x) {
+      const int column = groups.left + x;
+      const int row = groups.top + y;
+      if (groups.group.at(x, y) != kBottom || field.is_hole(column, row)) continue;
+      BottomPoint point{column, row, field.x_um(column), field.y_um(row), field.z_um.at(column, row)};
+      if (across == Across::kY) std::swap(point.along_um, point.across_um);
+      points.push_back(point);
     }
   }
-  points.x = Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-  points.z = Eigen::Map<Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
   return points;
 }
 
-struct Line {
-  double offset_um = 0.0;
-  double slope = 0.0;
-  Eigen::MatrixXd by_height;  // 2 x points: of offset and slope
-};
-
-Line fit_line(const Points& points) {
-  Eigen::MatrixXd design(points.x.size(), 2);
-  design.col(0).setOnes();
-  design.col(1) = points.x;
-  Line line;
-  line.by_height = (design.transpose() * design).ldlt().solve(design.transpose());
-  const Eigen::Vector2d found = line.by_height * points.z;
-  line.offset_um = found(0);
-  line.slope = found(1);
-  return line;
-}
-
-/// z = parameters over x, and its derivatives to them.
-struct Bottom {
-  BottomForm form = BottomForm::kParabola;
-  Eigen::Vector3d p =
-      Eigen::Vector3d::Zero();  // parabola: z = p0 + p1 x + p2 x^2; circle: x0, z0, R (negative: from above)
-
-  [[nodiscard]] double z_um(double x) const {
-    if (form == BottomForm::kParabola) return p(0) + x * (p(1) + x * p(2));
-    const double half = x - p(0);
-    return p(1) - std::copysign(std::sqrt(std::max(p(2) * p(2) - half * half, 0.0)), p(2));
-  }
-  [[nodiscard]] Eigen::RowVector3d derivatives(double x) const {
-    if (form == BottomForm::kParabola) return {1.0, x, x * x};
-    const double half = x - p(0);
-    const double root = std::copysign(std::sqrt(std::max(p(2) * p(2) - half * half, 1e-12)), p(2));
-    return {-half / root, 1.0, -p(2) / root};
-  }
-  [[nodiscard]] double radius_um() const {
-    return form == BottomForm::kParabola ? 1.0 / (2.0 * std::abs(p(2))) : std::abs(p(2));
-  }
-  /// Where its slope is that of the line.
-  [[nodiscard]] double place_of_slope(double slope) const {
-    if (form == BottomForm::kParabola) return (slope - p(1)) / (2.0 * p(2));
-    return p(0) + p(2) * slope / std::sqrt(1.0 + slope * slope);
-  }
-};
-
-Bottom fit_parabola(const Points& points) {
-  Eigen::MatrixXd design(points.x.size(), 3);
-  design.col(0).setOnes();
-  design.col(1) = points.x;
-  design.col(2) = points.x.cwiseProduct(points.x);
-  return {BottomForm::kParabola, design.colPivHouseholderQr().solve(points.z)};
-}
-
-/// Gauss and Newton from the parabola's circle of curvature, along z; nothing where it does not settle.
-std::optional<Bottom> fit_circle(const Points& points, const Bottom& parabola) {
-  Bottom circle;
-  circle.form = BottomForm::kCircle;
-  const double vertex = -parabola.p(1) / (2.0 * parabola.p(2));
-  const double radius = 1.0 / (2.0 * parabola.p(2));
-  circle.p = {vertex, parabola.z_um(vertex) + radius, radius};
-  for (int round = 0; round < kRounds; ++round) {
-    Eigen::MatrixXd jacobian(points.x.size(), 3);
-    Eigen::VectorXd residual(points.x.size());
-    for (Eigen::Index i = 0; i < points.x.size(); ++i) {
-      jacobian.row(i) = circle.derivatives(points.x(i));
-      residual(i) = points.z(i) - circle.z_um(points.x(i));
-    }
-    const Eigen::Vector3d change = jacobian.colPivHouseholderQr().solve(residual);
-    if (!change.allFinite()) return std::nullopt;
-    circle.p += change;
-    if (change.cwiseAbs().maxCoeff() < kSettled_um * std::abs(circle.p(2))) return circle;
-  }
-  return std::nullopt;
-}
-
-Prediction predicted(const Bottom& bottom, const Points& points, double x) {
-  Eigen::MatrixXd jacobian(points.x.size(), 3);
-  for (Eigen::Index i = 0; i < points.x.size(); ++i) jacobian.row(i) = bottom.derivatives(points.x(i));
-  const Eigen::Vector3d row = (jacobian.transpose() * jacobian).ldlt().solve(bottom.derivatives(x).transpose());
-  return {bottom.z_um(x), jacobian * row};
-}
-
 struct RoundedTrace {
-  MeasuredTrace measured;
+  StepValue value;
+  double slope = 0.0;  // along the trace
   double radius_um = 0.0;
 };
 
-StepRefusal not_rounded(const std::string& why) {
-  return {StepRefusalCode::kNotRounded, "the bottom has no vertex within the middle third: " + why, std::nullopt};
-}
+/// One strip. The line is z = zs + a (x - xs) + b (y - ys), s the centre of A and B; b is 0 in a strip of one row. The
+/// curve c(x) goes through z - b (y - ys) of the points of C. At the vertex v, c' = a, and so to first order v does not
+/// move the depth d = (zs + a (v - xs) - c(v)) / sqrt(1 + a^2).
+class RoundedStrip {
+ public:
+  RoundedStrip(const HeightField& field, const GrooveLayout& layout, const GrooveStrip& strip, double sign)
+      : field_(field), layout_(layout), groups_(groove_groups(field, layout, strip)), sign_(sign) {
+    line_ = JointLevels::fit(field, groups_, layout.axes_of(strip), {kShoulders});
+  }
 
-StepOutcome<RoundedTrace> measured(const HeightField& field, const GrooveLayout& layout, const RowRange& strip,
-                                   BottomForm form, double sign) {
-  const PointGroups groups = groove_groups(field, layout, strip);
-  const double middle_um = layout.edges.centre_um();
-  const Points land = points_of(field, groups, 1, middle_um);
-  const Points bottom_points = points_of(field, groups, 2, middle_um);
-  if (bottom_points.x.size() < 4 || land.x.size() < 3) return not_rounded("a trace has too few points");
-  const Line line = fit_line(land);
-  Bottom bottom = fit_parabola(bottom_points);
-  // A groove's bottom opens upwards, a ridge's downwards.
-  if (!(sign * bottom.p(2) > 0.0)) return not_rounded("it is flat or bends the other way");
-  if (form == BottomForm::kCircle) {
-    const auto circle = fit_circle(bottom_points, bottom);
-    if (!circle) return not_rounded("no circle fits it");
-    bottom = *circle;
-  }
-  const double vertex = bottom.place_of_slope(line.slope);
-  if (!(std::abs(vertex) <= layout.edges.width_um() / 6.0)) return not_rounded("a trace's vertex lies beyond it");
-  const Prediction deepest = predicted(bottom, bottom_points, vertex);
-  const double root = std::sqrt(1.0 + line.slope * line.slope);
-  RoundedTrace made;
-  made.radius_um = bottom.radius_um();
-  StepValue& value = made.measured.value;
-  value.vertical_um = sign * (line.offset_um + line.slope * vertex - deepest.z_um);
-  value.height_um = value.vertical_um / root;
-  value.slope_x = line.slope;
-  value.points = static_cast<int>(land.x.size() + bottom_points.x.size());
-  WeightMap& map = value.weights;
-  map.left = groups.left;
-  map.top = groups.top;
-  map.weights = Plane<double>(groups.group.width(), groups.group.height(), 0.0);
-  const double per_slope = -value.vertical_um * line.slope / (root * root * root);
-  for (Eigen::Index i = 0; i < land.x.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double by_line = line.by_height(0, i) + vertex * line.by_height(1, i);
-    map.weights.at(land.columns[k] - map.left, land.rows[k] - map.top) =
-        sign * by_line / root + per_slope * line.by_height(1, i);
-  }
-  for (Eigen::Index i = 0; i < bottom_points.x.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    map.weights.at(bottom_points.columns[k] - map.left, bottom_points.rows[k] - map.top) =
-        -sign * deepest.by_height(i) / root;
-  }
-  made.measured.trace = {strip.first * field.pitch_y_um, (strip.last + 1) * field.pitch_y_um, value.height_um,
-                         line.slope, value.points};
-  return made;
-}
+  [[nodiscard]] bool has_line() const { return line_.has_value(); }
 
-StepOutcome<RoundedGroove> along_x(const HeightField& field, const GrooveSettings& settings, BottomForm form) {
-  auto outcome = lay_out_groove(field, settings);
-  if (auto* refusal = std::get_if<StepRefusal>(&outcome)) return *refusal;
-  const GrooveLayout& layout = std::get<GrooveLayout>(outcome);
-  RoundedGroove groove;
-  groove.edges = layout.edges;
-  groove.edges_given = layout.edges_given;
-  groove.form = form;
-  groove.regions = groove_counts(field, layout, layout.band);
-  if (auto refusal = too_few_valid(groove.regions, settings.min_valid_fraction)) return *refusal;
-  const double land = 0.5 * (groove.regions[0].mean_z_um + groove.regions[1].mean_z_um);
-  const double sign = land < groove.regions[2].mean_z_um ? -1.0 : 1.0;
-  groove.sign = sign < 0.0 ? GrooveSign::kRidge : GrooveSign::kGroove;
-  std::vector<MeasuredTrace> traces;
-  for (const RowRange& strip : layout.strips) {
-    if (too_few_valid(groove_counts(field, layout, strip), settings.min_valid_fraction)) continue;
-    auto trace = measured(field, layout, strip, form, sign);
-    if (auto* refusal = std::get_if<StepRefusal>(&trace)) return *refusal;
-    groove.radius_um += std::get<RoundedTrace>(trace).radius_um;
-    traces.push_back(std::move(std::get<RoundedTrace>(trace).measured));
+  /// Absent where the bottom has no vertex within C.
+  [[nodiscard]] std::optional<RoundedTrace> measure(BottomForm form) const {
+    const bool along_x = layout_.across == Across::kX;
+    // Ridges are turned over, so that the bottom is always below the line.
+    const double a = sign_ * (along_x ? line_->slope_x() : line_->slope_y());
+    const double b = along_x ? line_->slope_y() : line_->slope_x();
+    const double xs = along_x ? line_->mean_x_um(kShoulders) : line_->mean_y_um(kShoulders);
+    const double ys = along_x ? line_->mean_y_um(kShoulders) : line_->mean_x_um(kShoulders);
+    const double zs = sign_ * line_->mean_z_um(kShoulders);
+    const std::vector<BottomPoint> bottom = bottom_points(field_, groups_, layout_.across);
+    std::vector<TracePoint> levelled;
+    levelled.reserve(bottom.size());
+    for (const BottomPoint& point : bottom) {
+      levelled.push_back({point.along_um, sign_ * (point.z_um - b * (point.across_um - ys))});
+    }
+    const std::optional<BottomCurve> curve = BottomCurve::fit(levelled, form);
+    if (!curve.has_value()) return std::nullopt;
+    const double vertex = curve->vertex_um(a);
+    const FromTo middle = groove_regions(layout_.edges)[2];
+    const double below = zs + a * (vertex - xs) - curve->z_um(vertex);
+    if (vertex < middle.from_um || vertex > middle.to_um || below <= 0.0) return std::nullopt;
+
+    RoundedTrace trace;
+    const double stretch = std::sqrt(1.0 + a * a);
+    trace.slope = sign_ * a;
+    trace.radius_um = curve->radius_um(vertex);
+    trace.value.height_um = below / stretch;
+    trace.value.vertical_um = below;
+    trace.value.slope_x = line_->slope_x();
+    trace.value.slope_y = line_->slope_y();
+    trace.value.points = line_->points(kShoulders) + line_->points(kBottom);
+
+    std::vector<double> influence;
+    influence.reserve(bottom.size());
+    double of_tilt = 0.0;  // change of c(v) with b
+    for (const BottomPoint& point : bottom) {
+      influence.push_back(curve->influence(vertex, point.along_um));
+      of_tilt -= sign_ * influence.back() * (point.across_um - ys);
+    }
+    const double per_a = sign_ * ((vertex - xs) / stretch - below * a / (stretch * stretch * stretch));
+    const double per_b = -of_tilt / stretch;
+    trace.value.weights = line_->weights(field_, groups_, kShoulders, kBottom, 0.0,
+                                         along_x ? std::array{per_a, per_b} : std::array{per_b, per_a});
+    add_mean_of_line(sign_ / stretch / line_->points(kShoulders), trace.value.weights);
+    for (std::size_t i = 0; i < bottom.size(); ++i) {
+      trace.value.weights.weights.at(bottom[i].column - groups_.left, bottom[i].row - groups_.top) -=
+          sign_ * influence[i] / stretch;
+    }
+    return trace;
   }
-  if (traces.size() < kLeastTraces) {
-    return StepRefusal{StepRefusalCode::kTooFewTraces,
-                       "only " + std::to_string(traces.size()) + " traces have enough valid points",
-                       static_cast<double>(traces.size())};
+
+ private:
+  void add_mean_of_line(double weight, WeightMap& map) const {
+    for (int y = 0; y < groups_.group.height(); ++y) {
+      for (int x = 0; x < groups_.group.width(); ++x) {
+        if (groups_.group.at(x, y) != kShoulders || field_.is_hole(groups_.left + x, groups_.top + y)) continue;
+        map.weights.at(x, y) += weight;
+      }
+    }
   }
-  groove.radius_um /= static_cast<double>(traces.size());
-  groove.traces = list_of(traces, static_cast<int>(layout.strips.size() - traces.size()));
-  groove.mean = mean_of(field, traces);
-  return groove;
+
+  const HeightField& field_;
+  const GrooveLayout& layout_;
+  PointGroups groups_;
+  double sign_;
+  std::optional<JointLevels> line_;
+};
+
+/// Traces and their mean; a refusal where a bottom is not rounded.
+std::optional<StepRefusal> measure_traces(const HeightField& field, const GrooveLayout& layout,
+                                          double min_valid_fraction, double sign, RoundedGroove& groove) {
+  std::vector<RoundedTrace> found;
+  for (const GrooveStrip& strip : layout.strips) {
+    const std::array<StepRegion, 3> regions = count_regions(field, layout, strip);
+    const bool has_points = !refused_for_holes(regions, min_valid_fraction).has_value();
+    std::optional<RoundedStrip> rounded;
+    if (has_points) rounded.emplace(field, layout, strip, sign);
+    if (!rounded.has_value() || !rounded->has_line()) {
+      ++groove.traces.left_out;
+      continue;
+    }
+    std::optional<RoundedTrace> trace = rounded->measure(groove.form);
+    if (!trace.has_value()) {
+      return StepRefusal{StepRefusalCode::kNotRounded,
+                         "the trace from " + figure_text(strip.from_um) + " to " + figure_text(strip.to_um) +
+                             " um has no vertex within the middle third of the groove",
+                         std::nullopt};
+    }
+    groove.traces.each.push_back(
+        {strip.from_um, strip.to_um, trace->value.height_um, trace->slope, trace->value.points});
+    found.push_back(std::move(*trace));
+  }
+  if (found.size() < kLeastTraces) return std::nullopt;
+  summarize(groove.traces);
+  groove.mean.height_um = groove.traces.mean_um;
+  groove.mean.weights = empty_weights(field, layout);
+  const double share = 1.0 / static_cast<double>(found.size());
+  for (const RoundedTrace& trace : found) {
+    groove.radius_um += share * trace.radius_um;
+    groove.mean.vertical_um += share * trace.value.vertical_um;
+    groove.mean.slope_x += share * trace.value.slope_x;
+    groove.mean.slope_y += share * trace.value.slope_y;
+    groove.mean.points += trace.value.points;
+    add_scaled(trace.value.weights, share, groove.mean.weights);
+  }
+  groove.mean.noise = linear_noise(field, groove.mean.weights);
+  return std::nullopt;
 }
 
 }  // namespace
 
 StepOutcome<RoundedGroove> iso5436_a2(const HeightField& field, const GrooveSettings& settings, BottomForm form) {
-  if (settings.across == Across::kX) return along_x(field, settings, form);
-  auto outcome = along_x(transposed(field), settings, form);
-  if (auto* groove = std::get_if<RoundedGroove>(&outcome)) turn_back(groove->mean);
-  return outcome;
+  StepOutcome<GrooveLayout> laid_out = lay_out_groove(field, settings);
+  if (auto* refusal = std::get_if<StepRefusal>(&laid_out)) return std::move(*refusal);
+  const GrooveLayout& layout = std::get<GrooveLayout>(laid_out);
+
+  RoundedGroove groove;
+  groove.form = form;
+  groove.edges = layout.edges;
+  groove.edges_given = layout.edges_given;
+  groove.regions = count_regions(field, layout, layout.band);
+  if (auto refusal = refused_for_holes(groove.regions, settings.min_valid_fraction)) return std::move(*refusal);
+  const auto plane =
+      JointLevels::fit(field, groove_groups(field, layout, layout.band), layout.axes_of(layout.band), {kShoulders});
+  if (!plane.has_value()) {
+    return StepRefusal{StepRefusalCode::kNoSlope, "the regions A and B do not define a plane", std::nullopt};
+  }
+  const double sign = plane->difference_um(kShoulders, kBottom) < 0.0 ? -1.0 : 1.0;
+  groove.sign = sign < 0.0 ? GrooveSign::kRidge : GrooveSign::kGroove;
+  if (auto refusal = measure_traces(field, layout, settings.min_valid_fraction, sign, groove)) {
+    return std::move(*refusal);
+  }
+  if (groove.traces.each.size() < kLeastTraces) {
+    return StepRefusal{StepRefusalCode::kTooFewTraces,
+                       std::to_string(groove.traces.each.size()) + " of " + std::to_string(layout.strips.size()) +
+                           " traces have enough points, and five are asked for",
+                       static_cast<double>(groove.traces.each.size())};
+  }
+  return groove;
 }
 
 }  // namespace fvd::metrology

@@ -33,18 +33,21 @@ struct LateralGrid {
 
 /// Affine map, least squares over the places in the image. grid_pitch_um > 0, u_grid_relative: standard uncertainty of
 /// the grid's pitch over the pitch. ISO 25178-600:2019, 3.1.10 (alpha_x, alpha_y) and 3.1.13 (mapping deviations).
-/// Refused for fewer than six crossings or crossings in one line. context: pure, as the next.
+/// Refused for fewer than six crossings, crossings in one line, or indices that run as in a mirror (x right, y down).
+/// Throws Error(kBadInput) for a grid_pitch_um or u_grid_relative out of range. context: pure, as the next.
 [[nodiscard]] StudyOutcome<LateralGrid> lateral_grid(std::span<const GridCrossing> crossings, double grid_pitch_um,
                                                      double u_grid_relative = 0.0);
 
 struct LateralDrift {
-  double x_px_per_um = 0.0;           ///< movement of the picture to the right, and
+  double x_px_per_um = 0.0;           ///< movement of the crossings' mean place to the right, and
   double y_px_per_um = 0.0;           ///< down, per um of z
   double magnification_per_mm = 0.0;  ///< relative change of the picture's size per mm of z
   int crossings = 0;                  ///< seen at both heights
 };
 
-/// The same grid at two heights, from crossings with the same indices. Refused for fewer than six of them or equal z.
+/// The same grid at two heights, from crossings with the same indices; least squares of a movement and a change of size
+/// about the crossings' mean place. The movement of another place has the change of size in it. Own definition. Refused
+/// for fewer than six of them or equal z.
 [[nodiscard]] StudyOutcome<LateralDrift> lateral_drift(std::span<const GridCrossing> at_first, double z_first_um,
                                                        std::span<const GridCrossing> at_second, double z_second_um);
 

@@ -23,15 +23,17 @@ struct ZAmplification {
   double linearity_um = 0.0;         ///< l_z: the largest of them, absolute
   double u_linearity_um = 0.0;       ///< standard uncertainty of that residual's step, of measurement and certificate
   /// Sum of the squared residuals over their uncertainties, over n - 1: about 1 where the uncertainties explain them.
-  /// 0 from one step.
+  /// 0 from one step, and where no uncertainties are stated.
   double reduced_chi_squared = 0.0;
 };
 
 /// measured = alpha_z * reference through zero, least squares with the weights 1 / (u_reference^2 + u_measured^2),
-/// equal weights where all are 0. u_alpha_z is propagated from the weights; u_common_relative, the part of the
+/// equal weights where all are 0. u_alpha_z is propagated from the weights, or where all are 0 from the scatter of the
+/// residuals; u_common_relative, the part of the
 /// certificates' uncertainty that all steps share (as a fraction of height), is added in quadrature, for it does not
 /// average. ISO 25178-600:2019, 3.1.10 and 3.1.11 (alpha_z, l_z); method of ISO 25178-700. Refused where there is no
-/// step or no reference other than 0, or where only some of the uncertainties are 0. context: pure, as the next.
+/// step or no reference other than 0, where only some of the uncertainties are 0, and for one step without any. Throws
+/// Error(kBadInput) for figures that are not finite and uncertainties below 0. context: pure, as the next.
 [[nodiscard]] StudyOutcome<ZAmplification> z_amplification(std::span<const KnownStep> steps,
                                                            double u_common_relative = 0.0);
 

@@ -34,7 +34,6 @@ Verdict by_rule(double value, const std::optional<CombinedUncertainty>& uncertai
                 const DecisionSettings& settings, std::optional<double> conformity) {
   if (settings.rule == DecisionRule::kSimple) return judge(value, limits);
   if (!uncertainty) return Verdict::kUncertain;
-  if (uncertainty->u == 0.0) return judge(value, limits);
   if (settings.rule == DecisionRule::kGuardU) return by_guard(value, uncertainty->expanded, limits);
   return by_probability(*conformity, settings.probability);
 }

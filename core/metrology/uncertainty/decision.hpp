@@ -12,7 +12,7 @@ namespace fvd::metrology {
 enum class DecisionRule {
   kIso14253,  ///< ISO 14253-1:2017: stated where its probability is at least `probability`, else uncertain
   kSimple,    ///< the value alone, simple acceptance (JCGM 106:2012, 8.2)
-  kGuardU,    ///< U on either side of each limit is uncertain, as ISO 14253-1:1998 had it
+  kGuardU,    ///< U = k u on either side of each limit is uncertain, as ISO 14253-1:1998 had it (there with k = 2)
 };
 
 struct DecisionSettings {

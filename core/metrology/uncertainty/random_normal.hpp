@@ -1,6 +1,6 @@
 #pragma once
 
-/// Random numbers that are the same on every machine and with every standard library.
+/// Random numbers that do not depend on the standard library.
 
 #include <array>
 #include <cstdint>
@@ -9,7 +9,8 @@ namespace fvd::metrology {
 
 /// xoshiro256++ (Blackman and Vigna, 2019), its state filled by splitmix64 from seed and stream; normal deviates by the
 /// polar form of Box and Muller (Marsaglia, 1964). std::normal_distribution is not used: its values are each library's
-/// own. context: one thread an object.
+/// own. Bits and uniform values are the same everywhere, normal ones up to the last bit of std::log. context: one
+/// thread an object.
 class RandomNormal {
  public:
   /// Streams of one seed are independent sequences.

@@ -52,6 +52,13 @@ TEST(APlan, OfTheManualIsAccepted) {
               IsEmpty());
 }
 
+TEST(APlan, IsRefusedForNumbersThatTheArithmeticHasNot) {
+  EXPECT_THAT(problems_of(R"({"decision": {"probability": 0.5}})"),
+              ElementsAre(problem("/decision/probability", "above 0.5")));
+  EXPECT_THAT(problems_of(R"({"measurements": {"e": {"kind": "cutting_edge", "flank_um": [0, 80]}}})"),
+              ElementsAre(problem("/measurements/e/flank_um", "above 0")));
+}
+
 TEST(APlan, IsRefusedWhereNamesLeadNowhere) {
   EXPECT_THAT(problems_of(R"({
     "surfaces": {"a": {"from": "mesured", "steps": [{"op": "level", "regions": ["lnd"]}]}},

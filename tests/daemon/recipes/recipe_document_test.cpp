@@ -220,6 +220,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{with("", R"(, "keep": {"slices": "yes"})"), "/keep/slices", "true or false"},
         BadRecipe{with("", R"(, "report": {})"), "/report", "unknown key"},
         BadRecipe{with("", R"(, "evaluation": {"regons": {}})"), "/evaluation/regons", "unknown key"},
+        BadRecipe{with("", R"(, "evaluation": {"measurements": {"s": {"kind": "step_height"}}})"),
+                  "/reconstruct/lateral/pixel_pitch_y_um", "an evaluation needs the distance of the pixels"},
         BadRecipe{with(R"(, "light": {})", ""), "/acquire/light", "unknown key"},
         BadRecipe{std::string(kMaxRecipeBytes + 1, ' '), "", "at most 32768"}),
     [](const auto& of) { return test::readable_name(of.index, of.param.pointer + " " + of.param.says); });

@@ -92,8 +92,7 @@ HeightField make_field(const WedgeTruth& truth, int width, int height, int windo
           truth.height_um(first + static_cast<double>(x) / kFine, first + static_cast<double>(y) / kFine);
     }
   }
-  const std::vector<double> mean =
-      box_mean(fine, fine_width, fine_height, window_px * kFine, kFine, width, height);
+  const std::vector<double> mean = box_mean(fine, fine_width, fine_height, window_px * kFine, kFine, width, height);
   HeightField field;
   field.z_um = Plane<double>(width, height);
   field.sigma_um = Plane<float>(width, height, static_cast<float>(sigma_um > 0.0 ? sigma_um : 0.1));

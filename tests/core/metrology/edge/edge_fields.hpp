@@ -8,7 +8,6 @@
 
 namespace fvd::metrology::edge_test {
 
-
 /// The truth: a wedge whose flanks fall by rake_deg and clearance_deg, rounded by a conic.
 struct WedgeTruth {
   double rake_deg = 45.0;
@@ -20,9 +19,9 @@ struct WedgeTruth {
   double middle_x_um = 0.0;     ///< a point of the edge
   double middle_y_um = 0.0;
   double apex_z_um = 100.0;
-  double tilt = 0.0;              ///< dz along the edge in the image
-  double bend_per_um = 0.0;       ///< curvature of the edge in the image
-  double notch_along_um = 1e9;    ///< from the middle point; the edge is cut off flat there
+  double tilt = 0.0;            ///< dz along the edge in the image
+  double bend_per_um = 0.0;     ///< curvature of the edge in the image
+  double notch_along_um = 1e9;  ///< from the middle point; the edge is cut off flat there
   double notch_depth_um = 0.0;
   double notch_width_um = 0.0;
 
