@@ -5,8 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "daemon/report/axis_ticks.hpp"
 #include "daemon/export/page_text.hpp"
+#include "daemon/report/axis_ticks.hpp"
 
 namespace fvd {
 

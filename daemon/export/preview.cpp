@@ -8,10 +8,10 @@
 
 #include "core/base/error.hpp"
 #include "core/base/units.hpp"
-#include "daemon/report/axis_ticks.hpp"
 #include "daemon/export/export_input.hpp"
 #include "daemon/export/page_text.hpp"
 #include "daemon/export/png_bytes.hpp"
+#include "daemon/report/axis_ticks.hpp"
 
 namespace fvd {
 

@@ -6,11 +6,11 @@
 #include <tiffio.h>
 #include <tiffio.hxx>
 
-#include "daemon/report/axis_ticks.hpp"
 #include "daemon/export/height_tiff.hpp"
 #include "daemon/export/mask_png.hpp"
 #include "daemon/export/preview.hpp"
 #include "daemon/export/texture_png.hpp"
+#include "daemon/report/axis_ticks.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 
 namespace fvd {
