@@ -34,6 +34,7 @@ run_sanitized() {
   fvd_say "sanitized: built in $((SECONDS - begun)) s"
   begun=$SECONDS
   log=$build/sanitized.log
+  export LSAN_OPTIONS="suppressions=$FVD_ROOT/tests/lsan.supp print_suppressions=0 ${LSAN_OPTIONS:-}"
   # A failing test is counted, not the end of the script.
   ctest --test-dir "$build" -L 'unit|sim' --output-on-failure --no-tests=error -j2 >"$log" 2>&1 || true
   grep -E 'tests passed|tests failed|\(Failed\)|\(Timeout\)|\(SEGFAULT\)|Subprocess aborted|ERROR: |runtime error' "$log" | head -n 100 || true

@@ -7,6 +7,8 @@ fvd_packages+=(ccache mbpoll python3-pymodbus python3-serial python3-serial-asyn
 fvd_install_packages
 fvd_build
 fvd_build bench_accuracy bench_camera bench_focus bench_renderer bench_stage bench_structure  # not run here; they must not fall behind
+# What leaks of libraries last for the life of the process; printing them would change what programs say.
+export LSAN_OPTIONS="suppressions=$FVD_ROOT/tests/lsan.supp print_suppressions=0 ${LSAN_OPTIONS:-}"
 # Only the thread sanitizer reads this: which libraries' locks it cannot see, and that a test's forked child starts threads.
 export TSAN_OPTIONS="suppressions=$FVD_ROOT/tests/tsan.supp die_after_fork=0 ${TSAN_OPTIONS:-}"
 ctest --test-dir "$FVD_BUILD" --output-on-failure --no-tests=error -j2 "$@"

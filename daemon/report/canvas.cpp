@@ -28,11 +28,8 @@ std::string shown(const std::string& words) {
 }
 
 void set_bold(PangoLayout* layout, std::size_t bytes) {
-  PangoAttribute* bold = pango_attr_weight_new(PANGO_WEIGHT_BOLD);
-  bold->start_index = 0;
-  bold->end_index = static_cast<guint>(bytes);
-  PangoAttrList* list = pango_attr_list_new();
-  pango_attr_list_insert(list, bold);
+  const std::string range = "0 " + std::to_string(bytes) + " weight bold";
+  PangoAttrList* const list = pango_attr_list_from_string(range.c_str());
   pango_layout_set_attributes(layout, list);
   pango_attr_list_unref(list);
 }

@@ -162,6 +162,18 @@ TEST(SectionPoints, FollowALineDownwards) {
   EXPECT_NEAR(points.back().height_um, 20.0, 1e-5);
 }
 
+TEST(SectionPoints, LookSquarelyAcrossAnObliqueLine) {
+  Surface surface = test::groove_surface(60, 60, 1.0);
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 60; ++x) surface.height_m.at(x, y) = static_cast<float>((x - y) * (x - y) * 1e-6);
+  }
+
+  const auto points = section_points(picture_surface(surface), {20.0, 20.0, 40.0, 40.0, 12.0, {}});
+
+  // The mean of (sqrt(2) b)^2 over b from -6 to 6 is 24; along the line it would be 0.
+  for (const SectionPoint& point : points) EXPECT_NEAR(point.height_um, 24.0, 6.0);
+}
+
 TEST(ScalarImage, IsTheMeanOfTheValidPointsOfABlock) {
   Plane<float> metres(5, 4, 2e-6F);
   metres.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
