@@ -51,6 +51,7 @@ Input read_input(const MeasureArguments& arguments) {
 }
 
 void set_noise(double noise_um, Surface& surface) {
+  if (!std::isfinite(noise_um) || noise_um <= 0.0) throw UsageError("--noise-um expects a length above 0");
   if (surface.has_sigma()) throw UsageError("--noise-um is for a surface without standard errors; this one has them");
   surface.sigma_m = Plane<float>::unset(surface.width(), surface.height());
   const auto sigma_m = static_cast<float>(noise_um * kMetresPerMicrometer);

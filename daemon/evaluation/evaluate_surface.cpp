@@ -70,7 +70,12 @@ void add_invalid_values(const MeasurementInput& input, EvaluatedMeasurement& mad
 /// A measurement that is invalid as a whole has no value that passes.
 void invalidate(EvaluatedMeasurement& made) {
   for (auto& [key, value] : made.values) {
-    if (value.limits) value.verdict = Verdict::kInvalid;
+    EvaluatedValue none;
+    none.unit = value.unit;
+    none.reason = value.value ? made.reason : value.reason;
+    none.limits = value.limits;
+    if (value.limits) none.verdict = Verdict::kInvalid;
+    value = std::move(none);
   }
 }
 
@@ -85,7 +90,7 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
   if (!made.reason.empty()) {
     add_invalid_values(input, made);
     invalidate(made);
-    made.verdict = Verdict::kInvalid;
+    if (!input.planned.limits.empty()) made.verdict = Verdict::kInvalid;  // nobody asked for a verdict on others
     if (made.reason_code == 0) made.reason_code = evaluation_code::kInvalid;
     return made;
   }

@@ -1,6 +1,7 @@
 /// Cutting edges: rounding and chipping.
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -183,12 +184,22 @@ void add_chipping(const MeasurementInput& input, const CuttingEdge& edge, Evalua
     entry.source = "edge_line";
     entry.type = metrology::UncertaintyType::kA;
     entry.u = chipping.robust_sd_um;
+    // A notch below the limit that this line allows stays unseen.
+    const bool coarse = chipping.depth_limit_um > input.planned.chipping->min_depth_um;
+    if (coarse && chipping.deepest_um() < chipping.depth_limit_um) entry.u = chipping.depth_limit_um / std::sqrt(3.0);
     deepest.budget.entries.push_back(entry);
     deepest.u_method = "spread";
   }
   add_value(input, "chipping_max_um", deepest, made);
   add_share(input, "notches", when_there(static_cast<double>(chipping.notches.size())), reason, made);
   add_share(input, "unmeasured_fraction", chipping.unmeasured_fraction(), reason, made);
+  if (there && chipping.depth_limit_um > input.planned.chipping->min_depth_um) {
+    std::ostringstream text;
+    text.precision(3);
+    text << "the edge line scatters, so that notches are found from " << chipping.depth_limit_um
+         << " um on, not from the recipe's " << input.planned.chipping->min_depth_um << " um";
+    made.warnings.push_back({"notch_limit_raised", text.str()});
+  }
   const auto any_notch = [&chipping](bool (*is)(const metrology::Notch&)) {
     return std::any_of(chipping.notches.begin(), chipping.notches.end(), is);
   };
@@ -240,7 +251,10 @@ EvaluatedMeasurement measure_edge(const MeasurementInput& input) {
   if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
   for (std::size_t i = 0; i < metrology::kEdgeQuantityCount; ++i) {
     const std::string key(metrology::edge_quantity_key(static_cast<EdgeQuantity>(i)));
-    add_value(input, key, value_input(edge.values[i], edge.sections_measured), made);
+    ValueInput found = value_input(edge.values[i], edge.sections_measured);
+    // Noise makes the sharpest place sharper, by more than its scatter.
+    if (static_cast<EdgeQuantity>(i) == EdgeQuantity::kRMin) found.budget.entries.clear();
+    add_value(input, key, found, made);
     if (!edge.values[i].at_most) continue;
     judge_at_most(edge.radius_smallest_resolvable_um, made.values.at(key));
     made.warnings.push_back({"at_most", key + " is below what the focus window resolves: read it as at most " +
@@ -249,7 +263,11 @@ EvaluatedMeasurement measure_edge(const MeasurementInput& input) {
   if (input.planned.chipping) {
     add_chipping(input, edge, made);
     if (made.reason.empty() && edge.chipping.unmeasured_fraction() > input.planned.chipping->max_unmeasured_fraction) {
-      made.reason = "too much of the edge could not be measured: see unmeasured_fraction";
+      std::ostringstream text;
+      text.precision(3);
+      text << 100.0 * edge.chipping.unmeasured_fraction() << " % of the edge could not be measured; the recipe allows "
+           << 100.0 * input.planned.chipping->max_unmeasured_fraction << " %";
+      made.reason = text.str();
     }
   }
   if (!field.has_sigma()) made.not_evaluated.emplace_back("noise");

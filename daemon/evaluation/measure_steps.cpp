@@ -1,7 +1,9 @@
 /// Step heights: of grooves and ridges, between regions, of stairs.
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -26,11 +28,21 @@ using nlohmann::ordered_json;
 
 constexpr double kWarnFactor = 3.0;
 
+/// Steps are perpendicular to the surface. Where a plane was taken away before, the fit does not see its slope any
+/// more.
+double to_perpendicular(const SurfaceState& surface, const StepValue& step) {
+  const double x = step.slope_x + surface.removed_slope_x;
+  const double y = step.slope_y + surface.removed_slope_y;
+  const double seen = 1.0 + step.slope_x * step.slope_x + step.slope_y * step.slope_y;
+  return std::sqrt(seen / (1.0 + x * x + y * y));
+}
+
 /// Adds a height with its budget.
 void add_height(const MeasurementInput& input, const std::string& key, const StepValue& step,
                 EvaluatedMeasurement& made) {
   ValueInput value;
-  value.value = step.height_um;
+  const double factor = to_perpendicular(input.surface, step);
+  value.value = factor * step.height_um;
   value.u_method = "linear";
   add_noise(step.noise, value.budget);
   if (step.noise) {
@@ -38,6 +50,7 @@ void add_height(const MeasurementInput& input, const std::string& key, const Ste
   } else {
     value.budget.not_evaluated.emplace_back("slice_z");  // alone it would pass for all of U
   }
+  for (metrology::BudgetEntry& entry : value.budget.entries) entry.sensitivity *= factor;
   note_not_evaluated(value.budget, made);
   made.values[key] = judged_value(value, key, input.planned, input.plan.decision);
 }
@@ -104,6 +117,21 @@ void refuse(const metrology::StepRefusal& refusal, EvaluatedMeasurement& made) {
   if (refusal.code == metrology::StepRefusalCode::kOutside) made.reason_code = evaluation_code::kRegionOutside;
 }
 
+/// A trace has no slope along the groove: where the surface is tilted that way, its height is too large.
+void warn_of_tilt_along(EvaluatedMeasurement& made) {
+  EvaluatedValue& by_traces = made.values.at("height_um");
+  const EvaluatedValue& areal = made.values.at("height_areal_um");
+  const double difference_um = *by_traces.value - *areal.value;
+  if (!by_traces.expanded_u || std::abs(difference_um) <= *by_traces.expanded_u) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "the surface is tilted along the groove, which traces do not see: height_um is " << difference_um
+       << " um off; read height_areal_um, or put the part upright";
+  made.warnings.push_back({"tilt_along", text.str()});
+  if (by_traces.verdict == Verdict::kPass || by_traces.verdict == Verdict::kFail)
+    by_traces.verdict = Verdict::kUncertain;
+}
+
 void measure_flat_bottom(const MeasurementInput& input, EvaluatedMeasurement& made) {
   const metrology::GrooveSettings settings = groove_settings(input.planned);
   const auto outcome = metrology::iso5436_a1(input.surface.field, settings);
@@ -111,6 +139,7 @@ void measure_flat_bottom(const MeasurementInput& input, EvaluatedMeasurement& ma
   const auto& groove = std::get<metrology::GrooveStep>(outcome);
   add_height(input, "height_um", groove.mean, made);
   add_height(input, "height_areal_um", groove.areal, made);
+  warn_of_tilt_along(made);
   add_figure(input, "plain_means_um", groove.plain_means_um, made);
   add_figure(input, "width_um", groove.edges.width_um(), made);
   note_regions(groove.regions.data(), groove.regions.data() + groove.regions.size(), made);

@@ -103,6 +103,9 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
   made.l_nesting_um = source.l_nesting_um;
   made.uses_sigma = source.uses_sigma;
   made.levelled = source.levelled;
+  made.removed_slope_x = source.removed_slope_x;
+  made.removed_slope_y = source.removed_slope_y;
+  made.robust = source.robust;
   made.warnings = source.warnings;
   ordered_json steps = ordered_json::parse(source.steps_json);
   for (PlannedOperation step : planned.steps) {
@@ -116,6 +119,9 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
     }
     if (step.op == "filter") note_filter(step, made);
     made.levelled = made.levelled || step.op == "level" || step.op == "form";
+    made.robust = made.robust || step.op == "outliers" || step.robust;
+    if (const auto* slope = report.find("slope_x")) made.removed_slope_x += slope->value;
+    if (const auto* slope = report.find("slope_y")) made.removed_slope_y += slope->value;
     made.uses_sigma = made.uses_sigma || looks_at_sigma(step, made.field);
     for (const std::string& text : report.warnings) made.warnings.push_back({step.op, text});
     json["did"] = report_json(report);

@@ -22,7 +22,10 @@ struct SurfaceState {
   std::optional<double> s_nesting_um;  ///< the longest S filter on the way from the measured surface
   std::optional<double> l_nesting_um;  ///< the shortest L filter
   bool uses_sigma = false;             ///< a step on that way looked at the standard errors
-  bool levelled = false;               ///< a form was fitted and taken away on that way, with errors of its own
+  double removed_slope_x = 0.0;        ///< of the planes that were taken away: heights are along z of before
+  double removed_slope_y = 0.0;
+  bool robust = false;    ///< points were judged by the heights themselves
+  bool levelled = false;  ///< a form was fitted and taken away on that way, with errors of its own
   std::vector<EvaluationWarning> warnings;
   std::string refused;  ///< why the surface cannot be made; empty = it is there
 };

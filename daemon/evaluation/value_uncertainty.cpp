@@ -123,6 +123,11 @@ EvaluatedValue judged_value(const ValueInput& input, const std::string& key, con
   const metrology::Decision decided =
       metrology::decide(input.value, uncertainty, limits->second, {rule, decision.probability}, input.below_noise);
   value.verdict = decided.verdict;
+  if (input.below_noise && decided.verdict == Verdict::kFail) {
+    value.verdict = Verdict::kUncertain;  // the noise itself may be what is too rough
+    value.warnings.push_back(
+        {"below_noise", "is below twice the noise floor, which raises it: an upper limit cannot fail"});
+  }
   value.probability = decided.conformity;
   if (decided.u_above_third_of_tolerance) warn_of_tolerance(value, value.warnings);
   if (decided.held_back_below_noise) {

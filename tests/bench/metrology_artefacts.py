@@ -58,7 +58,8 @@ class Plant:
         return json.loads((out / "result.json").read_text())["evaluation"], out, slices
 
     def truth(self, slices):
-        return json.loads((slices / "truth.json").read_text())
+        file = slices / "truth.json"
+        return json.loads((file if file.exists() else slices / "truth/truth.json").read_text())
 
 
 def value(evaluation, measurement, key):

@@ -34,7 +34,7 @@ def steps(plant):
 
 def edge_plan(truth, flank_to=80):
     return {"measurements": {"edge": {"kind": "cutting_edge", "rake_side": truth["rake_side"], "flank_um": [40, flank_to],
-                                      "sections_every_um": 15, "chipping": {"min_depth_um": 1.5, "min_width_um": 5}}}}
+                                      "sections_every_um": 15, "min_valid_fraction": 0.3, "chipping": {"min_depth_um": 1.5, "min_width_um": 5}}}}
 
 
 def edge(plant, name, seed=1, window=None):
@@ -85,7 +85,7 @@ def edges(plant):
         invented += number(made, "notches") or 0
     figures["notches_invented_of_10"] = int(invented)
     made, _ = edge(plant, "edge_polished")
-    figures["polished_gullies"] = number(made, "notches")
+    figures["polished_gullies"] = len(made["details"]["chipping"]["notches"])
     return figures
 
 
@@ -99,7 +99,7 @@ def textures(plant):
         evaluation, _, slices = plant.measured("rough", plan, changes={"sq_um": sq})
         found, _ = value(evaluation, "t", "Sq_um")
         noise = evaluation["measurements"]["t"]["details"]["noise_floor_Sq_um"]
-        truth = box_mean(gsf(slices / "truth.gsf"), 9)[16:-16, 16:-16]
+        truth = box_mean(gsf(slices / "truth/truth.gsf"), 9)[16:-16, 16:-16]
         rows, columns = np.mgrid[:truth.shape[0], :truth.shape[1]]
         design = np.stack([np.ones(truth.size), rows.ravel(), columns.ravel()], 1)
         rest = truth.ravel() - design @ np.linalg.lstsq(design, truth.ravel(), rcond=None)[0]

@@ -92,8 +92,25 @@ std::vector<EdgeLinePoint> edge_line(const HeightField& field, const Region& reg
   return line;
 }
 
+/// Standard deviation of the edge line from the points where no material is missing: notches, which may be a third of
+/// an edge, would else raise the limit that they are found by. Of a normal distribution the median distance of one side
+/// is that of both. Own definition.
+double scatter_of_sound_side(const std::vector<double>& deviations_um) {
+  constexpr double kMadToDeviation = 1.4826;
+  std::vector<double> distances;
+  for (const double deviation : deviations_um) {
+    if (deviation <= 0.0) distances.push_back(-deviation);
+  }
+  if (distances.empty()) return 0.0;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return kMadToDeviation * *middle;
+}
+
 // Takes the form off and gives the deviations that are there.
 std::vector<double> remove_form(std::vector<EdgeLinePoint>& line, int degree) {
+  constexpr int kRounds = 20;
+  constexpr double kSound = 3.0;
   std::vector<double> along;
   std::vector<double> distance;
   for (const EdgeLinePoint& p : line) {
@@ -101,12 +118,30 @@ std::vector<double> remove_form(std::vector<EdgeLinePoint>& line, int degree) {
     along.push_back(p.along_um);
     distance.push_back(*p.distance_um);
   }
-  const Polynomial form = robust_polynomial(along, distance, degree);
-  std::vector<double> deviations;
+  Polynomial form = robust_polynomial(along, distance, degree);
+  std::vector<double> deviations(along.size());
+  std::size_t kept = along.size();
+  // Notches pull the form towards them, all to one side: it is fitted again to what is sound, until that does not
+  // change.
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < along.size(); ++i) deviations[i] = distance[i] - form(along[i]);
+    const double limit = kSound * scatter_of_sound_side(deviations);
+    std::vector<double> sound_along;
+    std::vector<double> sound_distance;
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      if (deviations[i] > limit) continue;
+      sound_along.push_back(along[i]);
+      sound_distance.push_back(distance[i]);
+    }
+    if (sound_along.size() == kept || 2 * sound_along.size() < along.size()) break;
+    kept = sound_along.size();
+    form = robust_polynomial(sound_along, sound_distance, degree);
+  }
+  std::size_t at = 0;
   for (EdgeLinePoint& p : line) {
     if (!p.distance_um) continue;
-    p.deviation_um = *p.distance_um - form(p.along_um);
-    deviations.push_back(*p.deviation_um);
+    deviations[at] = distance[at] - form(along[at]);
+    p.deviation_um = deviations[at++];
   }
   return deviations;
 }
@@ -158,7 +193,7 @@ ChippingResult measure_chipping(const HeightField& field, const Region& region, 
     return result;
   }
   const std::vector<double> deviations = remove_form(result.line, options.chipping.form_degree);
-  result.robust_sd_um = robust_sd(deviations);
+  result.robust_sd_um = scatter_of_sound_side(deviations);
   result.depth_limit_um = std::max(options.chipping.min_depth_um, kRobustLimit * result.robust_sd_um);
   std::size_t there = 0;
   result.edge_pt_um = height_of_part(result.line, 0, result.line.size(), there);

@@ -86,6 +86,25 @@ TEST(Chipping, FindsNotchesAsDeepAsTheWindowShowsThem) {
   }
 }
 
+TEST(Chipping, FindsANotchThatTakesAFifthOfTheEdge) {
+  WedgeTruth truth;
+  truth.direction_deg = 90.0;
+  truth.middle_x_um = 100.3;
+  truth.middle_y_um = 90.2;
+  truth.notch_along_um = 20.0;
+  truth.notch_depth_um = 5.0;
+  truth.notch_width_um = 36.0;
+  EdgeOptions options;
+  options.chipping.min_depth_um = 1.5;
+  const HeightField field = make_field(truth, 200, 180, 9, 0.2, 8);
+
+  const CuttingEdge edge = measure_cutting_edge(field, {}, options);
+
+  EXPECT_LT(edge.chipping.robust_sd_um, 0.4) << "the notch does not raise the limit it is found by";
+  ASSERT_EQ(edge.chipping.notches.size(), 1U);
+  EXPECT_NEAR(edge.chipping.notches[0].width_um, 36.0, 5.0);
+}
+
 TEST(Chipping, InventsNoNotchOnCleanEdges) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     WedgeTruth truth;
