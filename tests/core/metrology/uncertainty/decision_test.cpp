@@ -164,6 +164,7 @@ TEST(Decision, PassesOneInTwentyPartsThatAreExactlyAtALimit) {
     false_fails += verdict == Verdict::kFail ? 1 : 0;
   }
 
+  RecordProperty("false_pass_of_2000", false_passes);
   EXPECT_GE(false_passes, 70);
   EXPECT_LE(false_passes, 130);
   EXPECT_GE(false_fails, 70);
