@@ -19,8 +19,12 @@ struct ChecksumFreer {
   void operator()(GChecksum* checksum) const noexcept { g_checksum_free(checksum); }
 };
 
+/// Little-endian; bytes beyond the eighth are 0.
 void add_number(std::string& to, std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i) to.push_back(static_cast<char>(value >> static_cast<unsigned>(8 * i) & 0xFFU));
+  for (int i = 0; i < bytes; ++i) {
+    to.push_back(static_cast<char>(value & 0xFFU));
+    value >>= 8U;
+  }
 }
 
 /// What the local head and the directory tell alike.
