@@ -142,10 +142,6 @@ void judge_points(const MeasurementInput& input, const ProfileResult& found, Eva
   if (!made.reason.empty()) made.reason_code = evaluation_code::kTooFewValid;
 }
 
-ordered_json number_or_null(std::optional<double> value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json details_json(const MeasurementInput& input, const NoiseFloor& floor, const Profile& profile,
                           const ProfileResult& found) {
   ordered_json json = texture_conditions(input, floor);

@@ -12,11 +12,11 @@ using nlohmann::ordered_json;
 
 constexpr double kAboveFloor = 2.0;
 
+}  // namespace
+
 ordered_json number_or_null(std::optional<double> value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
-
-}  // namespace
 
 NoiseFloor noise_floor(const metrology::HeightField& field, const metrology::Region& region) {
   if (!field.has_sigma()) return {};

@@ -23,6 +23,9 @@ struct NoiseFloor {
 /// The value is under twice the floor. False where either is not known.
 [[nodiscard]] bool is_below_noise(std::optional<double> sq_um, const NoiseFloor& floor) noexcept;
 
+/// null where there is no number.
+[[nodiscard]] nlohmann::ordered_json number_or_null(std::optional<double> value);
+
 /// noise_floor_Sq_um, window_um, S_um, L_um, S_effective_um: the longer of the S filter and the lateral period.
 [[nodiscard]] nlohmann::ordered_json texture_conditions(const MeasurementInput& input, const NoiseFloor& floor);
 
