@@ -72,6 +72,14 @@ std::string_view error_name(ErrorCode code) noexcept {
       return "recipe_conflict";
     case ErrorCode::kSurfaceFile:
       return "surface_file";
+    case ErrorCode::kRegionOutside:
+      return "region_outside";
+    case ErrorCode::kCalibrationMissing:
+      return "calibration_missing";
+    case ErrorCode::kObjectiveMismatch:
+      return "objective_mismatch";
+    case ErrorCode::kStudyRefused:
+      return "study_refused";
   }
   return "internal";
 }

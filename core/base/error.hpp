@@ -41,10 +41,14 @@ enum class ErrorCode {
   kStorageFull,
   kStorageWrite,
   kDatabase,
-  kRecipeConflict,  ///< the recipe was changed meanwhile
-  kSurfaceFile,     ///< a file that is to hold a surface cannot be read as one; the last: see kLastErrorCode
+  kRecipeConflict,      ///< the recipe was changed meanwhile
+  kSurfaceFile,         ///< a file that is to hold a surface cannot be read as one
+  kRegionOutside,       ///< what an evaluation looks at does not lie in the field of view
+  kCalibrationMissing,  ///< an evaluation or a study needs constants that there are none of
+  kObjectiveMismatch,   ///< the recipe's objective is not the one that was confirmed
+  kStudyRefused,        ///< the jobs of a study do not make one; the last: see kLastErrorCode
 };
-inline constexpr ErrorCode kLastErrorCode = ErrorCode::kSurfaceFile;
+inline constexpr ErrorCode kLastErrorCode = ErrorCode::kStudyRefused;
 
 /// The stable name of a code, e.g. "camera_disconnected".
 [[nodiscard]] std::string_view error_name(ErrorCode code) noexcept;

@@ -70,6 +70,14 @@ RpcError rpc_error(ErrorCode code) noexcept {
       return {1133, false};
     case ErrorCode::kSurfaceFile:
       return {1144, false};
+    case ErrorCode::kRegionOutside:
+      return {1142, false};
+    case ErrorCode::kCalibrationMissing:
+      return {1143, false};
+    case ErrorCode::kObjectiveMismatch:
+      return {1146, false};
+    case ErrorCode::kStudyRefused:
+      return {1147, false};
     case ErrorCode::kMemoryBudget:
       return {1203, false};
   }

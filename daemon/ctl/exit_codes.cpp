@@ -14,6 +14,10 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kMemoryBudget:
     case ErrorCode::kStageLimit:
     case ErrorCode::kSurfaceFile:
+    case ErrorCode::kRegionOutside:
+    case ErrorCode::kCalibrationMissing:
+    case ErrorCode::kObjectiveMismatch:
+    case ErrorCode::kStudyRefused:
       return kExitBadData;
     case ErrorCode::kStorageFull:
     case ErrorCode::kStorageWrite:
@@ -48,7 +52,11 @@ int exit_code_of_rpc(int code) noexcept {
     case 1015:    // invalid configuration
     case 1016:    // invalid input
     case 1017:    // recipe changed meanwhile
+    case 1142:    // region outside
+    case 1143:    // calibration missing
     case 1144:    // file of a surface
+    case 1146:    // another objective
+    case 1147:    // study refused
     case 1203:    // too large
       return kExitBadData;
     case 1001:  // not ready

@@ -2,9 +2,12 @@
 
 /// What an evaluation knows beside the surface.
 
+#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
+
+#include "core/metrology/height_field.hpp"
+#include "daemon/result/calibration.hpp"
 
 namespace fvd {
 
@@ -18,6 +21,11 @@ struct CurveSample {
 struct EvaluationContext {
   std::vector<CurveSample> samples;  ///< in the order of the scan; fewer than 3 = not known
   double curve_width_um = 0.0;       ///< full width at half maximum of the focus curves; 0 = not known
+
+  std::optional<Calibration> calibration = {};  ///< of the instrument; absent = none
+  /// The map that the calibration names, with its standard errors; null = not at hand.
+  std::shared_ptr<const metrology::HeightField> flatness_reference = nullptr;
+  std::optional<double> temperature_c = {};
   bool operator==(const EvaluationContext&) const = default;
 };
 

@@ -29,6 +29,8 @@ struct Recipe {
   int format = 2;                  ///< 1 or 2, in which the document is written; places in messages are those of it
   std::vector<std::string> notes;  ///< what the author should know of an accepted document; not of the recipe itself
 
+  std::string objective;  ///< that must be the confirmed one; empty = any
+
   double start_um = 0.0;  ///< z of the first slice
   double step_um = 10.0;  ///< > 0, distance of slices
   int slices = 21;        ///< 3..65535

@@ -18,6 +18,7 @@
 #include "core/stage/stage_accuracy.hpp"
 #include "core/surface/statistics.hpp"
 #include "core/surface/verdict.hpp"
+#include "daemon/result/calibration.hpp"
 #include "daemon/result/evaluation_result.hpp"
 
 namespace fvd {
@@ -99,6 +100,14 @@ struct ResultFile {
   bool operator==(const ResultFile&) const = default;
 };
 
+/// Of the part, or of the room where the part's is not measured.
+struct Temperature {
+  double celsius = 20.0;
+  std::string source;  ///< "job", or the file that it was read from
+  double age_s = 0.0;  ///< when the scan began
+  bool operator==(const Temperature&) const = default;
+};
+
 struct Result {
   static constexpr int kFormat = 2;  ///< of result.json and of mask.png beside it
 
@@ -171,7 +180,10 @@ struct Result {
 
   Job job;
   Recipe recipe;
-  std::optional<Verdict> verdict;  ///< absent = nothing was judged; says nothing about how the job ended
+  std::string objective;                   ///< that was confirmed; empty = none is named
+  std::optional<Temperature> temperature;  ///< absent = not known
+  std::optional<Calibration> calibration;  ///< that was in force for the objective; absent = none
+  std::optional<Verdict> verdict;          ///< absent = nothing was judged; says nothing about how the job ended
   std::vector<MeasuredValue> measurements;
   std::optional<Evaluation> evaluation;  ///< where the recipe asks for one
   std::vector<Warning> warnings;

@@ -35,6 +35,10 @@ struct ResultData {
   std::string recipe_sha256;
   std::string source;  ///< camera and stage, or the folder of recorded slices
 
+  std::string objective;                   ///< that was confirmed; empty = none is named
+  std::optional<Temperature> temperature;  ///< absent = not known
+  std::optional<Calibration> calibration;  ///< in force for the objective; absent = none
+
   FocusSettings focus;
   PeakMethod peak = PeakMethod::kParabola;
   std::optional<double> pixel_pitch_x_um;  ///< absent = unknown: files then carry pixels

@@ -1,0 +1,48 @@
+#pragma once
+
+/// All versions of all constants: calibration.json in a folder, beside the reference maps that they name.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/mutex.hpp"
+#include "daemon/result/calibration.hpp"
+
+namespace fvd {
+
+/// A file of a new version, written before the version is there.
+struct CalibrationFile {
+  std::string name;  ///< without a path; "<id>-flatness.gsf"
+  std::string bytes;
+};
+
+/// context: every function thread-safe; blocks for files.
+class CalibrationBook {
+ public:
+  /// Reads <folder>/calibration.json; no such file = no versions yet. Throws Error kBadInput with the place of what is
+  /// wrong: constants that cannot be read must not be taken for none.
+  explicit CalibrationBook(std::filesystem::path folder);
+
+  /// The newest version for this objective ("" = no objective is named).
+  [[nodiscard]] std::optional<Calibration> current(const std::string& objective) const;
+  [[nodiscard]] std::optional<Calibration> find(const std::string& id) const;
+  [[nodiscard]] std::vector<Calibration> versions() const;
+
+  /// A new version: the objective's newest with `change` done to it, under a new id and with the time it is made. The
+  /// id is known to `change`, which returns the files that it names. Durable at the return: files first, then
+  /// calibration.json, replaced as a whole. Throws Error kStorageFull, kStorageWrite; nothing has changed then.
+  Calibration add(const std::string& objective,
+                  const std::function<std::vector<CalibrationFile>(Calibration& next)>& change);
+
+  [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  mutable Mutex mutex_;
+  std::vector<Calibration> versions_ FVD_GUARDED_BY(mutex_);
+};
+
+}  // namespace fvd
