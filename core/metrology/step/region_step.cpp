@@ -45,7 +45,7 @@ Bounds bounds_of(const HeightField& field, std::span<const NamedRegion> regions)
         bounds.left = std::min(bounds.left, column);
         bounds.right = std::max(bounds.right, column);
         bounds.top = std::min(bounds.top, row);
-        bounds.bottom = row;
+        bounds.bottom = std::max(bounds.bottom, row);
       }
     }
   }

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +52,10 @@ TEST(ArealGaussian, ShowsTheExpectationsOfAGaussianSurface) {
 
   const AllValues values(field);
 
+  const double worst =
+      std::max({std::abs(values.number(kSdq) / 0.5 - 1.0), std::abs(values.number(kSdr) / 11.31693 - 1.0),
+                std::abs(values.number(kSal) / 5.074545 - 1.0)});
+  RecordProperty("statistical_07", std::to_string(worst));
   EXPECT_NEAR(values.number(kSq), 1.0, 1e-9);
   EXPECT_NEAR(values.number(kSdq), 0.5, 0.005);
   EXPECT_NEAR(values.number(kSdr), 11.31693, 0.1131693);

@@ -1,8 +1,10 @@
 #include "core/metrology/filter/profile_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -28,6 +30,7 @@ std::vector<double> rough_profile(int points) {
 }
 
 TEST(ProfileFilter, IsTheLocalFitOfItsDefinitionBesideHolesAndBorders) {
+  double worst = 0.0;
   const std::vector<double> z = rough_profile(90);
   auto row = Plane<double>::unset(90, 3);  // three equal rows determine the terms in y, which are 0
   for (int y = 0; y < 3; ++y) std::copy(z.begin(), z.end(), row.row(y));
@@ -44,10 +47,12 @@ TEST(ProfileFilter, IsTheLocalFitOfItsDefinitionBesideHolesAndBorders) {
         continue;
       }
       if (order == 0 && std::isnan(value)) continue;
-      // The reference's kernel never ends.
-      EXPECT_NEAR(value, local_fit(row, {}, i, 1, order, deviation, deviation), 2e-4) << order << " " << i;
+      const double error = std::abs(value - local_fit(row, {}, i, 1, order, deviation, deviation));
+      EXPECT_LT(error, 2e-4) << order << " " << i;  // the reference's kernel never ends
+      worst = std::max(worst, error);
     }
   }
+  RecordProperty("filter_worst_profiles_with_holes", std::to_string(worst));
 }
 
 TEST(ProfileFilter, KeepsParabolasUpToBordersAndHoles) {

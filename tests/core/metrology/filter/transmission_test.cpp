@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -56,20 +58,24 @@ TEST(Transmission, OfProfilesIsThatOfTheStandardToAThousandth) {
       }
     }
   }
+  RecordProperty("filter_worst_profiles", std::to_string(worst));
   EXPECT_LT(worst, 0.001);
 }
 
 TEST(Transmission, OfSurfacesIsThatOfTheStandardToAThousandth) {
+  double worst = 0.0;
   for (const FilterMethod method : kMethods) {
     for (const double nesting_px : {5.0, 23.0, 110.0, 300.0}) {
       for (const double ratio : {0.3, 0.6, 1.0, 2.0, 4.0}) {
         if (ratio * nesting_px < 3.0) continue;
         const double passes = surface_passes(method, nesting_px, ratio * nesting_px);
-        EXPECT_NEAR(passes, filter_transmission(method, 1.0 / ratio), ratio * nesting_px < 5.0 ? 0.001 : 2e-5)
-            << nesting_px << " " << ratio;
+        const double error = std::abs(passes - filter_transmission(method, 1.0 / ratio));
+        worst = std::max(worst, error);
+        EXPECT_LT(error, ratio * nesting_px < 5.0 ? 0.001 : 2e-5) << nesting_px << " " << ratio;
       }
     }
   }
+  RecordProperty("filter_worst_surfaces", std::to_string(worst));
 }
 
 TEST(Transmission, OfTheGaussianHasTheFiguresOfTheReferenceCase) {

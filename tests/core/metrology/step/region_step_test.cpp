@@ -62,6 +62,27 @@ TEST(StepBetween, IsNegativeWhereTheUpperLiesLower) {
   EXPECT_NEAR(step.value.height_um, -8.0, 1e-11);
 }
 
+TEST(StepBetween, IsTheSameWhicheverRegionLiesFurtherDown) {
+  const HeightField field = make_field(30, 60, 0.5, 0.5, [](double, double y) { return y > 15.0 ? 8.0 : 0.0; });
+  const auto rows = [&](int from, int to) {
+    Region region(30, 60);
+    for (int row = from; row <= to; ++row) {
+      for (int column = 0; column < 30; ++column) region.at(column, row) = 1;
+    }
+    return region;
+  };
+  const Region low = rows(0, 24);
+  const Region high = rows(35, 59);
+
+  const RegionStep up = given(step_between(field, {"a", &low}, {"b", &high}, StepSlope::kFixed));
+  const RegionStep down = given(step_between(field, {"a", &high}, {"b", &low}, StepSlope::kFixed));
+
+  EXPECT_NEAR(up.value.height_um, 8.0, 1e-12);
+  EXPECT_NEAR(down.value.height_um, -8.0, 1e-12);
+  EXPECT_EQ(down.lower.points, 25 * 30);
+  EXPECT_EQ(down.upper.points, 25 * 30);
+}
+
 TEST(StepBetween, TakesTheSlopeItIsTold) {
   // The lower region is level, the upper one rises by 0.1.
   const HeightField field =
