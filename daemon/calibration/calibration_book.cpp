@@ -1,8 +1,12 @@
 #include "daemon/calibration/calibration_book.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -31,26 +35,76 @@ struct Document {
 
 void describe(Document& document, Fields& fields) {
   fields.integer("format", document.format, {kFormat, kFormat}, "of this file");
+  fields.require("format");
   fields.list("versions", document.versions, {0, kMostVersions}, "in the order in which they were accepted",
               [](Fields& in, Calibration& version) { describe(version, in); });
+  fields.require("versions");
+}
+
+std::string id_of(std::size_t number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "cal-%04zu", number);
+  return text;
+}
+
+/// Versions are never taken out, so that a number that is missing or there twice is damage.
+void check_ids(const std::vector<Calibration>& versions, Problems& problems) {
+  for (std::size_t i = 0; i < versions.size(); ++i) {
+    if (versions[i].id == id_of(i + 1)) continue;
+    problems.push_back({"/versions/" + std::to_string(i) + "/id",
+                        "\"" + versions[i].id + "\" is not " + id_of(i + 1) + ", which comes next"});
+    return;
+  }
+}
+
+/// What the text says; problems where it is not what this program writes.
+std::vector<Calibration> versions_in(const std::string& text, Problems& problems) {
+  Document document;
+  read_document(
+      text, [&document](Fields& fields) { describe(document, fields); }, problems);
+  if (problems.empty()) check_ids(document.versions, problems);
+  return std::move(document.versions);
+}
+
+/// Of any length: unlike a configuration it grows for as long as the instrument lives.
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in.is_open() || in.bad() || !fs::is_regular_file(file)) {
+    throw Error(ErrorCode::kBadInput, "cannot read " + file.string() + ": is it a file?");
+  }
+  return text.str();
 }
 
 std::vector<Calibration> read_versions(const fs::path& file) {
-  if (!fs::exists(file)) return {};
-  Document document;
+  std::error_code error;
+  const bool is_there = fs::exists(file, error);
+  if (error) throw Error(ErrorCode::kBadInput, "cannot look at " + file.string() + ": " + error.message());
+  if (!is_there) return {};
   Problems problems;
-  read_document(
-      read_text_file(file), [&document](Fields& fields) { describe(document, fields); }, problems);
+  std::vector<Calibration> versions = versions_in(text_of(file), problems);
   if (!problems.empty()) {
     throw Error(ErrorCode::kBadInput, file.string() + ": " + problems.front().pointer + ": " +
                                           problems.front().message + "; put back the file of the last backup");
   }
-  return std::move(document.versions);
+  return versions;
+}
+
+/// Constants that could not be read back must not get into the file.
+std::string checked_text(std::vector<Calibration> versions) {
+  Document document;
+  document.versions = std::move(versions);
+  std::string text = fields_to_json([&document](Fields& fields) { describe(document, fields); }).dump(2) + "\n";
+  Problems problems;
+  (void)versions_in(text, problems);
+  if (problems.empty()) return text;
+  throw Error(ErrorCode::kBadInput,
+              "these constants cannot be kept: " + problems.front().pointer + ": " + problems.front().message);
 }
 
 /// In place of the old file as a whole: a power cut leaves the one or the other.
-void write_versions(const fs::path& folder, Document document) {
-  const std::string text = fields_to_json([&document](Fields& fields) { describe(document, fields); }).dump(2) + "\n";
+void replace_file(const fs::path& folder, const std::string& text) {
   const fs::path next = folder / (std::string(kFileName) + ".new");
   std::error_code error;
   fs::remove(next, error);  // of a process that died while it wrote
@@ -62,12 +116,6 @@ void write_versions(const fs::path& folder, Document document) {
   sync_directory(folder);
 }
 
-std::string id_of(std::size_t number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "cal-%04zu", number);
-  return text;
-}
-
 }  // namespace
 
 CalibrationBook::CalibrationBook(fs::path folder)
@@ -75,10 +123,14 @@ CalibrationBook::CalibrationBook(fs::path folder)
 
 std::optional<Calibration> CalibrationBook::current(const std::string& objective) const {
   MutexLock lock(mutex_);
-  const auto newest = std::find_if(versions_.rbegin(), versions_.rend(),
-                                   [&](const Calibration& version) { return version.objective == objective; });
-  if (newest == versions_.rend()) return std::nullopt;
-  return *newest;
+  return newest(objective);
+}
+
+std::optional<Calibration> CalibrationBook::newest(const std::string& objective) const {
+  const auto found = std::find_if(versions_.rbegin(), versions_.rend(),
+                                  [&](const Calibration& version) { return version.objective == objective; });
+  if (found == versions_.rend()) return std::nullopt;
+  return *found;
 }
 
 std::optional<Calibration> CalibrationBook::find(const std::string& id) const {
@@ -96,24 +148,25 @@ std::vector<Calibration> CalibrationBook::versions() const {
 
 Calibration CalibrationBook::add(const std::string& objective,
                                  const std::function<std::vector<CalibrationFile>(Calibration& next)>& change) {
-  Calibration next = current(objective).value_or(Calibration{});
   MutexLock lock(mutex_);
+  Calibration next = newest(objective).value_or(Calibration{});
   next.id = id_of(versions_.size() + 1);
   next.objective = objective;
   next.created = iso8601_utc(std::chrono::system_clock::now());
   const std::vector<CalibrationFile> files = change(next);
+  std::vector<Calibration> all = versions_;
+  all.push_back(next);
+  const std::string text = checked_text(all);
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw Error(ErrorCode::kStorageWrite, "cannot make " + folder_.string() + ": " + error.message());
   for (const CalibrationFile& file : files) {
+    assert(file.name.starts_with(next.id) && file.name.find('/') == std::string::npos);
     fs::remove(folder_ / file.name, error);  // of a version that never came to be
     write_new_file(folder_ / file.name, file.bytes);
   }
-  Document document;
-  document.versions = versions_;
-  document.versions.push_back(next);
-  write_versions(folder_, std::move(document));
-  versions_.push_back(next);
+  replace_file(folder_, text);
+  versions_ = std::move(all);
   return next;
 }
 

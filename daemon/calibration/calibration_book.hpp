@@ -15,7 +15,7 @@ namespace fvd {
 
 /// A file of a new version, written before the version is there.
 struct CalibrationFile {
-  std::string name;  ///< without a path; "<id>-flatness.gsf"
+  std::string name;  ///< begins with the version's id, no path; "cal-0003-flatness.gsf"
   std::string bytes;
 };
 
@@ -32,14 +32,17 @@ class CalibrationBook {
   [[nodiscard]] std::vector<Calibration> versions() const;
 
   /// A new version: the objective's newest with `change` done to it, under a new id and with the time it is made. The
-  /// id is known to `change`, which returns the files that it names. Durable at the return: files first, then
-  /// calibration.json, replaced as a whole. Throws Error kStorageFull, kStorageWrite; nothing has changed then.
+  /// id is known to `change`, which returns the files that it names and does not call the book. Durable at the return:
+  /// files first, then calibration.json, replaced as a whole. Throws Error kStorageFull, kStorageWrite, and kBadInput
+  /// where a constant is out of its range; nothing has changed then.
   Calibration add(const std::string& objective,
                   const std::function<std::vector<CalibrationFile>(Calibration& next)>& change);
 
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
 
  private:
+  [[nodiscard]] std::optional<Calibration> newest(const std::string& objective) const FVD_REQUIRES(mutex_);
+
   std::filesystem::path folder_;
   mutable Mutex mutex_;
   std::vector<Calibration> versions_ FVD_GUARDED_BY(mutex_);
