@@ -8,6 +8,7 @@
 
 #include "config/nearest_name.hpp"
 #include "core/metrology/operations/region.hpp"
+#include "daemon/evaluation/field_check.hpp"
 #include "daemon/evaluation/value_names.hpp"
 
 namespace fvd {
@@ -54,6 +55,7 @@ class Checker {
 
   void check() {
     for (const auto& [name, region] : plan_.regions) check_region(name, region);
+    for (const Problem& problem : outside_every_field(plan_, "")) refuse(problem.pointer, problem.message);
     for (const auto& [name, surface] : plan_.surfaces) check_surface(name, surface);
     std::map<std::string, std::string> ids;
     for (const auto& [name, measurement] : plan_.measurements) {

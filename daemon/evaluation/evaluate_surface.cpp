@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/metrology/operations/region.hpp"
 #include "core/surface/verdict.hpp"
+#include "daemon/evaluation/field_check.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/surface_chain.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
@@ -87,6 +89,8 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
   add_missing(never_evaluated(), made.not_evaluated);
   if (!knows_window(input.measured.field)) add_missing({"correlation"}, made.not_evaluated);
   made.warnings.insert(made.warnings.end(), input.surface.warnings.begin(), input.surface.warnings.end());
+  for (EvaluationWarning& warning : partly_outside(input.plan, input.planned, metrology::grid_of(input.measured.field)))
+    made.warnings.push_back(std::move(warning));
   if (!made.reason.empty()) {
     add_invalid_values(input, made);
     invalidate(made);

@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "core/scan/continuous_scan.hpp"
+#include "daemon/evaluation/field_check.hpp"
 #include "daemon/pipeline/job_memory.hpp"
 #include "daemon/pipeline/measurement.hpp"
 
@@ -14,6 +15,9 @@ void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& 
   check_plan(plan, devices->stage);
   const int width = recipe.camera.width > 0 ? recipe.camera.width : devices->sensor_width;
   const int height = recipe.camera.height > 0 ? recipe.camera.height : devices->sensor_height;
+  const metrology::Grid field{width, height, recipe.pixel_pitch_x_um, recipe.pixel_pitch_y_um};
+  throw_if_any(outside_field(recipe.evaluation, field, "/evaluation"), ErrorCode::kRegionOutside,
+               "recipe " + recipe.id);
   require_memory(job_memory(recipe, width, height, limits.threads), width, height, limits.memory_bytes,
                  limits.pages.get());
 }

@@ -17,7 +17,8 @@ struct ComputeLimits {
   KeptPagesPtr pages = nullptr;  ///< may be null
 };
 
-/// Throws Error kNotReady without devices, kStageLimit, kBadRecipe, kMemoryBudget.
+/// Throws Error kNotReady without devices, kStageLimit, kBadRecipe, kMemoryBudget; kRegionOutside with everything of
+/// the evaluation that lies outside of the field of view, each with its JSON pointer.
 void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& devices, const ComputeLimits& limits);
 
 }  // namespace fvd

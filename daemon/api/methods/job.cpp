@@ -99,16 +99,16 @@ Answer wait_for_job(const Services& services, const Call& call, const WaitParams
 
 void add_job_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
-  methods["job.start"] = {.about = {.summary = "Starts a measurement; answers once its row is on disk",
-                                    .params = described<StartParams>(),
-                                    .result = describe_started,
-                                    .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale,
-                                               kShuttingDown, kStageLimit, kStorageFull, kDatabase, kMemoryBudget},
-                                    .moves_stage = true,
-                                    .needs_id = true},
-                          .run = with<StartParams>([&jobs = services.jobs](const Call&, const StartParams& params) {
-                            return start_job(jobs, params);
-                          })};
+  methods["job.start"] = {
+      .about = {.summary = "Starts a measurement; answers once its row is on disk",
+                .params = described<StartParams>(),
+                .result = describe_started,
+                .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale, kShuttingDown,
+                           kStageLimit, kStorageFull, kDatabase, kMemoryBudget, kRegionOutside},
+                .moves_stage = true,
+                .needs_id = true},
+      .run = with<StartParams>(
+          [&jobs = services.jobs](const Call&, const StartParams& params) { return start_job(jobs, params); })};
   methods["job.status"] = {
       .about = {.summary = "What a job is doing",
                 .params = described<OneJobParams>(),

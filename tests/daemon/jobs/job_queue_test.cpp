@@ -148,6 +148,32 @@ TEST_F(AJobQueue, TakesTheNextJobAfterARecipeThatIsRefused) {
   EXPECT_EQ(machine().snapshot()->recipe, "part");
 }
 
+TEST_F(AJobQueue, RefusesARecipeThatLooksOutsideOfTheFieldOfViewBeforeAnythingMoves) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  test::write_text(folder_.path() / "off.json", R"({"format": 2,
+    "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 5}},
+    "reconstruct": {"lateral": {"pixel_pitch_x_um": 0.5, "pixel_pitch_y_um": 0.5}},
+    "evaluation": {"regions": {"r": {"rectangle_um": {"x": 9000, "y": 0, "width": 5, "height": 5}}},
+                   "measurements": {"a": {"kind": "areal", "region": "r", "parameters": ["Sa"]},
+                                    "b": {"kind": "profile", "id": "b", "from_um": [0, 0], "to_um": [0, 9000],
+                                          "parameters": ["Ra"]}}}})");
+
+  std::string message;
+  try {
+    jobs().prepare("off");
+  } catch (const Error& error) {
+    message = error.what();
+    EXPECT_EQ(error.code(), ErrorCode::kRegionOutside);
+  }
+
+  EXPECT_NE(message.find("recipe off: /evaluation/regions/r/rectangle_um: "), std::string::npos) << message;
+  EXPECT_NE(message.find("recipe off: /evaluation/measurements/b/to_um: "), std::string::npos) << message;
+  FVD_EXPECT_ERROR(kRegionOutside, jobs().start({1, "a", "off"}));
+  EXPECT_FALSE(jobs().start({1, "a", "part"}).duplicate);
+  ASSERT_TRUE(await_end_of(1));
+}
+
 TEST_F(AJobQueue, EndsAJobThatBecomesDurableWhenTheDaemonIsAlreadyEnding) {
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
