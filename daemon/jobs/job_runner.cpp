@@ -9,6 +9,7 @@
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/recorded_slices.hpp"
+#include "daemon/jobs/part_temperature.hpp"
 #include "daemon/pipeline/reconstruct.hpp"
 
 namespace fvd {
@@ -44,7 +45,8 @@ void learn_width(const Recipe& recipe, const ResultData& scan, CurveWidthTable& 
   }
 }
 
-ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config& config) {
+ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config& config,
+                     const std::string& objective) {
   ResultData result;
   result.software_version = kVersion;
   result.created = std::chrono::system_clock::now();
@@ -52,6 +54,7 @@ ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config&
   result.job_id = job.status.job_id;
   result.seq = job.status.request.seq;
   result.part_id = job.status.request.part_id;
+  result.objective = objective;
   note_recipe(recipe, result);
   return result;
 }
@@ -100,9 +103,15 @@ JobRunner::JobEnd JobRunner::measured(const AcceptedJob& job, const std::stop_to
 
 JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_token& stop) {
   const Recipe recipe = with_learnt_width(job.recipe, deps_.store.curve_widths());
-  ResultData acquired = described(job, recipe, deps_.config);
+  ResultData acquired = described(job, recipe, deps_.config, deps_.board.read().objective);
   AtomicDirectory directory(deps_.config.paths.state_dir / "results" / job.status.job_id);
   MeasurementObserver observer = this->observer();
+  const auto tell_phase = observer.on_phase;
+  observer.on_phase = [&](std::string_view phase) {
+    // The temperature is that of the scan, not that of a homing before it.
+    if (phase == "acquiring") note_temperature(job.status.request, deps_.config.temperature, acquired);
+    tell_phase(phase);
+  };
   std::optional<SliceRecorder> recorder;
   if (recipe.keep_slices) recorder.emplace(directory);
   observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {

@@ -196,7 +196,10 @@ void describe(Recipe& recipe, Fields& fields) {
   fields.integer64("format", format, {kRecipeFormat, kRecipeFormat}, "of this document");
   fields.require("format");
   describe_description(recipe, fields);
-  fields.group("acquire", "how the slices are taken", [&](Fields& in) { describe_acquisition(recipe, in); });
+  fields.group("acquire", "how the slices are taken", [&](Fields& in) {
+    describe_acquisition(recipe, in);
+    in.text("objective", recipe.objective, 64, "name of the objective that must be the confirmed one; empty = any");
+  });
   fields.require("acquire");
   fields.group("reconstruct", "how heights are made of them", [&](Fields& in) {
     describe_heights(recipe, in);

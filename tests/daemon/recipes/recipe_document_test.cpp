@@ -110,6 +110,13 @@ TEST(Recipe, ReadsEveryKey) {
   EXPECT_TRUE(recipe.keep_slices);
 }
 
+TEST(Recipe, NamesItsObjectiveOrNone) {
+  EXPECT_EQ(parse_recipe(kSmallest, "r").objective, "");
+  const Recipe recipe = parse_recipe(with(R"(, "objective": "50x")", ""), "r");
+  EXPECT_EQ(recipe.objective, "50x");
+  EXPECT_THAT(values(recipe), HasSubstr(R"("objective":"50x")"));
+}
+
 TEST(Recipe, WritesBackWhatItRead) {
   for (const std::string& text :
        {std::string(kOldWithEveryGroup), with_focus(R"({"extra_peaks": ["nearest"]})"),
@@ -203,6 +210,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "repetitions"},
         BadRecipe{with_focus(R"({"extra_peaks": ["five_sample"]})"), "/reconstruct/focus/extra_peaks", "already"},
         BadRecipe{with_focus(R"({"min_prominence": 1.5})"), "/reconstruct/focus/min_prominence", "0..1"},
+        BadRecipe{with(R"(, "objective": 50)", ""), "/acquire/objective", "expected a text"},
+        BadRecipe{with(", \"objective\": \"" + std::string(65, 'x') + "\"", ""), "/acquire/objective", "64"},
+        BadRecipe{R"({"scan": {"start_um": 0, "step_um": 1, "slices": 3}, "objective": "50x"})", "/objective",
+                  "unknown key"},
         BadRecipe{with_camera(R"({"pixel_format": "RGB8"})"), "/acquire/camera/pixel_format", "Mono8"},
         BadRecipe{with_camera(R"({"exposure_us": 0})"), "/acquire/camera/exposure_us", "above 0"},
         BadRecipe{with_camera(R"({"exposure": 1})"), "/acquire/camera/exposure", "did you mean 'exposure_us'?"},
