@@ -37,11 +37,11 @@ struct LogConfig {
 
 /// An objective that can be on the microscope. Which one is there, a person confirms.
 struct ObjectiveConfig {
-  std::string name;                      ///< unique, 1..64 bytes
-  double na = 0.0;                       ///< numerical aperture, above 0 up to 1.7
-  double magnification = 0.0;            ///< above 0 up to 1000
-  double working_distance_mm = 0.0;      ///< above 0 up to 1000
-  std::optional<double> min_um = {};     ///< soft limits of z, inside the stage's; absent = the stage's
+  std::string name;                   ///< unique, 1..64 bytes
+  double na = 0.0;                    ///< numerical aperture, above 0 up to 1.7
+  double magnification = 0.0;         ///< above 0 up to 1000
+  double working_distance_mm = 0.0;   ///< above 0 up to 1000
+  std::optional<double> min_um = {};  ///< soft limits of z, inside the stage's; absent = the stage's
   std::optional<double> max_um = {};
 };
 

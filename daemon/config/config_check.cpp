@@ -127,8 +127,9 @@ class ConfigCheck {
     const double highest = objective.max_um.value_or(stage.max.value);
     const bool in_order = lowest < highest;
     const std::string& of_lower = objective.min_um ? min_um : max_um;
-    report_if(!in_order, of_lower, {max_um, "/stage/min_um", "/stage/max_um"},
-              "the objective's " + text(lowest) + ".." + text(highest) + " um is no range: min_um must be below max_um");
+    report_if(
+        !in_order, of_lower, {max_um, "/stage/min_um", "/stage/max_um"},
+        "the objective's " + text(lowest) + ".." + text(highest) + " um is no range: min_um must be below max_um");
     report_if(in_order && stage.take_up.value >= highest - lowest, of_lower,
               {max_um, "/stage/take_up_um", "/stage/min_um", "/stage/max_um"},
               "/stage/take_up_um of " + text(stage.take_up.value) + " leaves no room in the objective's " +

@@ -49,10 +49,9 @@ std::string person_of(const ObjectiveArguments& arguments) {
 }
 
 int confirm(const ObjectiveArguments& arguments, RpcClient client, const Terminal& terminal) {
-  const Json reply =
-      client.call("objective.confirm", {{"name", arguments.name}, {"person", person_of(arguments)}});
-  terminal.out << reply.at("objective").get<std::string>() << " confirmed by "
-               << reply.at("person").get<std::string>() << std::endl;
+  const Json reply = client.call("objective.confirm", {{"name", arguments.name}, {"person", person_of(arguments)}});
+  terminal.out << reply.at("objective").get<std::string>() << " confirmed by " << reply.at("person").get<std::string>()
+               << std::endl;
   return kExitOk;
 }
 

@@ -165,8 +165,7 @@ DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
 
 DeviceTask::Work autofocus_work(const CameraSettings& settings, const AutofocusPlan& plan) {
   return [settings, plan](const Devices& devices, const std::stop_token& stop) {
-    check_limits(devices.objective, devices.stage.info(),
-                 [&plan](const StageInfo& stage) { check_plan(plan, stage); });
+    check_limits(devices.objective, devices.stage.info(), [&plan](const StageInfo& stage) { check_plan(plan, stage); });
     (void)devices.camera.configure(settings);
     const AutofocusResult found = autofocus(devices.camera, devices.stage, devices.clock, plan, stop);
     ordered_json curve = ordered_json::array();

@@ -56,8 +56,7 @@ JobQueue::Offer JobQueue::offer(const JobRequest& request) {
   deps_.board.update([&](MachineRecord& machine) {
     machine.require(Command::kStartJob);
     machine.apply(MachineEvent::kJobOffered);
-    offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices,
-             machine.objective};
+    offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices, machine.objective};
   });
   return offer;
 }
@@ -68,7 +67,7 @@ AcceptedJob JobQueue::made_durable(const JobRequest& request, const Offer& offer
   JobRequest resolved = request;
   resolved.recipe = job.recipe.id;
   job.status = deps_.store.accept(resolved);
-  job.status.slices_planned = job.recipe.slices;
+  job.status.slices_planned = job.recipe.slices * job.recipe.repeat;
   job.status.phase = "preparing";
   return job;
 }

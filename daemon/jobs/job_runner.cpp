@@ -45,8 +45,7 @@ void learn_width(const Recipe& recipe, const ResultData& scan, CurveWidthTable& 
   }
 }
 
-ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config& config,
-                     const std::string& objective) {
+ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config& config, const std::string& objective) {
   ResultData result;
   result.software_version = kVersion;
   result.created = std::chrono::system_clock::now();
@@ -112,6 +111,11 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
     if (phase == "acquiring") note_temperature(job.status.request, deps_.config.temperature, acquired);
     tell_phase(phase);
   };
+  // In a continuous scan nobody commands the stage to be just there.
+  const auto remember_steps = [this, &recipe](const StepLog& steps) {
+    if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, steps);
+  };
+  observer.on_earlier_scan = remember_steps;
   std::optional<SliceRecorder> recorder;
   if (recipe.keep_slices) recorder.emplace(directory);
   observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
@@ -123,8 +127,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
            static_cast<std::size_t>(deps_.config.compute.queue_slices), deps_.config.camera.time_offset},
           observer, acquired, stop);
   observer.on_phase("storing");
-  // In a continuous scan nobody commands the stage to be just there.
-  if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
+  remember_steps(acquired.steps);
   if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
   JobResult result = deps_.make_result(directory, acquired);
   if (!result.error) learn_width(recipe, acquired, deps_.store.curve_widths());
@@ -148,11 +151,11 @@ MeasurementObserver JobRunner::observer() {
     deps_.ticks.tick(HostClock::now());
     change_job([phase](MachineRecord&, JobStatus& job) { job.phase = phase; });
   };
-  observer.on_slice = [this, change_job](const ScanReport& report) {
+  observer.on_slice = [this, change_job](const SliceProgress& progress) {
     deps_.ticks.tick(HostClock::now());
-    change_job([&report](MachineRecord&, JobStatus& job) {
-      job.slices_done = static_cast<int>(report.steps.size());
-      job.frames = report.frames;
+    change_job([&progress](MachineRecord&, JobStatus& job) {
+      job.slices_done = progress.slices;
+      job.frames = progress.frames;
     });
   };
   observer.on_acquired = [this, change_job] {

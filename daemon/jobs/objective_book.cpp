@@ -33,8 +33,7 @@ std::string unknown(const std::string& name, const std::vector<ObjectiveConfig>&
 
 }  // namespace
 
-ObjectiveBook::ObjectiveBook(const std::vector<ObjectiveConfig>& objectives, ObjectiveTable& table,
-                             MachineBoard& board)
+ObjectiveBook::ObjectiveBook(const std::vector<ObjectiveConfig>& objectives, ObjectiveTable& table, MachineBoard& board)
     : objectives_(objectives), table_(table), board_(board) {
   if (objectives_.empty()) return;
   const auto confirmed = known().confirmed;
@@ -81,7 +80,8 @@ void require_objective(const std::string& recipe_objective, const std::string& c
   } else if (confirmed.empty()) {
     message += "but nobody has confirmed which one is on the microscope: look, then 'fvdctl objective confirm NAME'";
   } else {
-    message += "but '" + confirmed + "' is the one that was confirmed: mount the recipe's and 'fvdctl objective confirm \"" +
+    message += "but '" + confirmed +
+               "' is the one that was confirmed: mount the recipe's and 'fvdctl objective confirm \"" +
                recipe_objective + "\"', or use another recipe";
   }
   throw Error(ErrorCode::kObjectiveMismatch, message);

@@ -19,8 +19,8 @@ namespace fvd {
 [[nodiscard]] StageInfo limited_by(const ObjectiveConfig& objective, StageInfo stage);
 
 /// Calls `check` for the stage, which throws Error kStageLimit where its limits are not kept, then for the stage with
-/// the objective's limits. objective: nullptr = none. Throws Error kStageLimit that names the objective where that one's
-/// limits are not kept, and whatever else `check` throws.
+/// the objective's limits. objective: nullptr = none. Throws Error kStageLimit that names the objective where that
+/// one's limits are not kept, and whatever else `check` throws.
 void check_limits(const ObjectiveConfig* objective, const StageInfo& stage,
                   const std::function<void(const StageInfo&)>& check);
 

@@ -47,7 +47,8 @@ std::optional<double> number_in(std::string_view text) {
 double age_s(int file, const struct stat& status, std::chrono::system_clock::time_point now) {
   struct statfs system {};
   if (::fstatfs(file, &system) == 0 && system.f_type == SYSFS_MAGIC) return 0.0;
-  const double changed_s = static_cast<double>(status.st_mtim.tv_sec) + 1e-9 * static_cast<double>(status.st_mtim.tv_nsec);
+  const double changed_s =
+      static_cast<double>(status.st_mtim.tv_sec) + 1e-9 * static_cast<double>(status.st_mtim.tv_nsec);
   return std::chrono::duration<double>(now.time_since_epoch()).count() - changed_s;
 }
 

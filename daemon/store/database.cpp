@@ -118,8 +118,8 @@ Statement& Statement::bind(std::string_view text) {
 }
 
 Statement& Statement::bind(const std::optional<double>& number) {
-  const int bound = number ? sqlite3_bind_double(statement_.get(), ++bound_, *number)
-                           : sqlite3_bind_null(statement_.get(), ++bound_);
+  const int bound =
+      number ? sqlite3_bind_double(statement_.get(), ++bound_, *number) : sqlite3_bind_null(statement_.get(), ++bound_);
   if (bound != SQLITE_OK) database_.fail("binding a number");
   return *this;
 }

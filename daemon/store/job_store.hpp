@@ -32,8 +32,8 @@ class JobStore {
   JobStore& operator=(const JobStore&) = delete;
 
   /// The job of this client and sequence number if the request repeats it: same part, same temperature, same recipe;
-  /// a request that names no recipe repeats whichever was taken. Nothing if the number is new. Throws Error kSeqConflict if the number
-  /// belongs to another request, kSeqStale if it is unknown and too old.
+  /// a request that names no recipe repeats whichever was taken. Nothing if the number is new. Throws Error
+  /// kSeqConflict if the number belongs to another request, kSeqStale if it is unknown and too old.
   [[nodiscard]] std::optional<JobStatus> find_repeated(const JobRequest& request) const;
 
   /// Makes the job's row durable and gives the job its id: unique over all starts, sortable by time, 29 characters.

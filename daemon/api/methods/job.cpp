@@ -82,9 +82,8 @@ std::optional<JobStatus> running_job(const MachineView& machine, const JobKey& k
 }
 
 Answer start_job(JobService& jobs, const StartParams& params) {
-  const auto started =
-      jobs.start({params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked(),
-                                   params.temperature_c});
+  const auto started = jobs.start(
+      {params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked(), params.temperature_c});
   return Reply{{"job_id", started.job.job_id},
                {"seq", params.seq},
                {"client", params.client.client},
@@ -105,17 +104,16 @@ Answer wait_for_job(const Services& services, const Call& call, const WaitParams
 
 void add_job_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
-  methods["job.start"] = {.about = {.summary = "Starts a measurement; answers once its row is on disk",
-                                    .params = described<StartParams>(),
-                                    .result = describe_started,
-                                    .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale,
-                                               kShuttingDown, kStageLimit, kObjectiveMismatch, kStorageFull, kDatabase,
-                                               kMemoryBudget},
-                                    .moves_stage = true,
-                                    .needs_id = true},
-                          .run = with<StartParams>([&jobs = services.jobs](const Call&, const StartParams& params) {
-                            return start_job(jobs, params);
-                          })};
+  methods["job.start"] = {
+      .about = {.summary = "Starts a measurement; answers once its row is on disk",
+                .params = described<StartParams>(),
+                .result = describe_started,
+                .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale, kShuttingDown,
+                           kStageLimit, kObjectiveMismatch, kStorageFull, kDatabase, kMemoryBudget},
+                .moves_stage = true,
+                .needs_id = true},
+      .run = with<StartParams>(
+          [&jobs = services.jobs](const Call&, const StartParams& params) { return start_job(jobs, params); })};
   methods["job.status"] = {
       .about = {.summary = "What a job is doing",
                 .params = described<OneJobParams>(),

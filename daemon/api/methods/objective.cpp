@@ -58,9 +58,7 @@ Reply objective_json(const ObjectiveConfig& objective) {
 }
 
 Reply confirmation_json(const ObjectiveConfirmation& confirmed) {
-  return {{"objective", confirmed.objective},
-          {"person", confirmed.person},
-          {"confirmed_utc", confirmed.confirmed_utc}};
+  return {{"objective", confirmed.objective}, {"person", confirmed.person}, {"confirmed_utc", confirmed.confirmed_utc}};
 }
 
 Answer list(const ObjectiveService& objectives) {
@@ -97,8 +95,8 @@ void add_objective_methods(MethodTable& methods, const Services& services) {
                 .params = described<ConfirmParams>(),
                 .result = describe_confirmed,
                 .errors = {kBadInput, kBusy, kShuttingDown, kStorageFull, kDatabase}},
-      .run = with<ConfirmParams>(
-          [&objectives = services.objectives](const Call&, const ConfirmParams& params) -> Answer {
+      .run =
+          with<ConfirmParams>([&objectives = services.objectives](const Call&, const ConfirmParams& params) -> Answer {
             return confirmation_json(objectives.confirm(params.name, checked_person(params)));
           })};
 }

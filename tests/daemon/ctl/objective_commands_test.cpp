@@ -16,7 +16,7 @@ using test::FakeRpcServer;
 using testing::HasSubstr;
 
 const json kTwenty{{"name", "20x"}, {"na", 0.4}, {"magnification", 20.0}, {"working_distance_mm", 11.0}};
-const json kFifty{{"name", "50x"},   {"na", 0.55}, {"magnification", 50.0}, {"working_distance_mm", 3.1},
+const json kFifty{{"name", "50x"},    {"na", 0.55},     {"magnification", 50.0}, {"working_distance_mm", 3.1},
                   {"min_um", -150.0}, {"max_um", 120.0}};
 
 Outcome ask(FakeRpcServer& server, std::vector<std::string> arguments) {
@@ -49,8 +49,7 @@ TEST(FvdctlObjective, SaysWhatToDoWhereNoneIsConfirmed) {
 }
 
 TEST(FvdctlObjective, SaysWhereTheConfigurationNamesNone) {
-  FakeRpcServer server(
-      {{"objective.list", FakeRpcServer::result({{"objectives", json::array()}, {"objective", ""}})}});
+  FakeRpcServer server({{"objective.list", FakeRpcServer::result({{"objectives", json::array()}, {"objective", ""}})}});
 
   const Outcome outcome = ask(server, {"list"});
 
@@ -80,8 +79,8 @@ TEST(FvdctlObjective, NeedsAName) {
 TEST(FvdctlStart, GivesTheTemperatureOfThePart) {
   FakeRpcServer server({{"job.start", FakeRpcServer::result({{"job_id", "J7"}, {"duplicate", false}})}});
 
-  const Outcome outcome = fvd::test::run_command({"--address", server.endpoint().text(), "start", "--seq", "8", "--part",
-                                                  "P1", "--temperature-c", "-3.25"});
+  const Outcome outcome = fvd::test::run_command(
+      {"--address", server.endpoint().text(), "start", "--seq", "8", "--part", "P1", "--temperature-c", "-3.25"});
 
   EXPECT_EQ(outcome.code, kExitOk) << outcome.err;
   EXPECT_EQ(server.requests().at(0)["params"]["temperature_c"], -3.25);
@@ -89,8 +88,7 @@ TEST(FvdctlStart, GivesTheTemperatureOfThePart) {
 
 TEST(FvdctlStart, RefusesATemperatureThatIsNone) {
   for (const char* text : {"nan", "inf", "-50.1", "100.5", "21C", "", "1e9"}) {
-    const Outcome outcome =
-        fvd::test::run_command({"start", "--part", "P1", "--temperature-c", text});
+    const Outcome outcome = fvd::test::run_command({"start", "--part", "P1", "--temperature-c", text});
     EXPECT_EQ(outcome.code, kExitUsage) << text;
   }
 }

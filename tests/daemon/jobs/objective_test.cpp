@@ -1,11 +1,16 @@
 /// The objective on the microscope: confirmed, kept, and what it lets jobs and commands do.
 
+#include <cerrno>
+#include <future>
+
 #include <gmock/gmock.h>
 
 #include "daemon/jobs/device_commands.hpp"
 #include "daemon/jobs/objective_book.hpp"
 #include "daemon/jobs/objective_limits.hpp"
 #include "tests/daemon/jobs/engine_bench.hpp"
+#include "tests/daemon/store/broken_disk.hpp"
+#include "tests/daemon/store/held_disk.hpp"
 #include "tests/support/expect_error.hpp"
 
 namespace fvd {
@@ -49,9 +54,9 @@ TEST_F(AnObjective, IsUnknownUntilSomebodyConfirmsIt) {
   EXPECT_EQ(objectives().known().objectives.size(), 2U);
   EXPECT_FALSE(objectives().known().confirmed.has_value());
   EXPECT_EQ(machine().snapshot()->objective, "");
-  FVD_EXPECT_ERROR_SAYING(kObjectiveMismatch, jobs().start({1, "a", "for_50x"}),
-                          AllOf(HasSubstr("'50x'"), HasSubstr("nobody has confirmed"),
-                                HasSubstr("fvdctl objective confirm")));
+  FVD_EXPECT_ERROR_SAYING(
+      kObjectiveMismatch, jobs().start({1, "a", "for_50x"}),
+      AllOf(HasSubstr("'50x'"), HasSubstr("nobody has confirmed"), HasSubstr("fvdctl objective confirm")));
   FVD_EXPECT_ERROR(kObjectiveMismatch, jobs().prepare("for_50x"));
   EXPECT_FALSE(store_->highest("plc").has_value()) << "a job that was refused has no row";
 
@@ -135,13 +140,45 @@ TEST_F(AnObjective, CannotBeAnotherWhileAJobOrACommandRuns) {
   const auto task = tasks().submit(hold.work(), TaskMotion::kNone);
   hold.began.get_future().wait();
   FVD_EXPECT_ERROR(kBusy, (void)objectives().confirm("50x", "Anna"));  // a command has the camera
-  jobs().start({1, "a", "part"});  // waits behind it
+  jobs().start({1, "a", "part"});                                      // waits behind it
   FVD_EXPECT_ERROR_SAYING(kBusy, (void)objectives().confirm("50x", "Anna"), HasSubstr("a job is accepted or runs"));
   hold.go.set_value();
   ASSERT_TRUE(await_end_of(1));
 
   EXPECT_EQ(machine().snapshot()->objective, "20x");
   EXPECT_EQ(objectives().confirm("50x", "Anna").objective, "50x");
+}
+
+TEST_F(AnObjective, LetsNothingBeginWhileItIsMadeDurable) {
+  open_devices();
+  objectives().confirm("20x", "Anna");
+  test::HeldDisk disk;
+  auto confirming = std::async(std::launch::async, [this] { return objectives().confirm("50x", "Bert"); });
+  disk.await_a_write();
+
+  FVD_EXPECT_ERROR(kBusy, jobs().start({1, "a", "part"}));
+  FVD_EXPECT_ERROR(kBusy, (void)tasks().submit(move_work(Micrometers{1.0}), TaskMotion::kMoves));
+  FVD_EXPECT_ERROR(kBusy, (void)objectives().confirm("20x", "Anna"));
+  EXPECT_EQ(machine().snapshot()->objective, "20x") << "told once it is on the disk";
+
+  disk.let_go();
+  EXPECT_EQ(confirming.get().person, "Bert");
+  EXPECT_EQ(machine().snapshot()->objective, "50x");
+  EXPECT_FALSE(jobs().start({1, "a", "part"}).duplicate);
+  ASSERT_TRUE(await_end_of(1));
+}
+
+TEST_F(AnObjective, StaysTheOldOneWhereTheDiskTakesNoOther) {
+  open_devices();
+  objectives().confirm("20x", "Anna");
+  {
+    const test::BrokenDisk full(ENOSPC, 0);
+    FVD_EXPECT_ERROR(kStorageFull, (void)objectives().confirm("50x", "Bert"));
+  }
+
+  EXPECT_EQ(machine().snapshot()->objective, "20x");
+  EXPECT_EQ(objectives().known().confirmed->objective, "20x");
+  EXPECT_EQ(objectives().confirm("50x", "Bert").objective, "50x") << "nothing is left locked";
 }
 
 TEST_F(AnObjective, KeepsJobsToItsSoftLimits) {
@@ -191,6 +228,53 @@ TEST_F(AnObjective, KeepsTheAutofocusToItsSoftLimits) {
   EXPECT_EQ(answer(autofocus_work(CameraSettings{}, plan)).error, ErrorCode::kStageLimit) << "with its take-up of 20";
   plan.from = Micrometers{-10.0};
   EXPECT_NE(answer(autofocus_work(CameraSettings{}, plan)).error, ErrorCode::kStageLimit);
+}
+
+TEST_F(AnObjective, StandsInTheResultBesideTheTemperature) {
+  config_.temperature.file = folder_.path() / "absent";
+  std::vector<ResultData> results;
+  open([&results](AtomicDirectory&, const ResultData& data) {
+    results.emplace_back();
+    results.back().objective = data.objective;
+    results.back().temperature = data.temperature;
+    results.back().warnings = data.warnings;
+    return JobResult{};
+  });
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  objectives().confirm("20x", "Anna");
+
+  JobRequest warm{1, "a", "part"};
+  warm.temperature_c = 21.5;
+  jobs().start(warm);
+  ASSERT_TRUE(await_end_of(1));
+  jobs().start({2, "a", "part"});
+  ASSERT_TRUE(await_end_of(2));
+
+  const auto unknown = [](const ResultData& result) {
+    return std::count_if(result.warnings.begin(), result.warnings.end(),
+                         [](const Warning& warning) { return warning.code == "temperature_unknown"; });
+  };
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(results[0].objective, "20x");
+  EXPECT_EQ(results[0].temperature, (Temperature{21.5, "job", 0.0}));
+  EXPECT_EQ(unknown(results[0]), 0);
+  EXPECT_FALSE(results[1].temperature.has_value());
+  EXPECT_EQ(unknown(results[1]), 1);
+  EXPECT_EQ(machine().snapshot()->job->state, JobState::kCompleted) << "a temperature ends no job";
+}
+
+TEST_F(AnObjective, IsTheSameInAllScansOfAJob) {
+  test::write_text(folder_.path() / "thrice.json",
+                   R"({"format": 2, "acquire": {"repeat": 3, "scan": {"start_um": 0, "step_um": 10, "slices": 5}}})");
+  open_devices();
+
+  const JobStatus started = jobs().start({1, "a", "thrice"}).job;
+
+  EXPECT_EQ(started.slices_planned, 15);
+  ASSERT_TRUE(await_end_of(1));
+  EXPECT_EQ(machine().snapshot()->job->slices_done, 15);
+  EXPECT_EQ(machine().snapshot()->job->frames.ok, 15U);
+  EXPECT_EQ(services_->tasks.stage_history()->scans, 3U) << "the stage is learnt from every scan";
 }
 
 TEST(ObjectiveLimits, NarrowTheStagesAndNeverWidenThem) {
