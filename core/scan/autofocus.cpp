@@ -113,10 +113,7 @@ double mean_focus(const ImageView& image, const Region& region) {
                                             : mean_laplacian(image.as<std::uint16_t>(), inner);
 }
 
-namespace {
-
-/// Before anything moves.
-void require_range(const AutofocusPlan& plan, const StageInfo& stage) {
+void check_plan(const AutofocusPlan& plan, const StageInfo& stage) {
   std::ostringstream why;
   ErrorCode code = ErrorCode::kBadInput;
   const double range_um = (plan.to - plan.from).value;
@@ -138,10 +135,8 @@ void require_range(const AutofocusPlan& plan, const StageInfo& stage) {
   throw Error(code, why.str());
 }
 
-}  // namespace
-
 AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const AutofocusPlan& plan, std::stop_token stop) {
-  require_range(plan, stage.info());
+  check_plan(plan, stage.info());
   if (!stage.status().homed) {
     throw Error(ErrorCode::kStageNotHomed, "the stage has no reference: a job homes it, or stage.home");
   }

@@ -33,6 +33,9 @@ struct AutofocusPlan {
   SettleCriterion settle;
 };
 
+/// Throws Error kBadInput, kStageLimit as autofocus() does before anything moves. context: pure.
+void check_plan(const AutofocusPlan& plan, const StageInfo& stage);
+
 struct FocusSample {
   double z_um = 0.0;   ///< measured
   double focus = 0.0;  ///< mean_focus() of the central region, grey levels

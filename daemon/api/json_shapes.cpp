@@ -103,6 +103,7 @@ void describe_machine_status(Fields& fields) {
   result.text("recipe", "the prepared recipe; empty = none");
   result.boolean("simulated", "a device is simulated");
   result.text("mode", "automatic");
+  result.text("objective", "that was confirmed; empty = none");
 }
 
 ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) {
@@ -123,7 +124,8 @@ ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) 
           {"job_id", machine.job ? machine.job->job_id : ""},
           {"recipe", machine.recipe},
           {"simulated", machine.simulated},
-          {"mode", "automatic"}};
+          {"mode", "automatic"},
+          {"objective", machine.objective}};
 }
 
 namespace {

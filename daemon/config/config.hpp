@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "drivers/registry/driver_table.hpp"
 
@@ -33,12 +35,32 @@ struct LogConfig {
   std::string level = "info";  ///< trace, debug, info, warn, error
 };
 
+/// An objective that can be on the microscope. Which one is there, a person confirms.
+struct ObjectiveConfig {
+  std::string name;                   ///< unique, 1..64 bytes
+  double na = 0.0;                    ///< numerical aperture, above 0 up to 1.7
+  double magnification = 0.0;         ///< above 0 up to 1000
+  double working_distance_mm = 0.0;   ///< above 0 up to 1000
+  std::optional<double> min_um = {};  ///< soft limits of z, inside the stage's; absent = the stage's
+  std::optional<double> max_um = {};
+};
+
+/// A file that tells the temperature of the part or of the room, as other programs or the kernel write it: one number.
+struct TemperatureConfig {
+  std::filesystem::path file;  ///< empty = none
+  double scale = 1.0;          ///< not 0; degrees Celsius = number * scale + offset_c
+  double offset_c = 0.0;       ///< -1000..1000
+  int max_age_s = 600;         ///< 1..604800; an older file says nothing of now
+};
+
 /// With a block for each kind of device.
 struct Config : DeviceConfigs {
   RpcConfig rpc;
   PathsConfig paths;
   ComputeConfig compute;
   LogConfig log;
+  std::vector<ObjectiveConfig> objectives;  ///< none = nobody asks which one is on the microscope
+  TemperatureConfig temperature;
 };
 
 }  // namespace fvd

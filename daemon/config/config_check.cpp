@@ -50,6 +50,9 @@ class ConfigCheck {
               "'" + stage_driver + "' does not go with camera driver '" + camera_driver +
                   "': recorded slices need both to be replay");
     check_paths(config_.paths);
+    check_objectives();
+    report_if(config_.temperature.scale == 0.0, "/temperature/scale", {},
+              "0 makes every number the same temperature; expected e.g. 0.001 for millidegrees");
     return std::move(found_);
   }
 
@@ -86,6 +89,51 @@ class ConfigCheck {
     report_if(paths.runtime_dir.empty(), "/paths/runtime_dir", {}, "is empty; expected a folder");
     const std::string problem = folder_problem(paths.recipe_dir);
     report_if(!problem.empty(), "/paths/recipe_dir", {}, problem);
+  }
+
+  void check_objectives() {
+    for (std::size_t i = 0; i < config_.objectives.size(); ++i) {
+      check_name(i);
+      check_soft_limits(config_.objectives[i], "/objectives/" + std::to_string(i));
+    }
+  }
+
+  void check_name(std::size_t index) {
+    const std::string& name = config_.objectives[index].name;
+    const std::string pointer = "/objectives/" + std::to_string(index) + "/name";
+    const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
+    report_if(name.empty() || !plain, pointer, {}, "'" + name + "' is no name; expected printable ASCII characters");
+    for (std::size_t other = 0; other < index; ++other) {
+      if (config_.objectives[other].name != name) continue;
+      report_if(true, pointer, {}, "'" + name + "' is the name of /objectives/" + std::to_string(other) + " too");
+      return;
+    }
+  }
+
+  void check_soft_limits(const ObjectiveConfig& objective, const std::string& place) {
+    const StageConfig& stage = config_.stage;
+    const std::string min_um = place + "/min_um";
+    const std::string max_um = place + "/max_um";
+    const std::string range = text(stage.min.value) + ".." + text(stage.max.value);
+    const auto outside = [&stage](std::optional<double> z_um) {
+      return z_um && (*z_um < stage.min.value || *z_um > stage.max.value);
+    };
+    for (const auto& [pointer, z_um] : {std::pair(min_um, objective.min_um), std::pair(max_um, objective.max_um)}) {
+      report_if(outside(z_um), pointer, {"/stage/min_um", "/stage/max_um"},
+                text(z_um.value_or(0.0)) + " is outside the stage's limits, " + range + " um");
+    }
+    if (outside(objective.min_um) || outside(objective.max_um)) return;
+    const double lowest = objective.min_um.value_or(stage.min.value);
+    const double highest = objective.max_um.value_or(stage.max.value);
+    const bool in_order = lowest < highest;
+    const std::string& of_lower = objective.min_um ? min_um : max_um;
+    report_if(
+        !in_order, of_lower, {max_um, "/stage/min_um", "/stage/max_um"},
+        "the objective's " + text(lowest) + ".." + text(highest) + " um is no range: min_um must be below max_um");
+    report_if(in_order && stage.take_up.value >= highest - lowest, of_lower,
+              {max_um, "/stage/take_up_um", "/stage/min_um", "/stage/max_um"},
+              "/stage/take_up_um of " + text(stage.take_up.value) + " leaves no room in the objective's " +
+                  text(lowest) + ".." + text(highest) + " um");
   }
 
   const Config& config_;

@@ -35,6 +35,34 @@ void describe(ComputeConfig& compute, Fields& fields) {
   fields.integer("queue_slices", compute.queue_slices, {1, 64}, "slices between camera and computation");
 }
 
+void describe(ObjectiveConfig& objective, Fields& fields) {
+  constexpr std::size_t kMaxObjective = 64;
+  static constexpr NumberRange kZ_um{-1e6, 1e6};
+  fields.text("name", objective.name, kMaxObjective, "that recipes and objective.confirm give; unique");
+  fields.require("name");
+  fields.number("na", objective.na, positive(1.7), "numerical aperture");
+  fields.require("na");
+  fields.number("magnification", objective.magnification, positive(1000.0), "as engraved");
+  fields.require("magnification");
+  fields.number("working_distance_mm", objective.working_distance_mm, positive(1000.0), "from its front to the focus");
+  fields.require("working_distance_mm");
+  fields.optional("min_um", objective.min_um, [](Fields& in, double& value) {
+    in.number("min_um", value, kZ_um, "lowest z with this objective, take-up included; absent = the stage's");
+  });
+  fields.optional("max_um", objective.max_um, [](Fields& in, double& value) {
+    in.number("max_um", value, kZ_um, "highest z with this objective; absent = the stage's");
+  });
+}
+
+void describe(TemperatureConfig& temperature, Fields& fields) {
+  path(fields, "file", temperature.file,
+       "text file with one number, e.g. /sys/class/hwmon/hwmon0/temp1_input; read when a scan begins; empty = none");
+  fields.number("scale", temperature.scale, {-1e3, 1e3}, "degrees Celsius per unit of the file; 0.001 = millidegrees");
+  fields.number("offset_c", temperature.offset_c, {-1000.0, 1000.0}, "added to number * scale");
+  fields.integer("max_age_s", temperature.max_age_s, {1, 604800},
+                 "since the file was written; an older one counts as unknown; of sysfs none is old");
+}
+
 }  // namespace
 
 void describe(Config& config, Fields& fields) {
@@ -45,6 +73,11 @@ void describe(Config& config, Fields& fields) {
   fields.group("log", "logging", [&](Fields& in) {
     in.choice("level", config.log.level, {"trace", "debug", "info", "warn", "error"}, "least severe level logged");
   });
+  fields.list("objectives", config.objectives, {0, 20},
+              "objectives that can be on the microscope; a person confirms which one is there",
+              [](Fields& in, ObjectiveConfig& objective) { describe(objective, in); });
+  fields.group("temperature", "where the temperature is read that results tell",
+               [&](Fields& in) { describe(config.temperature, in); });
 }
 
 }  // namespace fvd

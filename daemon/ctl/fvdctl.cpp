@@ -1,5 +1,6 @@
 #include "daemon/ctl/fvdctl.hpp"
 
+#include <charconv>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "daemon/ctl/export_command.hpp"
 #include "daemon/ctl/job_commands.hpp"
 #include "daemon/ctl/measure_command.hpp"
+#include "daemon/ctl/objective_commands.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/recipe_commands.hpp"
 #include "daemon/ctl/report_command.hpp"
@@ -45,6 +47,7 @@ struct Arguments {
   StackChoice suggest_choice;
   StageArguments stage;
   RecipeArguments recipe;
+  ObjectiveArguments objective;
 };
 
 RpcClient connect(const Arguments& arguments) {
@@ -139,6 +142,15 @@ std::string check_seq(const std::string& text) {
   return "--seq: '" + text + "' is neither auto nor a number from 1 to 2^53-1";
 }
 
+/// A number of degrees as job.start takes it; "nan" is none.
+std::string check_temperature(const std::string& text) {
+  double celsius = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), celsius);
+  const bool number = error == std::errc() && end == text.data() + text.size();
+  if (number && celsius >= -50.0 && celsius <= 100.0) return {};
+  return "--temperature-c: '" + text + "' is no number from -50 to 100";
+}
+
 using Command = std::function<int()>;
 
 CLI::Option* add_line_options(CLI::App& sub, StageArguments& a) {
@@ -212,6 +224,8 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
       ->capture_default_str();
   sub->add_option("--part", a.start.part_id, "part id")->required();
   sub->add_option("--recipe", a.start.recipe, "recipe id; default: the prepared one");
+  sub->add_option("--temperature-c", a.start.temperature_c, "of the part, degrees Celsius")
+      ->check(CLI::Validator(check_temperature, "C in [-50 - 100]"));
   sub->add_flag("--watch", a.watch, "follow the job to its end");
 
   command("wait", "wait for the end of a job and print its status", [&] {
@@ -251,6 +265,9 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_stage_commands(app, a.stage, terminal, chosen);
   add_recipe_commands(
       app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
+
+  add_objective_commands(
+      app, a.objective, [&a] { return connect(a); }, terminal, chosen);
 
   sub = command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
                 [&] { return run_suggest(a.suggest_source, a.suggest_choice, terminal); });

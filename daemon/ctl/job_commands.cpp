@@ -67,6 +67,7 @@ Json start_job(RpcClient& client, const StartOptions& options, const std::string
   if (!options.seq) seq = client.call("job.latest", {{"client", owner}}).value("seq", std::int64_t{0}) + 1;
   Json params{{"seq", seq}, {"part_id", options.part_id}, {"client", owner}};
   if (!options.recipe.empty()) params["recipe"] = options.recipe;
+  if (options.temperature_c) params["temperature_c"] = *options.temperature_c;
   return client.call("job.start", params);
 }
 

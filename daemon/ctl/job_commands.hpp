@@ -14,6 +14,7 @@ struct StartOptions {
   std::optional<std::int64_t> seq;  ///< absent = one after the client's highest that the daemon knows
   std::string part_id;
   std::string recipe;
+  std::optional<double> temperature_c = {};  ///< -50..100, of the part
 };
 
 /// The client whose sequence numbers fvdctl uses unless --client says another; the PLC counts its own.

@@ -96,6 +96,10 @@ void describe(ResultData& data, const ProcessOptions& options, const Recipe& rec
     data.pixel_pitch_y_um = stack.list().pixel_pitch_y_um;
   }
   data.warnings = options.warnings;
+  if (recipe.repeat > 1) {
+    data.warnings.push_back({"one_scan", "the recipe asks for " + std::to_string(recipe.repeat) +
+                                             " scans at /acquire/repeat; recorded slices are one"});
+  }
   data.slices_planned = stack.slices();
   data.simulated = options.simulated;
 }

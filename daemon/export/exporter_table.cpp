@@ -33,6 +33,8 @@ std::span<const Exporter> exporter_table() {
       Exporter{"sigma.tiff", kResult, kQuick, sigma_tiff_file, nullptr, "tiff"},
       Exporter{"height_smooth.tiff", kSmoothedMap, kQuick, smooth_height_tiff_file},
       Exporter{"sigma_smooth.tiff", kSmoothedMap, kQuick, smooth_sigma_tiff_file},
+      Exporter{"repeat_sd.tiff", kRepeatedScans, kQuick, repeat_sd_tiff_file},
+      Exporter{"repeat_sd.gsf", kRepeatedScans, kQuick, repeat_sd_gsf_file, nullptr, "gsf", true},
       Exporter{"height.gsf", kResult, kQuick, gsf_file, nullptr, "gsf"},
       Exporter{"sigma.gsf", kResult, kQuick, nullptr, surface_file<write_sigma_gsf>, "gsf", true},
       Exporter{"mask.png", kResult, kQuick, mask_png_file},

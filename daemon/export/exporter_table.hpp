@@ -15,9 +15,10 @@ namespace fvd {
 
 /// What an exporter reads, which also decides how many files it makes.
 enum class ExportNeed {
-  kResult,        ///< the result with its height map: one file
-  kSmoothedMap,   ///< the smoothed heights: one file, none where they were not asked for
-  kEachExtraMap,  ///< a height map of another peak method: one file per map, none where there is none
+  kResult,         ///< the result with its height map: one file
+  kSmoothedMap,    ///< the smoothed heights: one file, none where they were not asked for
+  kRepeatedScans,  ///< the scatter of several scans: one file, none where there was one scan
+  kEachExtraMap,   ///< a height map of another peak method: one file per map, none where there is none
 };
 
 /// Slow exporters begin first, so that at the end none runs alone.

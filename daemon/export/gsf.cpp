@@ -54,6 +54,14 @@ std::string gsf_file(const ExportInput& input) {
   return encode_gsf(input.map.height_m, {view.origin.title, view.pitch_x_um, view.pitch_y_um, view.origin.facts()});
 }
 
+std::string repeat_sd_gsf_file(const ExportInput& input) {
+  const SurfaceView view = surface_view(input);
+  const RepeatedScans& repeated = input.data.repeated.value();
+  return encode_gsf(repeated.sd_m,
+                    {view.origin.title + ": standard deviation of " + std::to_string(repeated.scans) + " scans",
+                     view.pitch_x_um, view.pitch_y_um, view.origin.facts()});
+}
+
 void write_gsf(const SurfaceView& surface, const ByteSink& sink) {
   write_field(surface.height_m, surface, surface.origin.title, sink);
 }

@@ -30,6 +30,9 @@ struct GsfHeader {
 /// The exporter: encode_gsf() of the input's heights, with where they come from.
 [[nodiscard]] std::string gsf_file(const ExportInput& input);
 
+/// The scatter of several scans; data.repeated is there.
+[[nodiscard]] std::string repeat_sd_gsf_file(const ExportInput& input);
+
 /// The same bytes of any surface, piece by piece: heights, and standard errors, which are there.
 void write_gsf(const SurfaceView& surface, const ByteSink& sink);
 void write_sigma_gsf(const SurfaceView& surface, const ByteSink& sink);

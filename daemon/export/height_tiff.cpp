@@ -119,6 +119,12 @@ std::string smooth_sigma_tiff_file(const ExportInput& input) {
                             tiff_tags(input, "standard error of smoothed heights"));
 }
 
+std::string repeat_sd_tiff_file(const ExportInput& input) {
+  return encode_height_tiff(
+      input.data.repeated.value().sd_m,
+      tiff_tags(input, "standard deviation of " + std::to_string(input.data.repeated->scans) + " scans"));
+}
+
 std::string sigma_tiff_file(const ExportInput& input) {
   return encode_height_tiff(input.map.sigma_m, tiff_tags(input, "standard error"));
 }

@@ -27,5 +27,7 @@ struct TiffTags {
 /// Of data.smoothed, which is there.
 [[nodiscard]] std::string smooth_height_tiff_file(const ExportInput& input);
 [[nodiscard]] std::string smooth_sigma_tiff_file(const ExportInput& input);
+/// Of data.repeated, which is there.
+[[nodiscard]] std::string repeat_sd_tiff_file(const ExportInput& input);
 
 }  // namespace fvd

@@ -248,6 +248,9 @@ std::string result_json_text(const Result& result) {
   json["focus"] = focus(result.focus);
   json["frames"] = frames(result.frames);
   json["slices"] = slices(result.slices);
+  if (result.repeat) {
+    json["repeat"] = {{"scans", result.repeat->scans}, {"sd_rms_um", um_or_null(result.repeat->sd_rms_um)}};
+  }
   json["steps"] = steps(result);
   json["stage_in_curves"] = stage(result.stage);
   json["times"] = times(result);

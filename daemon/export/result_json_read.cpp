@@ -308,6 +308,10 @@ Result read_result_json(std::string_view text) {
   result.focus = focus(root.at("focus"));
   result.frames = frames(root.at("frames"));
   result.slices = slices(root.at("slices"));
+  if (root.has("repeat")) {
+    const Node repeat = root.at("repeat");
+    result.repeat = Result::Repeat{repeat.at("scans").integer<int>(), repeat.at("sd_rms_um").optional_number()};
+  }
   result.steps = steps(root.at("steps"));
   if (root.at("steps").has("encoder_resolution_um")) {
     result.encoder_resolution_um = root.at("steps").at("encoder_resolution_um").number();

@@ -55,6 +55,9 @@ std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ResultData
       case ExportNeed::kSmoothedMap:
         if (data.smoothed) add(exporter, data.map, data.peak);
         break;
+      case ExportNeed::kRepeatedScans:
+        if (data.repeated) add(exporter, data.map, data.peak);
+        break;
       case ExportNeed::kEachExtraMap:
         for (const auto& [method, map] : data.extra_maps) add(exporter, map, method);
         break;

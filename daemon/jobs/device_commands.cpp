@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <exception>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/image_png.hpp"
 #include "daemon/export/preview_hub.hpp"
+#include "daemon/jobs/objective_limits.hpp"
 
 namespace fvd {
 
@@ -104,6 +106,14 @@ void drop_oldest(const fs::path& folder) {
   for (std::size_t i = 0; i + kSnapsKept < snaps.size(); ++i) fs::remove(snaps[i], error);
 }
 
+void require_target(Micrometers target, const StageInfo& stage) {
+  if (target >= stage.min && target <= stage.max) return;
+  std::ostringstream message;
+  message << "a target of " << target.value << " um is outside " << stage.min.value << ".." << stage.max.value
+          << " um; nothing was moved";
+  throw Error(ErrorCode::kStageLimit, message.str());
+}
+
 }  // namespace
 
 DeviceTask::Work snap_work(const CameraSettings& settings) {
@@ -155,6 +165,7 @@ DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
 
 DeviceTask::Work autofocus_work(const CameraSettings& settings, const AutofocusPlan& plan) {
   return [settings, plan](const Devices& devices, const std::stop_token& stop) {
+    check_limits(devices.objective, devices.stage.info(), [&plan](const StageInfo& stage) { check_plan(plan, stage); });
     (void)devices.camera.configure(settings);
     const AutofocusResult found = autofocus(devices.camera, devices.stage, devices.clock, plan, stop);
     ordered_json curve = ordered_json::array();
@@ -172,6 +183,8 @@ DeviceTask::Work home_work() {
 
 DeviceTask::Work move_work(Micrometers target) {
   return [target](const Devices& devices, const std::stop_token& stop) {
+    check_limits(devices.objective, devices.stage.info(),
+                 [target](const StageInfo& stage) { require_target(target, stage); });
     const MoveRecord move = devices.stage.move_to(target, SettleCriterion{}, stop);
     return ordered_json{{"z_um", move.position.value}}.dump();
   };

@@ -13,6 +13,7 @@
 #include "core/base/mutex.hpp"
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
+#include "daemon/config/config.hpp"
 
 namespace fvd {
 
@@ -21,6 +22,7 @@ struct Devices {
   Axis& stage;
   Clock& clock;
   std::filesystem::path state_dir;
+  const ObjectiveConfig* objective = nullptr;  ///< that was confirmed, and does not change meanwhile; nullptr = none
 };
 
 /// What a command does to the axis: a part may not be touched while a command moves it.

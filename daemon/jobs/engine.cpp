@@ -37,6 +37,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
                {config.stage.min, config.stage.max, config.stage.take_up, config.stage.speed_um_per_s},
                deps.store.recipe_versions()),
       board_(constants(config, deps.store), deps.store.latest()),
+      objectives_(config.objectives, deps.store.objectives(), board_),
       hub_(deps.openers, deps.clock,
            [this](bool at_rest) {
              board_.update([at_rest](MachineRecord& machine) {
@@ -44,7 +45,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              });
            }),
       ticks_("fvd-machine", kLongestStep),
-      tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir}),
+      tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir, config.objectives}),
       runner_(
           {config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, deps.make_result}),
       jobs_({deps.store,
@@ -53,7 +54,8 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              runner_,
              {pool_.threads(), memory_budget_bytes(config), pages_},
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
-             [this] { return tasks_.task_stop(); }}),
+             [this] { return tasks_.task_stop(); },
+             config.objectives}),
       thread_(hub_, board_, work_, ticks_, [this] { runner_.store_late_end(); }) {
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {

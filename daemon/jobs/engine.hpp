@@ -11,6 +11,7 @@
 #include "daemon/jobs/job_runner.hpp"
 #include "daemon/jobs/machine_board.hpp"
 #include "daemon/jobs/machine_thread.hpp"
+#include "daemon/jobs/objective_book.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/task_runner.hpp"
 #include "daemon/jobs/work_queue.hpp"
@@ -41,7 +42,7 @@ class Engine {
   /// called once.
   void start() { thread_.start(); }
 
-  [[nodiscard]] Services services() { return {board_, jobs_, jobs_, tasks_, recipes_}; }
+  [[nodiscard]] Services services() { return {board_, jobs_, jobs_, tasks_, recipes_, objectives_}; }
 
   /// Takes no more jobs and commands from now on, and asks what runs to end; returns at once. context: any thread.
   void shut_down();
@@ -56,6 +57,7 @@ class Engine {
   RecipeBook recipes_;
   PreviewHub preview_;
   MachineBoard board_;
+  ObjectiveBook objectives_;
   DeviceHub hub_;
   WorkQueue work_;
   ThreadTicks ticks_;  // of thread_

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/large_array.hpp"
+#include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/recipes/recipe.hpp"
 
@@ -17,8 +18,10 @@ struct ComputeLimits {
   KeptPagesPtr pages = nullptr;  ///< may be null
 };
 
-/// Throws Error kNotReady without devices, kStageLimit, kBadRecipe, kMemoryBudget; kRegionOutside with everything of
-/// the evaluation that lies outside of the field of view, each with its JSON pointer.
-void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& devices, const ComputeLimits& limits);
+/// objective: that was confirmed; nullptr = none. Throws Error kNotReady without devices, kStageLimit, kBadRecipe,
+/// kMemoryBudget; kRegionOutside with everything of the evaluation that lies outside of the field of view, each with
+/// its JSON pointer.
+void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& devices,
+                        const ObjectiveConfig* objective, const ComputeLimits& limits);
 
 }  // namespace fvd

@@ -1,6 +1,8 @@
 #include "daemon/jobs/job_queue.hpp"
 
 #include "core/base/error.hpp"
+#include "daemon/jobs/objective_book.hpp"
+#include "daemon/jobs/objective_limits.hpp"
 
 namespace fvd {
 
@@ -54,18 +56,18 @@ JobQueue::Offer JobQueue::offer(const JobRequest& request) {
   deps_.board.update([&](MachineRecord& machine) {
     machine.require(Command::kStartJob);
     machine.apply(MachineEvent::kJobOffered);
-    offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices};
+    offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices, machine.objective};
   });
   return offer;
 }
 
 AcceptedJob JobQueue::made_durable(const JobRequest& request, const Offer& offer) {
   AcceptedJob job;
-  job.recipe = checked_recipe(offer.recipe_id, offer.devices);
+  job.recipe = checked_recipe(offer);
   JobRequest resolved = request;
   resolved.recipe = job.recipe.id;
   job.status = deps_.store.accept(resolved);
-  job.status.slices_planned = job.recipe.slices;
+  job.status.slices_planned = job.recipe.slices * job.recipe.repeat;
   job.status.phase = "preparing";
   return job;
 }
@@ -92,12 +94,13 @@ void JobQueue::accept(const AcceptedJob& job) {
   if (!posted) deps_.runner.refuse(job);
 }
 
-Recipe JobQueue::checked_recipe(const std::string& recipe_id, const std::optional<DeviceFacts>& devices) const {
-  if (recipe_id.empty()) {
+Recipe JobQueue::checked_recipe(const Offer& offer) const {
+  if (offer.recipe_id.empty()) {
     throw Error(ErrorCode::kUnknownRecipe, "no recipe is named and none is prepared: name one or call recipe.prepare");
   }
-  Recipe recipe = deps_.load_recipe(recipe_id);
-  require_acceptable(recipe, devices, deps_.limits);
+  Recipe recipe = deps_.load_recipe(offer.recipe_id);
+  require_objective(recipe.objective, offer.objective, deps_.objectives);
+  require_acceptable(recipe, offer.devices, find_objective(deps_.objectives, offer.objective), deps_.limits);
   return recipe;
 }
 
@@ -137,7 +140,7 @@ void JobQueue::stop_job() {
 void JobQueue::prepare(const std::string& recipe_id) {
   const MachineRecord now = deps_.board.read();
   now.require(Command::kPrepareRecipe);
-  const Recipe recipe = checked_recipe(recipe_id, now.devices);
+  const Recipe recipe = checked_recipe({recipe_id, now.devices, now.objective});
   deps_.board.update([&](MachineRecord& machine) {
     machine.require(Command::kPrepareRecipe);
     machine.recipe = recipe.id;

@@ -34,6 +34,7 @@ class JobQueue final : public JobService, public ResultService {
     ComputeLimits limits;
     std::function<Recipe(const std::string& recipe_id)> load_recipe;  ///< throws as load_recipe() does
     std::function<std::stop_source()> task_stop;                      ///< as TaskRunner::task_stop()
+    const std::vector<ObjectiveConfig>& objectives;                   ///< of the configuration
   };
   explicit JobQueue(Dependencies dependencies) : deps_(std::move(dependencies)) {}
 
@@ -56,13 +57,14 @@ class JobQueue final : public JobService, public ResultService {
   struct Offer {
     std::string recipe_id;
     std::optional<DeviceFacts> devices;
+    std::string objective;  ///< that was confirmed
   };
 
   [[nodiscard]] static RequestKey key_of(const JobRequest& request) { return {request.client, request.seq}; }
   [[nodiscard]] Offer offer(const JobRequest& request);
   [[nodiscard]] AcceptedJob made_durable(const JobRequest& request, const Offer& offer);
   void accept(const AcceptedJob& job);
-  [[nodiscard]] Recipe checked_recipe(const std::string& recipe_id, const std::optional<DeviceFacts>& devices) const;
+  [[nodiscard]] Recipe checked_recipe(const Offer& offer) const;
   [[nodiscard]] std::optional<JobStatus> on_board(const JobKey& key) const;
 
   const Dependencies deps_;

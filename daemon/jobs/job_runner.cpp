@@ -9,6 +9,7 @@
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/recorded_slices.hpp"
+#include "daemon/jobs/part_temperature.hpp"
 #include "daemon/pipeline/reconstruct.hpp"
 
 namespace fvd {
@@ -44,7 +45,7 @@ void learn_width(const Recipe& recipe, const ResultData& scan, CurveWidthTable& 
   }
 }
 
-ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config& config) {
+ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config& config, const std::string& objective) {
   ResultData result;
   result.software_version = kVersion;
   result.created = std::chrono::system_clock::now();
@@ -52,6 +53,7 @@ ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config&
   result.job_id = job.status.job_id;
   result.seq = job.status.request.seq;
   result.part_id = job.status.request.part_id;
+  result.objective = objective;
   note_recipe(recipe, result);
   return result;
 }
@@ -100,9 +102,20 @@ JobRunner::JobEnd JobRunner::measured(const AcceptedJob& job, const std::stop_to
 
 JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_token& stop) {
   const Recipe recipe = with_learnt_width(job.recipe, deps_.store.curve_widths());
-  ResultData acquired = described(job, recipe, deps_.config);
+  ResultData acquired = described(job, recipe, deps_.config, deps_.board.read().objective);
   AtomicDirectory directory(deps_.config.paths.state_dir / "results" / job.status.job_id);
   MeasurementObserver observer = this->observer();
+  const auto tell_phase = observer.on_phase;
+  observer.on_phase = [&](std::string_view phase) {
+    // The temperature is that of the scan, not that of a homing before it.
+    if (phase == "acquiring") note_temperature(job.status.request, deps_.config.temperature, acquired);
+    tell_phase(phase);
+  };
+  // In a continuous scan nobody commands the stage to be just there.
+  const auto remember_steps = [this, &recipe](const StepLog& steps) {
+    if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, steps);
+  };
+  observer.on_earlier_scan = remember_steps;
   std::optional<SliceRecorder> recorder;
   if (recipe.keep_slices) recorder.emplace(directory);
   observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
@@ -114,8 +127,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
            static_cast<std::size_t>(deps_.config.compute.queue_slices), deps_.config.camera.time_offset},
           observer, acquired, stop);
   observer.on_phase("storing");
-  // In a continuous scan nobody commands the stage to be just there.
-  if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, acquired.steps);
+  remember_steps(acquired.steps);
   if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
   JobResult result = deps_.make_result(directory, acquired);
   if (!result.error) learn_width(recipe, acquired, deps_.store.curve_widths());
@@ -139,11 +151,11 @@ MeasurementObserver JobRunner::observer() {
     deps_.ticks.tick(HostClock::now());
     change_job([phase](MachineRecord&, JobStatus& job) { job.phase = phase; });
   };
-  observer.on_slice = [this, change_job](const ScanReport& report) {
+  observer.on_slice = [this, change_job](const SliceProgress& progress) {
     deps_.ticks.tick(HostClock::now());
-    change_job([&report](MachineRecord&, JobStatus& job) {
-      job.slices_done = static_cast<int>(report.steps.size());
-      job.frames = report.frames;
+    change_job([&progress](MachineRecord&, JobStatus& job) {
+      job.slices_done = progress.slices;
+      job.frames = progress.frames;
     });
   };
   observer.on_acquired = [this, change_job] {

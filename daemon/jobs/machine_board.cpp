@@ -16,7 +16,19 @@ void MachineRecord::set_devices(const std::optional<DeviceFailure>& why_not) {
   failure = why_not;
 }
 
+void MachineRecord::require_objective_unused() const {
+  if (state.halted) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
+  if (state.job != JobStage::kNone) {
+    throw Error(ErrorCode::kBusy, "a job is accepted or runs with the objective '" + objective +
+                                      "': confirm another when the job has ended");
+  }
+  if (state.task != TaskState::kNone || confirming) {
+    throw Error(ErrorCode::kBusy, "the devices are busy with another command; try again when it is done");
+  }
+}
+
 void MachineRecord::require(Command command) const {
+  if (confirming) throw Error(ErrorCode::kBusy, "an objective is being confirmed; try again when it is done");
   switch (refusal(state, command)) {
     case Refusal::kNone:
       return;
@@ -81,6 +93,7 @@ void MachineBoard::publish_locked() {
   status->state = scan_state(record_.state);
   status->signals = signals(record_.state);
   status->recipe = record_.recipe;
+  status->objective = record_.objective;
   status->job = record_.job;
   status->results_waiting = constants_.results_waiting();
   status->simulated = constants_.simulated || (record_.devices && record_.devices->simulated);

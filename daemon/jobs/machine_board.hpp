@@ -22,6 +22,8 @@ struct MachineRecord {
   std::optional<JobStatus> job;          ///< the running or the latest job
   std::optional<DeviceFailure> failure;  ///< why the devices cannot be used
   std::optional<DeviceFacts> devices;    ///< of the devices when they were opened last
+  std::string objective;                 ///< that was confirmed, empty = none
+  bool confirming = false;               ///< another one is being made durable: nothing that rests on it begins
 
   /// Ignores an event that its table does not allow.
   void apply(MachineEvent event);
@@ -29,6 +31,9 @@ struct MachineRecord {
   void set_devices(const std::optional<DeviceFailure>& why_not);
   /// Throws Error kShuttingDown, kBusy, kNotReady.
   void require(Command command) const;
+  /// That the objective may be another one from now on. Throws Error kShuttingDown; kBusy while a job is accepted or
+  /// runs, while a command has the devices, while another confirmation is made durable.
+  void require_objective_unused() const;
 };
 
 /// context: thread-safe. A reader waits for the copy of a pointer alone. The log is written, and the listener called,

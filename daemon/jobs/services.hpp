@@ -13,16 +13,19 @@
 
 #include "core/base/error.hpp"
 #include "core/stage/step_history.hpp"
+#include "daemon/config/config.hpp"
 #include "daemon/jobs/device_task.hpp"
 #include "daemon/jobs/machine_state.hpp"
 #include "daemon/recipes/recipe_service.hpp"
 #include "daemon/store/job_status.hpp"
+#include "daemon/store/objective_table.hpp"
 
 namespace fvd {
 
 struct MachineStatus {
   ScanState state = ScanState::kPreoperational;
   std::string recipe;            ///< prepared recipe, empty = none
+  std::string objective;         ///< confirmed objective, empty = none
   std::optional<JobStatus> job;  ///< the running or the latest job
   Signals signals;
   int results_waiting = 0;  ///< completed and not acknowledged
@@ -55,8 +58,8 @@ class JobService {
   };
   /// Accepts a job and returns after its row is durable; the scan runs later on the machine's thread. A repeated
   /// request returns the existing job, also while the first is still being made durable: it waits for it then. Throws
-  /// Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kMemoryBudget, kSeqConflict, kSeqStale,
-  /// kStorageFull, kDatabase, kShuttingDown.
+  /// Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kObjectiveMismatch, kMemoryBudget,
+  /// kSeqConflict, kSeqStale, kStorageFull, kDatabase, kShuttingDown.
   virtual Started start(const JobRequest& request) = 0;
 
   /// Throws Error kUnknownJob.
@@ -69,7 +72,7 @@ class JobService {
   virtual JobStatus abort(const JobKey& key) = 0;
 
   /// Loads and checks a recipe and makes it the prepared one. Throws Error kUnknownRecipe, kBadRecipe, kStageLimit,
-  /// kBusy.
+  /// kObjectiveMismatch, kMemoryBudget, kBusy.
   virtual void prepare(const std::string& recipe_id) = 0;
 };
 
@@ -105,6 +108,23 @@ class TaskService {
   [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
 };
 
+/// Which objective is on the microscope, as people confirm it.
+/// context: as JobService.
+class ObjectiveService {
+ public:
+  virtual ~ObjectiveService() = default;
+
+  struct Known {
+    std::vector<ObjectiveConfig> objectives;         ///< that the configuration names
+    std::optional<ObjectiveConfirmation> confirmed;  ///< of one of these; nothing = nobody confirmed one yet
+  };
+  [[nodiscard]] virtual Known known() const = 0;
+
+  /// Durable at the return: a restart does not change it. person: who says so. Throws Error kBadInput for a name that
+  /// the configuration has not, kBusy while a job or a command runs, kShuttingDown, kDatabase, kStorageFull.
+  virtual ObjectiveConfirmation confirm(const std::string& name, const std::string& person) = 0;
+};
+
 /// All that the API is built on; each may be another object.
 struct Services {
   MachineView& machine;
@@ -112,6 +132,7 @@ struct Services {
   ResultService& results;
   TaskService& tasks;
   RecipeService& recipes;
+  ObjectiveService& objectives;
 };
 
 }  // namespace fvd

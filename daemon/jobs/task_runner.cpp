@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "daemon/jobs/device_commands.hpp"
+#include "daemon/jobs/objective_limits.hpp"
 
 namespace fvd {
 
@@ -66,7 +67,8 @@ void TaskRunner::run(DeviceTask& task, const std::stop_token& stop) {
 DeviceTask::Outcome TaskRunner::performed(const DeviceTask& task, const std::stop_token& stop) const {
   // Gone before the camera may be given up: its end waits for a call that is under way.
   const std::stop_callback wake(stop, [this] { deps_.hub.camera().interrupt(); });
-  return task.perform({deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.state_dir}, stop);
+  const ObjectiveConfig* objective = find_objective(deps_.objectives, deps_.board.read().objective);
+  return task.perform({deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.state_dir, objective}, stop);
 }
 
 void TaskRunner::refuse(DeviceTask& task) {

@@ -7,9 +7,11 @@
 #include <optional>
 #include <stop_token>
 #include <utility>
+#include <vector>
 
 #include "core/base/clock.hpp"
 #include "core/base/mutex.hpp"
+#include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
 #include "daemon/jobs/machine_board.hpp"
@@ -31,6 +33,7 @@ class TaskRunner final : public TaskService {
     PreviewHub& preview;
     const StageHistory& history;
     std::filesystem::path state_dir;
+    const std::vector<ObjectiveConfig>& objectives;  ///< of the configuration
   };
   explicit TaskRunner(Dependencies dependencies) : deps_(std::move(dependencies)) {}
 

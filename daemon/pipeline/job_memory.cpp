@@ -7,6 +7,7 @@
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/focus_worker.hpp"
+#include "daemon/pipeline/scan_average.hpp"
 
 namespace fvd {
 
@@ -74,6 +75,7 @@ JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
   JobMemory needed;
   needed.state_bytes = stack - pixels * kMapBytesPerPixel;
   needed.maps_bytes = (1 + recipe.extra_peaks.size()) * pixels * kMapBytesPerPixel;
+  if (recipe.repeat > 1) needed.maps_bytes += pixels * ScanAverage::kBytesPerPixel;
   if (recipe.smooth_px) needed.maps_bytes += 2 * pixels * sizeof(float);
   needed.frames_bytes =
       pixels * static_cast<std::size_t>(bytes_per_pixel(format)) * static_cast<std::size_t>(recipe.camera.pool_frames);

@@ -1,5 +1,7 @@
 #include "daemon/pipeline/measurement.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -7,6 +9,7 @@
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/continuous_scan.hpp"
 #include "daemon/pipeline/reconstruct.hpp"
+#include "daemon/pipeline/scan_average.hpp"
 
 namespace fvd {
 
@@ -29,29 +32,76 @@ void copy_books(const ScanReport& report, ResultData& result) {
   result.suspects = report.suspects;
 }
 
+/// What the scans of a job add up to. A scan fills the result as if it were the only one; carry() keeps its books
+/// before the next begins, settle() puts the sums in their place.
+class ScanBooks {
+ public:
+  explicit ScanBooks(int scans) : scans_(scans) {}
+
+  [[nodiscard]] bool is_last() const noexcept { return ended_ + 1 == scans_; }
+  [[nodiscard]] SliceProgress progress(const ScanReport& report) const {
+    return {slices_ + static_cast<int>(report.steps.size()), sum(frames_, report.frames)};
+  }
+  void carry(ResultData& result) {
+    ++ended_;
+    slices_ += static_cast<int>(result.steps.size());
+    for (const StepRecord& step : result.steps) measured_ += step.measured ? 1 : 0;
+    frames_ = sum(frames_, result.frames);
+    ramp_frames_ += result.ramp_frames;
+    flicker_percent_ = std::max(flicker_percent_, result.flicker_percent);
+    suspects_.insert(suspects_.end(), result.suspects.begin(), result.suspects.end());
+  }
+  /// After the last scan, which was not carried.
+  void settle(ResultData& result) {
+    result.slices_measured_before = measured_;
+    result.frames = sum(frames_, result.frames);
+    result.ramp_frames += ramp_frames_;
+    result.flicker_percent = std::max(flicker_percent_, result.flicker_percent);
+    result.suspects_before = std::move(suspects_);
+  }
+
+ private:
+  [[nodiscard]] static FrameCounts sum(const FrameCounts& a, const FrameCounts& b) {
+    return {a.expected + b.expected, a.ok + b.ok,       a.incomplete + b.incomplete,
+            a.missing + b.missing,   a.stale + b.stale, a.underrun + b.underrun};
+  }
+
+  int scans_;
+  int ended_ = 0;
+  int slices_ = 0;
+  int measured_ = 0;
+  int ramp_frames_ = 0;
+  double flicker_percent_ = 0.0;
+  FrameCounts frames_;
+  std::vector<SuspectSlice> suspects_;
+};
+
 /// Runs the scan into the stack. What broke the focus thread is the reason to report, not the push it then refused.
 void acquire(const ScanPlan& plan, const CameraSettings& settings, const MeasurementDependencies& deps,
-             const MeasurementObserver& observer, StreamingFocusStack& stack, DriftPath drift, ResultData& result,
-             std::stop_token stop) {
+             const MeasurementObserver& observer, const ScanBooks& books, StreamingFocusStack& stack, DriftPath drift,
+             ResultData& result, std::stop_token stop) {
   FreeRun free_run(deps.camera, settings);  // ends after the worker, which holds frames
   FocusWorker worker(stack, deps.queue_slices, plan.allowed_lost_slices, observer.tap, std::move(drift));
   const ScanDependencies scan{deps.camera, deps.stage, deps.clock, worker};
   ScanReport report;
+  const auto on_slice = [&](const ScanReport& so_far) { observer.on_slice(books.progress(so_far)); };
   try {
     if (plan.mode == ScanMode::kContinuous) {
-      ContinuousScan(scan, free_run).run(plan, report, observer.on_slice, stop);
+      ContinuousScan(scan, free_run).run(plan, report, on_slice, stop);
     } else {
-      ScanRunner(scan).run(plan, report, observer.on_slice, stop);
+      ScanRunner(scan).run(plan, report, on_slice, stop);
     }
   } catch (const Error& error) {
     copy_books(report, result);
-    observer.on_slice(report);                                   // the books as they ended
+    on_slice(report);                                            // the books as they ended
     if (error.code() == ErrorCode::kSliceLost) worker.finish();  // which says why
     throw;
   }
   copy_books(report, result);
-  observer.on_acquired();
-  observer.on_phase("computing");
+  if (books.is_last()) {
+    observer.on_acquired();
+    observer.on_phase("computing");
+  }
   worker.finish();
   note_light(worker.suspects(), worker.flicker_percent(), result);
   note_drift(worker.drift(), worker.hidden_border(), result);
@@ -88,13 +138,20 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   const StageInfo stage = deps.stage.info();
   result.source = describe(camera, stage);
   result.simulated = result.simulated || camera.simulated || stage.simulated;
-  result.slices_planned = recipe.slices;
+  result.slices_planned = recipe.slices * recipe.repeat;
   if (stage.feedback_resolution.value > 0.0) result.encoder_resolution_um = stage.feedback_resolution.value;
   result.scan_mode = recipe.mode;
   result.speed_um_per_s = recipe.mode == ScanMode::kContinuous ? recipe.speed_um_per_s : 0.0;
   const CameraSettings settings = deps.camera.configure(recipe.camera);
-  StreamingFocusStack stack(settings.width, settings.height, settings.slice_format(), focus_settings(recipe), deps.pool,
-                            false, deps.pages);
+  std::optional<StreamingFocusStack> stack;
+  const auto renew_stack = [&] {
+    stack.reset();  // its memory first
+    stack.emplace(settings.width, settings.height, settings.slice_format(), focus_settings(recipe), deps.pool, false,
+                  deps.pages);
+  };
+  renew_stack();
+  std::optional<ScanAverage> average;
+  if (recipe.repeat > 1) average.emplace(settings.width, settings.height);
   if (!deps.stage.status().homed) deps.stage.home(stop);
   result.times.prepare_ms = milliseconds_since(deps.clock, started);
 
@@ -111,11 +168,29 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   ScanPlan plan = scan_plan(recipe);
   plan.time_offset = deps.time_offset;
   const double middle_um = recipe.start_um + recipe.step_um * (recipe.slices / 2);
-  acquire(plan, settings, deps, timed, stack, recipe_drift(recipe, middle_um), result, stop);
+  ScanBooks books(recipe.repeat);
+  while (!books.is_last()) {
+    acquire(plan, settings, deps, timed, books, *stack, recipe_drift(recipe, middle_um), result, stop);
+    const std::size_t warnings = result.warnings.size();
+    reconstruct(*stack, recipe, result);
+    result.warnings.resize(warnings);  // the last scan has them too
+    average->add(result.map);
+    books.carry(result);
+    if (observer.on_earlier_scan) observer.on_earlier_scan(result.steps);
+    result.map = {};
+    renew_stack();
+  }
+  acquire(plan, settings, deps, timed, books, *stack, recipe_drift(recipe, middle_um), result, stop);
   result.times.scan_ms = std::chrono::duration<double, std::milli>(acquired - scan_started).count();
-  reconstruct(stack, recipe, result);
+  reconstruct(*stack, recipe, result);
+  if (average) {
+    average->add(result.map);
+    result.repeated = average->finish(result.map);
+    average.reset();
+  }
+  books.settle(result);
   result.times.finish_ms = milliseconds_since(deps.clock, told);
-  reconstruct_further(stack, recipe, deps.pool, result);
+  reconstruct_further(*stack, recipe, deps.pool, result);
   evaluate_as_asked(recipe, deps.pool, result);
 }
 

@@ -32,16 +32,25 @@ struct MeasurementDependencies {
   std::chrono::microseconds time_offset{0};  ///< of the stage's clock against the camera's
 };
 
+/// How far a job is.
+struct SliceProgress {
+  int slices = 0;      ///< of all scans, those that were lost too
+  FrameCounts frames;  ///< likewise
+};
+
 /// What the caller wants to hear while it runs; each is called on the measurement's thread.
 struct MeasurementObserver {
   std::function<void(std::string_view phase)> on_phase;  ///< "preparing", "acquiring", "computing"
-  std::function<void(const ScanReport& report)> on_slice;
+  std::function<void(const SliceProgress& progress)> on_slice;
+  /// The steps of a scan after which the job takes another; the last scan's are in the result. May be empty.
+  std::function<void(const StepLog& steps)> on_earlier_scan = {};
   std::function<void()> on_acquired;  ///< all slices are taken
   FocusWorker::Tap tap;               ///< every slice, on the focus thread; may be empty
 };
 
-/// Configures the camera, homes the stage if it has no reference, scans, and computes. Fills of the result what it
-/// measured: maps, steps, frames, times, source, simulated; `result` holds steps and frames even when it throws.
+/// Configures the camera, homes the stage if it has no reference, scans recipe.repeat times, and computes. Fills of the
+/// result what it measured: maps, steps, frames, times, source, simulated; `result` holds steps and frames even when it
+/// throws. Of several scans `result` has the mean map, the frames and suspect slices of all, and all else of the last.
 /// Throws what camera, stage and scan throw.
 void measure(const Recipe& recipe, const MeasurementDependencies& dependencies, const MeasurementObserver& observer,
              ResultData& result, std::stop_token stop);

@@ -37,6 +37,7 @@ struct Recipe {
   ScanMode mode = ScanMode::kStep;
   double speed_um_per_s = 0.0;  ///< continuous: > 0
   double max_blur_steps = 0.5;  ///< continuous: > 0, way of the stage during an exposure
+  int repeat = 1;               ///< 1..20 scans, of which the heights are the mean
   SettleCriterion settle;
   int frame_retries = 3;        ///< 0..100, further triggers for a slice whose frame was lost
   int allowed_lost_slices = 0;  ///< 0..slices - 3; more fail the job

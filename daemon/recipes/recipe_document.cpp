@@ -95,18 +95,28 @@ void check_together(const Recipe& recipe, const Places& places, Problems& proble
       std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
     refuse(extra_peaks, peak_method_name(recipe.peak), "is the peak already; expected others only");
   }
+  if (judged({"/acquire/repeat"}) && recipe.repeat > 1 && recipe.keep_slices) {
+    refuse("/acquire/repeat", recipe.repeat,
+           "with keep.slices would mix the slices of several scans in one folder; expected 1, or keep.slices false");
+  }
+  if (judged({"/acquire/repeat", extra_peaks}) && recipe.repeat > 1 && !recipe.extra_peaks.empty()) {
+    refuse("/acquire/repeat", recipe.repeat,
+           "gives the mean of one map; expected 1, or no further maps at " + extra_peaks);
+  }
   const std::string smooth = "/reconstruct/smooth_px";
   if (!judged({"/export", extra_peaks, smooth})) return;
   const auto chosen = chosen_exporters(recipe.exports.value_or(std::vector<std::string>{}));
   const auto makes_none = [&recipe](const Exporter& exporter) {
     return (exporter.need == ExportNeed::kEachExtraMap && recipe.extra_peaks.empty()) ||
-           (exporter.need == ExportNeed::kSmoothedMap && !recipe.smooth_px);
+           (exporter.need == ExportNeed::kSmoothedMap && !recipe.smooth_px) ||
+           (exporter.need == ExportNeed::kRepeatedScans && recipe.repeat == 1);
   };
   if (chosen.empty() || !std::all_of(chosen.begin(), chosen.end(), makes_none)) return;
   refuse("/export", chosen.front().name,
          "stands for maps that the recipe does not ask for, so no file is made; expected methods at " + extra_peaks +
              " for height_*.tiff, a value at " + smooth +
-             " for the smoothed map, or names that make files: " + names_of_single_files());
+             " for the smoothed map, more than 1 at /acquire/repeat for repeat_sd.*, or names that make files: " +
+             names_of_single_files());
 }
 
 }  // namespace

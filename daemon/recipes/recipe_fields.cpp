@@ -196,7 +196,12 @@ void describe(Recipe& recipe, Fields& fields) {
   fields.integer64("format", format, {kRecipeFormat, kRecipeFormat}, "of this document");
   fields.require("format");
   describe_description(recipe, fields);
-  fields.group("acquire", "how the slices are taken", [&](Fields& in) { describe_acquisition(recipe, in); });
+  fields.group("acquire", "how the slices are taken", [&](Fields& in) {
+    describe_acquisition(recipe, in);
+    in.text("objective", recipe.objective, 64, "name of the objective that must be the confirmed one; empty = any");
+    in.integer("repeat", recipe.repeat, {1, 20},
+               "scans of the job; the heights are their mean, points that one lacks are holes");
+  });
   fields.require("acquire");
   fields.group("reconstruct", "how heights are made of them", [&](Fields& in) {
     describe_heights(recipe, in);
@@ -212,7 +217,7 @@ void describe(Recipe& recipe, Fields& fields) {
   fields.optional("export", recipe.exports, [](Fields& in, std::vector<std::string>& names) {
     in.choices("export", names, exporter_names(),
                "files of a result beside result.json, by name or format; absent = all but height.x3p, .sdf, .ply, "
-               ".stl, .csv, sigma.gsf, report.pdf and the pictures sigma.png, holes.png and view3d.png");
+               ".stl, .csv, sigma.gsf, repeat_sd.gsf, report.pdf and the pictures sigma.png, holes.png and view3d.png");
   });
   fields.group("keep", "what else is kept", [&](Fields& in) { describe_slices_kept("slices", recipe, in); });
 }

@@ -59,6 +59,7 @@ bool was_taken_again(const SuspectSlice& slice) { return slice.done == SuspectDo
 Result::Slices slices_of(const ResultData& data) {
   Result::Slices slices;
   slices.planned = data.slices_planned;
+  slices.measured = data.slices_measured_before;
   for (const StepRecord& step : data.steps) slices.measured += step.measured ? 1 : 0;
   if (!data.steps.empty()) {
     slices.first_um = data.steps.front().commanded_um;
@@ -67,8 +68,9 @@ Result::Slices slices_of(const ResultData& data) {
   slices.mode = data.scan_mode;
   slices.speed_um_per_s = data.speed_um_per_s;
   slices.ramp_frames = data.ramp_frames;
-  slices.suspect = data.suspects;
-  slices.retaken = static_cast<int>(std::count_if(data.suspects.begin(), data.suspects.end(), was_taken_again));
+  slices.suspect = data.suspects_before;
+  slices.suspect.insert(slices.suspect.end(), data.suspects.begin(), data.suspects.end());
+  slices.retaken = static_cast<int>(std::count_if(slices.suspect.begin(), slices.suspect.end(), was_taken_again));
   slices.flicker_percent = data.flicker_percent;
   if (!data.drift) return slices;
   const DriftFigures& drift = *data.drift;
@@ -257,6 +259,7 @@ Result evaluate(const ResultData& data, const HeightSummary& summary) {
   result.focus = focus_of(data);
   result.frames = data.frames;
   result.slices = slices_of(data);
+  if (data.repeated) result.repeat = Result::Repeat{data.repeated->scans, data.repeated->sd_rms_um};
   result.steps = data.step_summary;
   result.encoder_resolution_um = data.encoder_resolution_um;
   result.stage = {data.map.stage.applied, data.map.stage.reason, data.map.stage.rms_um,

@@ -170,6 +170,12 @@ struct Result {
     double offset_error_um = 0.0;
     bool operator==(const Stage&) const = default;
   };
+  /// Of heights that are the mean of several scans.
+  struct Repeat {
+    int scans = 0;
+    std::optional<double> sd_rms_um;  ///< of single scans about the mean; absent without a valid point
+    bool operator==(const Repeat&) const = default;
+  };
   struct Provenance {
     std::string software_version;
     bool simulated = false;
@@ -193,6 +199,7 @@ struct Result {
   Focus focus;
   FrameCounts frames;
   Slices slices;
+  std::optional<Repeat> repeat = {};  ///< absent where there was one scan
   StepSummary steps;
   std::optional<double> encoder_resolution_um;  ///< smallest step of the measured positions; absent = not known
   Stage stage;

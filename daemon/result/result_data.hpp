@@ -19,6 +19,7 @@
 #include "core/stage/stage_accuracy.hpp"
 #include "core/stage/step_log.hpp"
 #include "daemon/result/evaluation_result.hpp"
+#include "daemon/result/repeated_scans.hpp"
 #include "daemon/result/result.hpp"
 
 namespace fvd {
@@ -52,13 +53,16 @@ struct ResultData {
   std::vector<std::pair<PeakMethod, HeightMap>> extra_maps;
   std::optional<double> smooth_px;
   std::optional<SmoothedHeights> smoothed;  ///< of `map`, where smooth_px is given
+  std::optional<RepeatedScans> repeated;    ///< where `map` is the mean of several scans
 
   ScanMode scan_mode = ScanMode::kStep;
-  double speed_um_per_s = 0.0;  ///< of a continuous scan
-  int ramp_frames = 0;          ///< likewise
-  int slices_planned = 0;
-  FrameCounts frames;
-  StepLog steps;
+  double speed_um_per_s = 0.0;                ///< of a continuous scan
+  int ramp_frames = 0;                        ///< likewise
+  int slices_planned = 0;                     ///< of all scans
+  int slices_measured_before = 0;             ///< by the scans before the one of `steps`
+  std::vector<SuspectSlice> suspects_before;  ///< of those scans, one scan after the other
+  FrameCounts frames;                         ///< of all scans
+  StepLog steps;                              ///< of the last scan
   StepSummary step_summary;
   std::optional<double> encoder_resolution_um;  ///< smallest step of the measured positions; absent = not known
   std::vector<SuspectSlice> suspects;           ///< in the order of the scan

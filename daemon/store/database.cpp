@@ -117,6 +117,13 @@ Statement& Statement::bind(std::string_view text) {
   return *this;
 }
 
+Statement& Statement::bind(const std::optional<double>& number) {
+  const int bound =
+      number ? sqlite3_bind_double(statement_.get(), ++bound_, *number) : sqlite3_bind_null(statement_.get(), ++bound_);
+  if (bound != SQLITE_OK) database_.fail("binding a number");
+  return *this;
+}
+
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
@@ -135,6 +142,11 @@ std::string Statement::text(int column) const {
   const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_.get(), column));
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column));
   return bytes == nullptr ? std::string() : std::string(bytes, size);
+}
+
+std::optional<double> Statement::real(int column) const noexcept {
+  if (sqlite3_column_type(statement_.get(), column) == SQLITE_NULL) return std::nullopt;
+  return sqlite3_column_double(statement_.get(), column);
 }
 
 Transaction::Transaction(Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -58,6 +59,8 @@ class Statement {
   Statement& bind(std::int64_t value);
   /// The text is copied; it may hold any bytes.
   Statement& bind(std::string_view text);
+  /// NULL for nothing.
+  Statement& bind(const std::optional<double>& number);
 
   /// True while there is a row. Throws Error kDatabase, kStorageFull.
   [[nodiscard]] bool step();
@@ -67,6 +70,8 @@ class Statement {
   /// Columns of the current row, from 0; NULL reads as 0 or "".
   [[nodiscard]] std::int64_t integer(int column) const noexcept;
   [[nodiscard]] std::string text(int column) const;
+  /// Nothing for NULL.
+  [[nodiscard]] std::optional<double> real(int column) const noexcept;
 
  private:
   struct Finalizer {

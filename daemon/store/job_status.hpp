@@ -21,6 +21,7 @@ struct JobRequest {
   std::string part_id;                  ///< 1..64 printable ASCII characters
   std::string recipe;                   ///< recipe id; empty = the prepared one
   std::string client = kDefaultClient;  ///< whose seq it is
+  std::optional<double> temperature_c = {};  ///< -50..100, of the part; absent = not given
 };
 
 /// OPC 40100-1 result states: processing, completed, aborted, failed.

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <map>
+#include <sstream>
 
 #include <spdlog/spdlog.h>
 
@@ -24,7 +25,7 @@ constexpr std::array kAllJobStates{JobState::kProcessing, JobState::kCompleted, 
 #define FVD_JOB_COLUMNS                                                                                            \
   "job_id, client, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done, slices_planned, " \
   "frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale, frames_underrun, result_dir, "     \
-  "result_json, acquired"
+  "result_json, acquired, temperature_c"
 
 JobState state_from_name(const std::string& name) {
   for (const JobState state : kAllJobStates) {
@@ -60,6 +61,7 @@ StoredJob read_row(const Statement& row) {
   job.result_dir = text();
   job.result_json = text();
   status.acquired = integer() != 0;
+  status.request.temperature_c = row.real(column++);
   return job;
 }
 
@@ -84,6 +86,13 @@ std::string key_text(const JobKey& key) {
   if (const auto* id = std::get_if<std::string>(&key)) return "'" + *id + "'";
   const auto& number = std::get<ClientSeq>(key);
   return "with " + number_text(number.seq, number.client);
+}
+
+std::string temperature_text(const std::optional<double>& temperature_c) {
+  if (!temperature_c) return {};
+  std::ostringstream text;
+  text << ", temperature_c " << *temperature_c;
+  return text.str();
 }
 
 std::int64_t scalar(const Database& database, const char* sql) {
@@ -121,10 +130,12 @@ std::optional<JobStatus> repeated_in(const Database& database, const KeptEnds& k
     return std::nullopt;
   }
   const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
-  if (known->request.part_id != request.part_id || !same_recipe) {
+  const bool same_temperature = request.temperature_c == known->request.temperature_c;
+  if (known->request.part_id != request.part_id || !same_recipe || !same_temperature) {
     throw Error(ErrorCode::kSeqConflict, number + " belongs to job " + known->job_id + " (part '" +
-                                             known->request.part_id + "', recipe '" + known->request.recipe +
-                                             "'): use a new number for a new job");
+                                             known->request.part_id + "', recipe '" + known->request.recipe + "'" +
+                                             temperature_text(known->request.temperature_c) +
+                                             "): use a new number for a new job");
   }
   return known;
 }
@@ -180,6 +191,7 @@ struct JobStore::Impl {
   KeptEnds kept_ends FVD_GUARDED_BY(kept_mutex);  ///< that could not be stored yet
   RecipeTable recipes{{database, mutex}, {reader, read_mutex}};
   CurveWidthTable widths{{database, mutex}, {reader, read_mutex}};
+  ObjectiveTable objectives{{database, mutex}, {reader, read_mutex}};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
@@ -209,7 +221,8 @@ JobStatus JobStore::accept(const JobRequest& request) {
   job.job_id = make_job_id(std::chrono::system_clock::now(), impl_->epoch, number);
   job.request = request;
   Statement(impl_->database,
-            "INSERT INTO jobs (number, job_id, client, seq, part_id, recipe, state) VALUES (?, ?, ?, ?, ?, ?, ?)")
+            "INSERT INTO jobs (number, job_id, client, seq, part_id, recipe, state, temperature_c) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(number)
       .bind(job.job_id)
       .bind(request.client)
@@ -217,6 +230,7 @@ JobStatus JobStore::accept(const JobRequest& request) {
       .bind(request.part_id)
       .bind(request.recipe)
       .bind(job_state_name(job.state))
+      .bind(request.temperature_c)
       .run();
   transaction.commit();
   return job;
@@ -342,6 +356,8 @@ int JobStore::acknowledge(const JobKey& key) {
 RecipeVersions& JobStore::recipe_versions() noexcept { return impl_->recipes; }
 
 CurveWidthTable& JobStore::curve_widths() noexcept { return impl_->widths; }
+
+ObjectiveTable& JobStore::objectives() noexcept { return impl_->objectives; }
 
 std::int64_t JobStore::epoch() const noexcept { return impl_->epoch; }
 

@@ -11,6 +11,7 @@
 #include "daemon/recipes/recipe_versions.hpp"
 #include "daemon/store/curve_width_table.hpp"
 #include "daemon/store/job_status.hpp"
+#include "daemon/store/objective_table.hpp"
 
 namespace fvd {
 
@@ -30,9 +31,9 @@ class JobStore {
   JobStore(const JobStore&) = delete;
   JobStore& operator=(const JobStore&) = delete;
 
-  /// The job of this client and sequence number if the request repeats it: same part, same recipe; a request that names
-  /// no recipe repeats whichever was taken. Nothing if the number is new. Throws Error kSeqConflict if the number
-  /// belongs to another request, kSeqStale if it is unknown and too old.
+  /// The job of this client and sequence number if the request repeats it: same part, same temperature, same recipe;
+  /// a request that names no recipe repeats whichever was taken. Nothing if the number is new. Throws Error
+  /// kSeqConflict if the number belongs to another request, kSeqStale if it is unknown and too old.
   [[nodiscard]] std::optional<JobStatus> find_repeated(const JobRequest& request) const;
 
   /// Makes the job's row durable and gives the job its id: unique over all starts, sortable by time, 29 characters.
@@ -67,6 +68,9 @@ class JobStore {
 
   /// In the same file; as long as the store. context: thread-safe.
   [[nodiscard]] CurveWidthTable& curve_widths() noexcept;
+
+  /// In the same file; as long as the store. context: thread-safe.
+  [[nodiscard]] ObjectiveTable& objectives() noexcept;
 
   /// Counts the times this database was opened, from 1.
   [[nodiscard]] std::int64_t epoch() const noexcept;

@@ -139,6 +139,23 @@ ALTER TABLE curve_widths ADD COLUMN most_bin_slices INTEGER NOT NULL DEFAULT 64;
 )");
 }
 
+/// Version 7: which objective is on the microscope, as people confirmed it. The newest row is in force.
+void keep_confirmed_objectives(Database& database) {
+  database.execute(R"(
+CREATE TABLE objective_confirmations (
+  number        INTEGER PRIMARY KEY AUTOINCREMENT,
+  objective     TEXT    NOT NULL,
+  person        TEXT    NOT NULL,
+  confirmed_utc TEXT    NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))
+) STRICT;
+)");
+}
+
+/// Version 8: the temperature that came with a job; NULL = none did.
+void keep_temperatures_of_jobs(Database& database) {
+  database.execute("ALTER TABLE jobs ADD COLUMN temperature_c REAL");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -146,6 +163,8 @@ constexpr std::array kSteps{
     MigrationStep{"whether the part was free at a job's end", keep_whether_the_part_was_free},
     MigrationStep{"widths of focus curves", remember_curve_widths},
     MigrationStep{"bins that keep the ends of the range", remember_bins_that_keep_the_ends},
+    MigrationStep{"objectives that were confirmed", keep_confirmed_objectives},
+    MigrationStep{"temperatures of jobs", keep_temperatures_of_jobs},
 };
 
 void require_own_file(const Database& database, int version) {

@@ -80,7 +80,7 @@ class Bench {
     result.peak = recipe.peak;
     MeasurementObserver observer;
     observer.on_phase = [](std::string_view) {};
-    observer.on_slice = [](const ScanReport&) {};
+    observer.on_slice = [](const SliceProgress&) {};
     observer.on_acquired = [] {};
     measure(recipe, {*camera_, *stage_, clock_, pool_, nullptr, 8}, observer, result, {});
     AtomicDirectory directory(folder_.path() / ("result" + std::to_string(++scans_)));

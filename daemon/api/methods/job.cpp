@@ -20,6 +20,7 @@ struct StartParams {
   std::string part_id;
   std::string recipe;
   ClientParam client;
+  std::optional<double> temperature_c;
 
   void describe(Fields& fields) {
     describe_seq(fields, seq, "chosen by the client; the same number is the same job");
@@ -28,6 +29,10 @@ struct StartParams {
     fields.require("part_id");
     fields.text("recipe", recipe, kMaxForeignText_bytes, "recipe id; empty = the prepared one");
     client.describe(fields);
+    fields.optional("temperature_c", temperature_c, [](Fields& inner, double& value) {
+      inner.number("temperature_c", value, {-50.0, 100.0},
+                   "of the part, degrees Celsius; absent = as the configuration's temperature.file tells");
+    });
   }
 };
 
@@ -77,8 +82,8 @@ std::optional<JobStatus> running_job(const MachineView& machine, const JobKey& k
 }
 
 Answer start_job(JobService& jobs, const StartParams& params) {
-  const auto started =
-      jobs.start({params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked()});
+  const auto started = jobs.start(
+      {params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked(), params.temperature_c});
   return Reply{{"job_id", started.job.job_id},
                {"seq", params.seq},
                {"client", params.client.client},
@@ -104,7 +109,7 @@ void add_job_methods(MethodTable& methods, const Services& services) {
                 .params = described<StartParams>(),
                 .result = describe_started,
                 .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale, kShuttingDown,
-                           kStageLimit, kStorageFull, kDatabase, kMemoryBudget, kRegionOutside},
+                           kStageLimit, kObjectiveMismatch, kStorageFull, kDatabase, kMemoryBudget, kRegionOutside},
                 .moves_stage = true,
                 .needs_id = true},
       .run = with<StartParams>(

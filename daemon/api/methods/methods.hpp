@@ -19,5 +19,6 @@ void add_job_methods(MethodTable& methods, const Services& services);
 void add_result_methods(MethodTable& methods, const Services& services);
 void add_camera_methods(MethodTable& methods, const Services& services);
 void add_stage_methods(MethodTable& methods, const Services& services);
+void add_objective_methods(MethodTable& methods, const Services& services);
 
 }  // namespace fvd

@@ -192,8 +192,8 @@ void add_recipe_methods(MethodTable& methods, const Services& services) {
       .about = {.summary = "Checks a recipe and makes it the one for jobs that name none",
                 .params = described<RecipeParams>(),
                 .result = describe_prepared,
-                .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kShuttingDown, kStageLimit, kRegionOutside,
-                           kMemoryBudget}},
+                .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kShuttingDown, kStageLimit, kObjectiveMismatch,
+                           kRegionOutside, kMemoryBudget}},
       .run = with<RecipeParams>([&jobs = services.jobs](const Call&, const RecipeParams& params) {
         jobs.prepare(params.id);
         return Reply{{"recipe", params.id}};

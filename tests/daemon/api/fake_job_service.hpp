@@ -40,10 +40,26 @@ class FakeRecipes final : public RecipeService {
   std::int64_t restored = -1;
 };
 
+/// Two objectives, of which one may be confirmed.
+class FakeObjectives final : public ObjectiveService {
+ public:
+  [[nodiscard]] Known known() const override {
+    return {{{"20x", 0.4, 20.0, 11.0}, {"50x", 0.5, 50.0, 3.1, -100.0, 50.0}}, confirmed};
+  }
+  ObjectiveConfirmation confirm(const std::string& name, const std::string& person) override {
+    if (busy) throw Error(ErrorCode::kBusy, "a job runs");
+    if (name != "20x" && name != "50x") throw Error(ErrorCode::kBadInput, "'" + name + "' is no objective");
+    return confirmed.emplace(ObjectiveConfirmation{name, person, "2026-11-29T10:00:00.000Z"});
+  }
+  std::optional<ObjectiveConfirmation> confirmed;
+  bool busy = false;
+};
+
 class FakeJobService final : public MachineView, public JobService, public ResultService, public TaskService {
  public:
   FakeRecipes recipes;
-  [[nodiscard]] Services services() { return {*this, *this, *this, *this, recipes}; }
+  FakeObjectives objectives;
+  [[nodiscard]] Services services() { return {*this, *this, *this, *this, recipes, objectives}; }
 
   Started start(const JobRequest& request) override {
     if (before_start) before_start();
@@ -103,6 +119,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     status.signals = {.ready = true, .part_release = true};
     status.epoch = 17;
     status.job = current;
+    if (objectives.confirmed) status.objective = objectives.confirmed->objective;
     return std::make_shared<const MachineStatus>(status);
   }
   /// Done only when a test runs it.

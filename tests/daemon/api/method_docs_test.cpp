@@ -71,6 +71,9 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"result.get", one},
       {"result.next", nothing},
       {"stage.accuracy", nothing},
+      {"objective.list", nothing},
+      {"objective.confirm", {{"name", "50x"}, {"person", "Anna"}}},
+      {"objective.list", nothing},
       {"camera.snap", nothing,
        R"({"path":"/x.png","width_px":1,"height_px":1,"bits":8,"exposure_us":1,"gain_db":0,"z_um":1,"grey":)" + grey +
            "}"},

@@ -45,7 +45,10 @@ TEST(ConfigFile, ReadsEveryGroup) {
               "acceleration_um_per_s2": 4, "simulated": true, "replay_start_um": 1, "replay_step_um": 0.5},
     "paths": {"state_dir": "s", "runtime_dir": "r", "recipe_dir": "recipes"},
     "compute": {"threads": 2, "memory_budget_mib": 100, "queue_slices": 8},
-    "log": {"level": "debug"}})",
+    "log": {"level": "debug"},
+    "objectives": [{"name": "20x", "na": 0.4, "magnification": 20, "working_distance_mm": 11},
+                   {"name": "50x", "na": 0.55, "magnification": 50, "working_distance_mm": 3.1, "min_um": -5, "max_um": 6}],
+    "temperature": {"file": "t", "scale": 0.001, "offset_c": -0.5, "max_age_s": 60}})",
                                      "/etc/fvd")
                             .config;
 
@@ -81,6 +84,18 @@ TEST(ConfigFile, ReadsEveryGroup) {
   EXPECT_EQ(config.compute.memory_budget_mib, 100);
   EXPECT_EQ(config.compute.queue_slices, 8);
   EXPECT_EQ(config.log.level, "debug");
+  ASSERT_EQ(config.objectives.size(), 2U);
+  EXPECT_EQ(config.objectives[0].name, "20x");
+  EXPECT_EQ(config.objectives[0].na, 0.4);
+  EXPECT_EQ(config.objectives[0].magnification, 20);
+  EXPECT_EQ(config.objectives[0].working_distance_mm, 11);
+  EXPECT_FALSE(config.objectives[0].min_um || config.objectives[0].max_um);
+  EXPECT_EQ(config.objectives[1].min_um, -5);
+  EXPECT_EQ(config.objectives[1].max_um, 6);
+  EXPECT_EQ(config.temperature.file, "t") << "relative to the current directory";
+  EXPECT_EQ(config.temperature.scale, 0.001);
+  EXPECT_EQ(config.temperature.offset_c, -0.5);
+  EXPECT_EQ(config.temperature.max_age_s, 60);
 }
 
 TEST(ConfigFile, AllowsComments) { EXPECT_THAT(problems_of("{ // why\n\"rpc\": {\"port\": 1} }"), IsEmpty()); }
@@ -89,6 +104,8 @@ TEST(ConfigFile, DumpsWhatItReadsBack) {
   Config config;
   config.rpc.port = 1;
   config.stage.min = Micrometers{-12.25};
+  config.objectives = {{"20x", 0.4, 20.0, 11.0}, {"50x", 0.55, 50.0, 3.1, -10.0, 12.5}};
+  config.temperature.file = "/sys/class/hwmon/hwmon0/temp1_input";
   const std::string text = config_text(config);
 
   const LoadedConfig again = parse_config(text, "");
@@ -136,6 +153,19 @@ INSTANTIATE_TEST_SUITE_P(
                       BadConfig{R"({"stage": {"speed_um_per_s": 0}})", "/stage/speed_um_per_s", "above 0"},
                       BadConfig{R"({"stage": {"simulated": 1}})", "/stage/simulated", "true or false"},
                       BadConfig{R"({"camera": {"driver": "usb"}})", "/camera/driver", "\"aravis\", \"replay\""},
+                      BadConfig{R"({"objectives": {}})", "/objectives", "a list"},
+                      BadConfig{R"({"objectives": [{"na": 0.4, "magnification": 20, "working_distance_mm": 11}]})",
+                                "/objectives/0/name", "missing"},
+                      BadConfig{R"({"objectives": [{"name": "a", "na": 1.71, "magnification": 20,
+                                                    "working_distance_mm": 11}]})",
+                                "/objectives/0/na", "1.71"},
+                      BadConfig{R"({"objectives": [{"name": "a", "na": 0.4, "magnification": 0,
+                                                    "working_distance_mm": 11}]})",
+                                "/objectives/0/magnification", "above 0"},
+                      BadConfig{R"({"objectives": [{"name": "a", "na": 0.4, "magnification": 20,
+                                                    "working_distance_mm": 11, "min": 3}]})",
+                                "/objectives/0/min", "unknown key"},
+                      BadConfig{R"({"temperature": {"max_age_s": 0}})", "/temperature/max_age_s", "1..604800"},
                       BadConfig{R"({"a/b~c": 1})", "/a~1b~0c", "unknown key"},
                       BadConfig{"{\"rpc\": {\"address\": \"\xff\"}}", "", "no valid JSON"},
                       BadConfig{std::string(100, '['), "", "deeper"}),
@@ -202,6 +232,42 @@ TEST_F(AUsableConfig, NeedsRoomForTheTakeUp) {
   config_.stage.max = Micrometers{10};
   config_.stage.take_up = Micrometers{10};
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/stage/take_up_um", "no room")));
+}
+
+TEST_F(AUsableConfig, NeedsAnotherNameForEachObjective) {
+  const ObjectiveConfig twenty{"20x", 0.4, 20.0, 11.0};
+  config_.objectives = {twenty, {"50x", 0.55, 50.0, 3.1}};
+  EXPECT_THAT(check_config(config_), IsEmpty());
+  config_.objectives.push_back(twenty);
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/objectives/2/name", "the name of /objectives/0 too")));
+  config_.objectives = {{"", 0.4, 20.0, 11.0}, {"20\n", 0.4, 20.0, 11.0}};
+  EXPECT_THAT(check_config(config_),
+              ElementsAre(problem("/objectives/0/name", "no name"), problem("/objectives/1/name", "no name")));
+}
+
+TEST_F(AUsableConfig, NeedsSoftLimitsInsideTheStages) {
+  config_.stage.min = Micrometers{-100};
+  config_.stage.max = Micrometers{100};
+  config_.stage.take_up = Micrometers{20};
+  const auto with_limits = [this](std::optional<double> min_um, std::optional<double> max_um) {
+    config_.objectives = {{"20x", 0.4, 20.0, 11.0, min_um, max_um}};
+    return check_config(config_);
+  };
+  EXPECT_THAT(with_limits(-100, 100), IsEmpty());
+  EXPECT_THAT(with_limits(79, {}), IsEmpty());
+  EXPECT_THAT(with_limits(-100.5, {}), ElementsAre(problem("/objectives/0/min_um", "-100..100")));
+  EXPECT_THAT(with_limits({}, 100.5), ElementsAre(problem("/objectives/0/max_um", "outside the stage's limits")));
+  EXPECT_THAT(with_limits(200, -200),
+              ElementsAre(problem("/objectives/0/min_um", "200"), problem("/objectives/0/max_um", "-200")));
+  EXPECT_THAT(with_limits(10, -10), ElementsAre(problem("/objectives/0/min_um", "10..-10 um is no range")));
+  EXPECT_THAT(with_limits(5, 5), ElementsAre(problem("/objectives/0/min_um", "no range")));
+  EXPECT_THAT(with_limits({}, -100), ElementsAre(problem("/objectives/0/max_um", "no range")));
+  EXPECT_THAT(with_limits(80, {}), ElementsAre(problem("/objectives/0/min_um", "take_up_um of 20 leaves no room")));
+}
+
+TEST_F(AUsableConfig, NeedsAScaleThatTellsTemperaturesApart) {
+  config_.temperature.scale = 0.0;
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/temperature/scale", "0.001")));
 }
 
 TEST_F(AUsableConfig, NeedsItsFiles) {

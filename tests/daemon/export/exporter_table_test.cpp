@@ -30,6 +30,7 @@ ResultData result_with_extra_map() {
   data.smoothed.emplace();
   data.smoothed->height_m = Plane<float>(6, 3);
   data.smoothed->sigma_m = Plane<float>(6, 3);
+  data.repeated = RepeatedScans{2, Plane<float>(6, 3), 0.25};
   return data;
 }
 
@@ -67,7 +68,7 @@ TEST(ExporterTable, GivesTheRowsThatARecipeNames) {
                      testing::Not(testing::Contains("sigma.gsf")), testing::Not(testing::Contains("height.x3p"))))
       << "some are made on request only";
   EXPECT_EQ(names_of(chosen_exporters({{"x3p", "gsf"}})),
-            (std::vector<std::string>{"height.gsf", "sigma.gsf", "height.x3p"}));
+            (std::vector<std::string>{"repeat_sd.gsf", "height.gsf", "sigma.gsf", "height.x3p"}));
   EXPECT_EQ(names_of(chosen_exporters({{"mask.png", "height.tiff", "none.txt"}})),
             (std::vector<std::string>{"height.tiff", "mask.png"}));
   EXPECT_TRUE(chosen_exporters(std::vector<std::string>{}).empty());

@@ -41,6 +41,17 @@ TEST(JobMemory, ASecondMethodTakesAnotherMapAndNoOtherState) {
   EXPECT_EQ(two.state_bytes, one.state_bytes);
 }
 
+TEST(JobMemory, CountsWhatIsKeptOfSeveralScans) {
+  Recipe recipe;
+  const JobMemory one = job_memory(recipe, kWidth, kHeight, 2);
+  recipe.repeat = 2;
+  const JobMemory two = job_memory(recipe, kWidth, kHeight, 2);
+  EXPECT_EQ(two.maps_bytes, one.maps_bytes + 26 * kPixels);
+  EXPECT_EQ(two.state_bytes, one.state_bytes) << "one scan's at a time";
+  recipe.repeat = 20;
+  EXPECT_EQ(job_memory(recipe, kWidth, kHeight, 2).total_bytes(), two.total_bytes());
+}
+
 TEST(JobMemory, CountsTheSecondPeak) {
   Recipe recipe;
   const JobMemory without = job_memory(recipe, kWidth, kHeight, 2);

@@ -110,6 +110,19 @@ TEST(Recipe, ReadsEveryKey) {
   EXPECT_TRUE(recipe.keep_slices);
 }
 
+TEST(Recipe, NamesItsObjectiveOrNone) {
+  EXPECT_EQ(parse_recipe(kSmallest, "r").objective, "");
+  const Recipe recipe = parse_recipe(with(R"(, "objective": "50x")", ""), "r");
+  EXPECT_EQ(recipe.objective, "50x");
+  EXPECT_THAT(values(recipe), HasSubstr(R"("objective":"50x")"));
+}
+
+TEST(Recipe, TakesOneScanUnlessItSaysMore) {
+  EXPECT_EQ(parse_recipe(kSmallest, "r").repeat, 1);
+  EXPECT_EQ(parse_recipe(with(R"(, "repeat": 20)", R"(, "export": ["repeat_sd.tiff"])"), "r").repeat, 20);
+  EXPECT_EQ(parse_recipe(with(R"(, "repeat": 1)", R"(, "keep": {"slices": true})"), "r").repeat, 1);
+}
+
 TEST(Recipe, WritesBackWhatItRead) {
   for (const std::string& text :
        {std::string(kOldWithEveryGroup), with_focus(R"({"extra_peaks": ["nearest"]})"),
@@ -203,6 +216,17 @@ INSTANTIATE_TEST_SUITE_P(
                   "repetitions"},
         BadRecipe{with_focus(R"({"extra_peaks": ["five_sample"]})"), "/reconstruct/focus/extra_peaks", "already"},
         BadRecipe{with_focus(R"({"min_prominence": 1.5})"), "/reconstruct/focus/min_prominence", "0..1"},
+        BadRecipe{with(R"(, "objective": 50)", ""), "/acquire/objective", "expected a text"},
+        BadRecipe{with(", \"objective\": \"" + std::string(65, 'x') + "\"", ""), "/acquire/objective", "64"},
+        BadRecipe{with(R"(, "repeat": 0)", ""), "/acquire/repeat", "1..20"},
+        BadRecipe{with(R"(, "repeat": 21)", ""), "/acquire/repeat", "1..20"},
+        BadRecipe{with(R"(, "repeat": 1.5)", ""), "/acquire/repeat", "integer"},
+        BadRecipe{with(R"(, "repeat": 2)", R"(, "keep": {"slices": true})"), "/acquire/repeat", "keep.slices"},
+        BadRecipe{with(R"(, "repeat": 2)", R"(, "reconstruct": {"focus": {"extra_peaks": ["nearest"]}})"),
+                  "/acquire/repeat", "expected 1, or no further maps"},
+        BadRecipe{with("", R"(, "export": ["repeat_sd.gsf"])"), "/export", "more than 1 at /acquire/repeat"},
+        BadRecipe{R"({"scan": {"start_um": 0, "step_um": 1, "slices": 3}, "objective": "50x"})", "/objective",
+                  "unknown key"},
         BadRecipe{with_camera(R"({"pixel_format": "RGB8"})"), "/acquire/camera/pixel_format", "Mono8"},
         BadRecipe{with_camera(R"({"exposure_us": 0})"), "/acquire/camera/exposure_us", "above 0"},
         BadRecipe{with_camera(R"({"exposure": 1})"), "/acquire/camera/exposure", "did you mean 'exposure_us'?"},

@@ -55,6 +55,52 @@ TEST_F(AJobStore, KnowsNothingAtFirst) {
   FVD_EXPECT_ERROR(kUnknownJob, store_->acknowledge(std::string("x")));
 }
 
+TEST_F(AJobStore, KeepsTheTemperatureThatCameWithAJob) {
+  JobRequest warm = request(1);
+  warm.temperature_c = 20.1;  // no binary fraction: it must come back as it went
+  store_->accept(warm);
+  store_->accept(request(2));
+  JobRequest zero = request(3);
+  zero.temperature_c = 0.0;
+  store_->accept(zero);
+
+  reopen();
+
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.request.temperature_c, 20.1);
+  EXPECT_EQ(store_->find(ClientSeq{2}).status.request.temperature_c, std::nullopt);
+  EXPECT_EQ(store_->find(ClientSeq{3}).status.request.temperature_c, 0.0) << "which is not none";
+}
+
+TEST_F(AJobStore, TakesAnotherTemperatureForAnotherRequest) {
+  JobRequest warm = request(1);
+  warm.temperature_c = 20.1;
+  const JobStatus first = store_->accept(warm);
+  store_->accept(request(2));
+
+  EXPECT_EQ(store_->find_repeated(warm)->job_id, first.job_id);
+  JobRequest warmer = warm;
+  warmer.temperature_c = 20.2;
+  FVD_EXPECT_ERROR_SAYING(kSeqConflict, (void)store_->find_repeated(warmer), testing::HasSubstr("temperature_c 20.1"));
+  FVD_EXPECT_ERROR(kSeqConflict, (void)store_->find_repeated(request(1)));
+  JobRequest late = request(2);
+  late.temperature_c = 20.1;
+  FVD_EXPECT_ERROR(kSeqConflict, (void)store_->find_repeated(late));
+}
+
+TEST_F(AJobStore, KeepsTheObjectiveThatWasConfirmedLast) {
+  EXPECT_FALSE(store_->objectives().latest().has_value());
+  store_->objectives().add("20x", "Anna");
+  const ObjectiveConfirmation second = store_->objectives().add("50x", "Bert");
+
+  reopen();
+
+  const auto latest = store_->objectives().latest();
+  ASSERT_TRUE(latest.has_value());
+  EXPECT_EQ(latest->objective, "50x");
+  EXPECT_EQ(latest->person, "Bert");
+  EXPECT_EQ(latest->confirmed_utc, second.confirmed_utc);
+}
+
 TEST_F(AJobStore, CountsItsOpenings) {
   EXPECT_EQ(store_->epoch(), 1);
   reopen();
