@@ -33,6 +33,8 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
     : pool_(thread_count(config.compute.threads)),
       pages_(std::make_shared<KeptPages>(memory_budget_bytes(config))),
       history_(config.paths.state_dir / "stage_history.json"),
+      calibrations_(config.paths.state_dir / "calibration"),
+      studies_(config.paths.state_dir / "studies"),
       recipes_({config.paths.recipe_dir, config.paths.state_dir / "recipes"},
                {config.stage.min, config.stage.max, config.stage.take_up, config.stage.speed_um_per_s},
                deps.store.recipe_versions()),
@@ -56,6 +58,10 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
              [this] { return tasks_.task_stop(); },
              config.objectives}),
+      desk_({[&store = deps.store](const std::string& id) { return store.find(id); },
+             [this](const std::string& id) { return recipes_.load(id); }, memory_budget_bytes(config)},
+            studies_, calibrations_, config.camera.simulated || config.stage.simulated),
+      study_runner_(desk_, [this] { board_.update([](MachineRecord&) {}); }),
       thread_(hub_, board_, work_, ticks_, [this] { runner_.store_late_end(); }) {
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
@@ -71,11 +77,13 @@ void Engine::shut_down() {
   thread_.request_stop();
   jobs_.stop_job();
   tasks_.task_stop().request_stop();
+  study_runner_.request_stop();
 }
 
 void Engine::finish() {
   shut_down();
   thread_.finish();
+  study_runner_.finish();
   runner_.store_late_end();  // the last chance
 }
 

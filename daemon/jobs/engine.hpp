@@ -4,6 +4,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/runtime/worker_pool.hpp"
+#include "daemon/calibration/calibration_book.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
@@ -13,6 +14,7 @@
 #include "daemon/jobs/machine_thread.hpp"
 #include "daemon/jobs/objective_book.hpp"
 #include "daemon/jobs/services.hpp"
+#include "daemon/jobs/study_runner.hpp"
 #include "daemon/jobs/task_runner.hpp"
 #include "daemon/jobs/work_queue.hpp"
 #include "daemon/recipes/recipe_book.hpp"
@@ -42,7 +44,9 @@ class Engine {
   /// called once.
   void start() { thread_.start(); }
 
-  [[nodiscard]] Services services() { return {board_, jobs_, jobs_, tasks_, recipes_, objectives_}; }
+  [[nodiscard]] Services services() {
+    return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_};
+  }
 
   /// Takes no more jobs and commands from now on, and asks what runs to end; returns at once. context: any thread.
   void shut_down();
@@ -54,6 +58,8 @@ class Engine {
   WorkerPool pool_;
   KeptPagesPtr pages_;
   StageHistory history_;
+  CalibrationBook calibrations_;
+  StudyBook studies_;
   RecipeBook recipes_;
   PreviewHub preview_;
   MachineBoard board_;
@@ -64,6 +70,8 @@ class Engine {
   TaskRunner tasks_;
   JobRunner runner_;
   JobQueue jobs_;
+  StudyDesk desk_;
+  StudyRunner study_runner_;
   MachineThread thread_;  // last: ends before anything it uses
 };
 

@@ -3,6 +3,7 @@
 /// What the API needs, a narrow interface for each concern; tests put fakes in their place.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "daemon/recipes/recipe_service.hpp"
 #include "daemon/store/job_status.hpp"
 #include "daemon/store/objective_table.hpp"
+#include "daemon/study/study_desk.hpp"
 
 namespace fvd {
 
@@ -125,6 +127,31 @@ class ObjectiveService {
   virtual ObjectiveConfirmation confirm(const std::string& name, const std::string& person) = 0;
 };
 
+/// Studies of jobs, and the constants of the instrument.
+/// context: every function thread-safe; begin() blocks for nothing, the others for files.
+class StudyService {
+ public:
+  virtual ~StudyService() = default;
+
+  /// Makes a study on a thread of its own; no job and no other call waits for it. Its outcome is a JSON object: study,
+  /// directory, report; or what StudyDesk::make() throws. Throws Error kBusy while another study is being made,
+  /// kShuttingDown.
+  virtual std::shared_ptr<DeviceTask> begin(StudyRequest request) = 0;
+
+  /// Throws Error kStudyRefused where there is none of that id.
+  [[nodiscard]] virtual Study get(const std::string& id) const = 0;
+  /// Where its files are.
+  [[nodiscard]] virtual std::filesystem::path folder_of(const std::string& id) const = 0;
+  /// The newest first.
+  [[nodiscard]] virtual std::vector<Study> list() const = 0;
+  [[nodiscard]] virtual std::vector<BrokenStudy> broken() const = 0;
+
+  /// As StudyDesk::accept(), today.
+  virtual AcceptedConstants accept(const AcceptRequest& request) = 0;
+  /// All versions, the oldest first.
+  [[nodiscard]] virtual std::vector<Calibration> calibrations() const = 0;
+};
+
 /// All that the API is built on; each may be another object.
 struct Services {
   MachineView& machine;
@@ -133,6 +160,7 @@ struct Services {
   TaskService& tasks;
   RecipeService& recipes;
   ObjectiveService& objectives;
+  StudyService& studies;
 };
 
 }  // namespace fvd

@@ -27,6 +27,7 @@ MethodTable all_methods(const Services& services) {
   add_camera_methods(methods, services);
   add_stage_methods(methods, services);
   add_objective_methods(methods, services);
+  add_study_methods(methods, services);
   // Last, for it describes all, itself too.
   Method& discover = methods["rpc.discover"];
   discover.about = {

@@ -1,0 +1,137 @@
+#include "daemon/study/study_book.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "config/strict_json.hpp"
+#include "core/base/error.hpp"
+#include "daemon/export/atomic_directory.hpp"
+#include "daemon/export/json_values.hpp"
+#include "daemon/study/studies.hpp"
+
+namespace fvd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPrefix = "study-";
+
+std::string id_of(int number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "study-%04d", number);
+  return text;
+}
+
+/// Of a folder's name; nothing for what is none of ours.
+std::optional<int> number_of_id(const std::string& name) {
+  constexpr std::size_t kMostDigits = 9;
+  const std::string prefix = kPrefix;
+  if (!name.starts_with(prefix)) return std::nullopt;
+  const std::string digits = name.substr(prefix.size());
+  if (digits.empty() || digits.size() > kMostDigits) return std::nullopt;
+  if (digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+  const int number = std::stoi(digits);
+  return id_of(number) == name ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
+
+StudyBook::StudyBook(fs::path folder) : folder_(std::move(folder)) {
+  if (!fs::exists(folder_)) return;
+  remove_abandoned_directories(folder_);
+  const MutexLock lock(mutex_);
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const auto number = number_of_id(entry.path().filename().string());
+    if (!number) continue;
+    last_ = std::max(last_, *number);
+    const fs::path file = entry.path() / "study.json";
+    try {
+      Study study = read_study_json(read_text_file(file), file.string());
+      if (study.id != id_of(*number)) throw Error(ErrorCode::kBadInput, file.string() + ": /id: is " + study.id);
+      studies_.emplace(*number, std::move(study));
+    } catch (const Error& error) {
+      spdlog::warn("study {} cannot be used: {}", id_of(*number), error.what());
+      broken_.emplace(*number, BrokenStudy{id_of(*number), error.what()});
+    }
+  }
+}
+
+Study StudyBook::keep(StudyDraft draft, const std::function<std::string(const Study&)>& report) {
+  const MutexLock lock(mutex_);
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) throw Error(ErrorCode::kStorageWrite, "cannot make " + folder_.string() + ": " + error.message());
+  Study study = std::move(draft.study);
+  study.id = id_of(last_ + 1);
+  study.time = iso8601_utc(std::chrono::system_clock::now());
+  study.files.clear();
+  for (const StudyFile& file : draft.files) study.files.push_back(file.name);
+  study.files.emplace_back("report.pdf");
+  const std::string text = study_json_text(study);
+  try {
+    study = read_study_json(text, study.id);
+  } catch (const Error& unreadable) {
+    throw Error(ErrorCode::kStudyRefused, std::string("the study's figures are of no use: ") + unreadable.what());
+  }
+  AtomicDirectory directory(folder_ / study.id);
+  for (const StudyFile& file : draft.files) directory.add_file(file.name, file.bytes);
+  directory.add_file("report.pdf", report(study));
+  directory.add_file("study.json", text);
+  directory.commit();
+  studies_.emplace(++last_, study);
+  return study;
+}
+
+Study StudyBook::get(const std::string& id) const {
+  const MutexLock lock(mutex_);
+  const auto number = number_of_id(id);
+  if (number) {
+    if (const auto found = studies_.find(*number); found != studies_.end()) return found->second;
+    if (const auto found = broken_.find(*number); found != broken_.end()) {
+      throw Error(ErrorCode::kStudyRefused, id + " cannot be read: " + found->second.reason);
+    }
+  }
+  throw Error(ErrorCode::kStudyRefused, "there is no study '" + id + "'; study.list tells those that there are");
+}
+
+std::vector<Study> StudyBook::list() const {
+  const MutexLock lock(mutex_);
+  std::vector<Study> all;
+  for (auto study = studies_.rbegin(); study != studies_.rend(); ++study) all.push_back(study->second);
+  return all;
+}
+
+std::vector<BrokenStudy> StudyBook::broken() const {
+  const MutexLock lock(mutex_);
+  std::vector<BrokenStudy> all;
+  for (const auto& [unused, study] : broken_) all.push_back(study);
+  return all;
+}
+
+std::map<std::string, Repeatability> StudyBook::newest_repeatability(const std::string& recipe_id) const {
+  std::map<std::string, Repeatability> newest;
+  if (recipe_id.empty()) return newest;  // of jobs with different recipes
+  const MutexLock lock(mutex_);
+  for (auto at = studies_.rbegin(); at != studies_.rend(); ++at) {
+    const Study& study = at->second;
+    if (study.recipe_id != recipe_id || !study.kind.starts_with("gauge.")) continue;
+    try {
+      const auto found = repeatability_of(study);
+      if (found) newest.emplace(found->name, Repeatability{found->sd, found->dof, study.id});
+    } catch (const Error& error) {
+      spdlog::warn("{} gives no repeatability: {}", study.id, error.what());
+    }
+  }
+  return newest;
+}
+
+std::map<std::string, Repeatability> newest_repeatability(const StudyBook& book, const std::string& recipe_id) {
+  return book.newest_repeatability(recipe_id);
+}
+
+}  // namespace fvd

@@ -1,0 +1,67 @@
+#pragma once
+
+/// All studies that were made: a folder each, which is never changed.
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/mutex.hpp"
+#include "daemon/study/study.hpp"
+#include "daemon/study/study_draft.hpp"
+
+namespace fvd {
+
+/// What repeated measurements of one part differ by, from a gauge study.
+struct Repeatability {
+  double sd = 0.0;    ///< standard deviation of one measurement, in the unit of the value
+  double dof = 0.0;   ///< degrees of freedom
+  std::string study;  ///< identifier
+  bool operator==(const Repeatability&) const = default;
+};
+
+/// A study that cannot be read.
+struct BrokenStudy {
+  std::string id;
+  std::string reason;
+};
+
+/// context: every function thread-safe; blocks for files but for what only reads.
+class StudyBook {
+ public:
+  /// Reads <folder>/*/study.json; no such folder = no studies yet. What a killed process left is cleared away. One that
+  /// cannot be read is told by broken() and keeps its number.
+  explicit StudyBook(std::filesystem::path folder);
+
+  /// Gives the study its id and time and makes its folder: the draft's files, and report.pdf made by page, which is
+  /// called with the study as it will be kept. Durable at the return. Throws Error kStorageFull, kStorageWrite;
+  /// kStudyRefused where a figure or constant is out of the range that could be read back. Nothing is left then.
+  Study keep(StudyDraft draft, const std::function<std::string(const Study&)>& report);
+
+  /// Throws Error kStudyRefused naming the id, also where it cannot be read.
+  [[nodiscard]] Study get(const std::string& id) const;
+  /// The newest first.
+  [[nodiscard]] std::vector<Study> list() const;
+  [[nodiscard]] std::vector<BrokenStudy> broken() const;
+
+  /// By "measurement.value": of each value of this recipe the newest gauge study's figure.
+  [[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const std::string& recipe_id) const;
+
+  [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const { return folder_ / id; }
+
+ private:
+  const std::filesystem::path folder_;
+  mutable Mutex mutex_;
+  std::map<int, Study> studies_ FVD_GUARDED_BY(mutex_);
+  std::map<int, BrokenStudy> broken_ FVD_GUARDED_BY(mutex_);
+  int last_ FVD_GUARDED_BY(mutex_) = 0;
+};
+
+/// The same as StudyBook::newest_repeatability(), for those who are given the book.
+[[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const StudyBook& book,
+                                                                        const std::string& recipe_id);
+
+}  // namespace fvd
