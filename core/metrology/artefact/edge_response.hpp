@@ -21,11 +21,12 @@ struct EdgeResponse {
   double straightness_px = 0.0;  ///< root mean square of the edge's place along it, about the line
 };
 
-/// One step edge through the region, its sides flat with one common slope, at least 16 pixels long and at most a
-/// quarter of the points in the transition. Heights by their distance from the fitted edge give the edge's profile;
-/// its derivative's Fourier transform, over its value at 0, is the transfer (as of a slanted edge, ISO 12233:2017,
-/// for heights). ISO 25178-600:2019: lateral period limit D_LIM. A box of side w reads 0.8 w and 1.657 w.
-/// Refused: no two levels, no straight edge, too few points beside it. context: pure.
+/// One step edge through the region, at least 24 pixels long, its sides flat with one common slope. Heights by their
+/// distance from the fitted edge give the edge's profile; its derivative's Fourier transform, over its value at 0, is
+/// the transfer (as of a slanted edge, ISO 12233:2017, for heights). D_LIM: ISO 25178-600:2019, lateral period limit. A
+/// box of side w reads 0.8 w and 1.657 w; along the pixels, which then sample it coarsely, to 1.5 %, else to 0.5 %.
+/// Refused: no two levels, an edge that strays from a line by more than 1.5 pixels and 0.15 of its width, too few
+/// points beside it. context: pure.
 [[nodiscard]] StudyOutcome<EdgeResponse> edge_response(const HeightField& field, const Region& region = {});
 
 }  // namespace fvd::metrology

@@ -45,8 +45,9 @@ struct SphereProbe {
 };
 
 /// VDI/VDE 2634-2:2012, probing error: form P_F (with its share of points stated) and size P_S. Points farther from
-/// the sphere than six robust standard deviations, and at least 1e-3 of the radius, are not on it: a base beside a cap,
-/// outliers. They count as not measured for the slope limit, which is an own definition.
+/// the sphere than six robust standard deviations are not on it: a base beside a cap, outliers. They count as not
+/// measured for the slope limit, which is an own definition. A base meets a cap's rim within that distance: where the
+/// cap ends inside of the field, a region that ends before the rim keeps the base out.
 /// Refused: no cap of about that radius (0.5 to 2 times) by the majority of the points, under 100 points. Throws
 /// Error(kBadInput) for settings out of range. context: pure.
 [[nodiscard]] StudyOutcome<SphereProbe> sphere_probe(const HeightField& field, const SphereSettings& settings,

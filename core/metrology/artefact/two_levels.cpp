@@ -173,7 +173,7 @@ TwoLevels settled(const std::vector<Point>& points, const TwoLevels& levels) {
 
 }  // namespace
 
-StudyOutcome<TwoLevels> two_levels(const HeightField& field, const Region& region) {
+StudyOutcome<TwoLevels> two_levels(const HeightField& field, const Region& region, Between between) {
   const std::vector<Point> points = valid_points(field, region);
   if (points.size() < kFewestPoints) {
     return StudyRefusal{std::to_string(points.size()) + " points are valid, at least " + std::to_string(kFewestPoints) +
@@ -196,7 +196,7 @@ StudyOutcome<TwoLevels> two_levels(const HeightField& field, const Region& regio
     levels = *next;
   }
   const std::array<int, 3> counts = counted(points, levels);
-  if (counts[1] >= kMostBetween * std::min(counts[0], counts[2])) return no_levels;
+  if (between == Between::kRare && counts[1] >= kMostBetween * std::min(counts[0], counts[2])) return no_levels;
   return settled(points, levels);
 }
 

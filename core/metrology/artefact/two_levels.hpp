@@ -19,10 +19,13 @@ struct TwoLevels {
   }
 };
 
+/// Whether heights half-way between the levels have to be rarer than those at each of them.
+enum class Between { kRare, kAny };
+
 /// The slope is that of the majority of near neighbours, the levels are separated after Otsu (1979) and fitted together
-/// with one slope. Refused where heights half-way between two levels are not rarer than those at each of them, or under
-/// 1000 points are valid. context: pure.
-[[nodiscard]] StudyOutcome<TwoLevels> two_levels(const HeightField& field, const Region& region);
+/// with one slope. Refused: under 1000 valid points, no levels apart, or too many heights between them. context: pure.
+[[nodiscard]] StudyOutcome<TwoLevels> two_levels(const HeightField& field, const Region& region,
+                                                 Between between = Between::kRare);
 
 /// 0 on the lower level, 1 on the upper, from -0.5 to 1.5; NaN in holes and outside of the region.
 [[nodiscard]] Plane<float> level_shares(const HeightField& field, const Region& region, const TwoLevels& levels);
