@@ -46,6 +46,16 @@ std::optional<double> height_at(const HeightField& field, const Region& region, 
   return sum;
 }
 
+// Whether there is a height at the point next to a place.
+bool is_measured(const HeightField& field, const Region& region, double x_um, double y_um) {
+  const double column = std::floor(x_um / field.pitch_x_um);
+  const double row = std::floor(y_um / field.pitch_y_um);
+  if (column < 0.0 || row < 0.0 || column >= field.width() || row >= field.height()) return false;
+  const int c = static_cast<int>(column);
+  const int r = static_cast<int>(row);
+  return !field.is_hole(c, r) && is_inside(region, c, r);
+}
+
 struct ContourPoint {
   double s = 0.0, h = 0.0;
   bool there = false;
@@ -82,12 +92,22 @@ std::vector<EdgeLinePoint> edge_line(const HeightField& field, const Region& reg
   for (std::size_t i = 0; i < count; ++i) {
     const double along = (static_cast<double>(i) + 0.5) * pitch;
     const EdgeFrame frame = curve.frame(curve.place_at_length(along));
+    int rake = 0;
+    int clearance = 0;
+    int flank = 0;  // points of one of them
     for (int k = -reach; k <= reach; ++k) {
       const double s = k * pitch;
-      const auto z = height_at(field, region, frame.x + s * frame.u_x, frame.y + s * frame.u_y);
+      const double x = frame.x + s * frame.u_x;
+      const double y = frame.y + s * frame.u_y;
+      const auto z = height_at(field, region, x, y);
       contour[static_cast<std::size_t>(k + reach)] = {s, z ? (*z - frame.z) / frame.stretch : 0.0, z.has_value()};
+      if (std::abs(s) < options.flank_from_um) continue;
+      flank += s > 0.0 ? 1 : 0;
+      if (is_measured(field, region, x, y)) (s < 0.0 ? rake : clearance) += 1;
     }
-    line.push_back({along, frame.x, frame.y, least_distance(contour), std::nullopt});
+    // Beside a flank that is not there the contour is what the window saw of the other one.
+    const bool both = std::min(rake, clearance) >= kLeastShare * flank;
+    line.push_back({along, frame.x, frame.y, both ? least_distance(contour) : std::nullopt, std::nullopt});
   }
   return line;
 }

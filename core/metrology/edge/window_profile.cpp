@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace fvd::metrology::edge {
 namespace {
@@ -42,6 +43,47 @@ struct PixelFunction {
   }
 };
 
+// The weights through which the surface is seen: of the operator's spread half lies on each side, as near as it can.
+std::vector<double> seen_weights(const LateralKernel& kernel) {
+  if (kernel.operator_px2 == 0.0) return kernel.weights;
+  const auto away = static_cast<std::size_t>(std::ceil(std::sqrt(kernel.operator_px2)));
+  const double aside = kernel.operator_px2 / (2.0 * static_cast<double>(away * away));
+  std::vector<double> seen(kernel.weights.size() + 2 * away, 0.0);
+  for (std::size_t i = 0; i < kernel.weights.size(); ++i) {
+    seen[i] += aside * kernel.weights[i];
+    seen[i + away] += (1.0 - 2.0 * aside) * kernel.weights[i];
+    seen[i + 2 * away] += aside * kernel.weights[i];
+  }
+  return seen;
+}
+
+// The n-th derivative of the mean of |s - t| over all pixels of the window.
+double projected(const std::vector<double>& weights, const PixelFunction& pixel, double side_x, double side_y, double s,
+                 int n) {
+  const int reach_px = static_cast<int>(weights.size() / 2);
+  double sum = 0.0;
+  for (int j = -reach_px; j <= reach_px; ++j) {
+    for (int i = -reach_px; i <= reach_px; ++i) {
+      const double weight =
+          weights[static_cast<std::size_t>(i + reach_px)] * weights[static_cast<std::size_t>(j + reach_px)];
+      sum += weight * pixel(s - i * side_x - j * side_y, n);
+    }
+  }
+  return sum;
+}
+
+double width_of(const std::vector<double>& weights, const PixelFunction& pixel, double side_x, double side_y) {
+  const double step = pixel.a / kStepsPerPixel;
+  const double reach = static_cast<double>(weights.size()) / 2.0 * (side_x + side_y);
+  double squares = 0.0;
+  for (int n = 0; n <= static_cast<int>(std::ceil(reach / step)); ++n) {
+    // Between the nodes: a box steps at a node.
+    const double density = projected(weights, pixel, side_x, side_y, (n + 0.5) * step, 2) / 2.0;
+    squares += 2.0 * density * density * step;
+  }
+  return 1.0 / squares;
+}
+
 }  // namespace
 
 WindowProfile::WindowProfile(const LateralKernel& kernel, double pitch_x_um, double pitch_y_um, double direction_x,
@@ -49,30 +91,18 @@ WindowProfile::WindowProfile(const LateralKernel& kernel, double pitch_x_um, dou
   const double side_x = std::abs(direction_x) * pitch_x_um;
   const double side_y = std::abs(direction_y) * pitch_y_um;
   const PixelFunction pixel{std::max(side_x, side_y), std::min(side_x, side_y)};
-  const int reach_px = kernel.reach_px();
-  reach_um_ = (reach_px + 0.5) * (side_x + side_y);
-  step_um_ = std::max(side_x, side_y) / kStepsPerPixel;
+  step_um_ = pixel.a / kStepsPerPixel;
+  width_um_ = width_of(kernel.weights, pixel, side_x, side_y);
+  const std::vector<double> seen = seen_weights(kernel);
+  reach_um_ = static_cast<double>(seen.size()) / 2.0 * (side_x + side_y);
   const int nodes = static_cast<int>(std::ceil(reach_um_ / step_um_)) + 1;
   distance_.assign(static_cast<std::size_t>(nodes), 0.0);
   sign_.assign(static_cast<std::size_t>(nodes), 0.0);
-  double squares = 0.0;
   for (int n = 0; n < nodes; ++n) {
     const auto at = static_cast<std::size_t>(n);
-    double density = 0.0;
-    for (int j = -reach_px; j <= reach_px; ++j) {
-      for (int i = -reach_px; i <= reach_px; ++i) {
-        const double weight = kernel.weights[static_cast<std::size_t>(i + reach_px)] *
-                              kernel.weights[static_cast<std::size_t>(j + reach_px)];
-        const double s = n * step_um_ - i * side_x - j * side_y;
-        distance_[at] += weight * pixel(s, 0);
-        sign_[at] += weight * pixel(s, 1);
-        density += weight * pixel(s + step_um_ / 2.0, 2) / 2.0;
-      }
-    }
-    // Between the nodes: a box steps at a node.
-    squares += 2.0 * density * density * step_um_;
+    distance_[at] = projected(seen, pixel, side_x, side_y, n * step_um_, 0);
+    sign_[at] = projected(seen, pixel, side_x, side_y, n * step_um_, 1);
   }
-  width_um_ = 1.0 / squares;
 }
 
 double WindowProfile::mean_distance_um(double s_um) const {

@@ -9,7 +9,8 @@
 namespace fvd::metrology::edge {
 
 /// The density k(s) of the window, projected on one direction of the image: each weight of the kernel counts for the
-/// area of its pixel, so that a box of 9 weights and 1 um is 9 um wide. Own definition.
+/// area of its pixel, so that a box of 9 weights and 1 um is 9 um wide, and widened by what the focus operator adds
+/// (kernel.operator_px2). Own definition.
 /// What the window makes of a surface that bends along straight lines only is told by one function, the mean of the
 /// distance: |s| averaged by k. context: any thread once it is made.
 class WindowProfile {
@@ -23,7 +24,7 @@ class WindowProfile {
   /// Its first derivative, -1 to 1.
   [[nodiscard]] double mean_sign(double s_um) const;
   [[nodiscard]] double reach_um() const { return reach_um_; }
-  /// That of a box with the same integral of k^2.
+  /// That of a box with the same integral of k^2, of the weights alone: errors are shared over this width.
   [[nodiscard]] double width_um() const { return width_um_; }
 
  private:

@@ -41,5 +41,21 @@ TEST(WindowKernel, OfADoubleBoxFallsToTheRimAndSumsToOne) {
   EXPECT_LT(kernel.weights.front(), kernel.weights[kernel.weights.size() / 2]);
 }
 
+TEST(WindowKernel, KnowsTheVarianceOfItsOperatorsPixels) {
+  FocusSettings settings;
+  settings.distance_px = 2;
+  const auto variance = [&](FocusOperator op) {
+    settings.focus_operator = op;
+    return 1.5 * window_kernel(settings).operator_px2;  // two thirds of it count
+  };
+
+  // Pixels of the diagonal Laplacian: 2 x (2, -1, -1) along each axis, 1 x along four diagonals, two of them half as
+  // far.
+  EXPECT_NEAR(variance(FocusOperator::kDiagonalLaplacian), (2.0 * 4.0 + 2.0 * 4.0 + 2.0 * 1.0) / 3.0 / 8.0, 1e-12);
+  EXPECT_NEAR(variance(FocusOperator::kModifiedLaplacian), 4.0 / 3.0 / 2.0, 1e-12);
+  EXPECT_NEAR(variance(FocusOperator::kTenengrad), (4.0 + 4.0 / 3.0) / 2.0, 1e-12);
+  EXPECT_EQ(variance(FocusOperator::kIntensity), 0.0);
+}
+
 }  // namespace
 }  // namespace fvd

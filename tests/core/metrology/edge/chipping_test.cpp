@@ -158,5 +158,22 @@ TEST(Chipping, GivesTheHeightOfTheLineAndOfItsParts) {
   EXPECT_NEAR(*edge.chipping.edge_rz_um, 2.0 * (8.0 - 2.25) / 5.0, 0.1);
 }
 
+TEST(Chipping, CallsAPlaceUnmeasuredWhereAFlankIsNotThere) {
+  WedgeTruth truth;
+  truth.middle_x_um = 100.3;
+  truth.middle_y_um = 90.2;
+  truth.set_circle(5.0);
+  HeightField field = make_field(truth, 200, 180, 9, 0.1, 3);
+  for (int row = 60; row < 100; ++row) {
+    // The window still shows the rake some points beyond the edge.
+    for (int column = 106; column < 200; ++column) field.z_um.at(column, row) = kHole;
+  }
+
+  const CuttingEdge edge = measure_cutting_edge(field, {}, {});
+
+  EXPECT_NEAR(edge.chipping.unmeasured_um, 40.0, 1.1);
+  EXPECT_TRUE(edge.chipping.notches.empty());
+}
+
 }  // namespace
 }  // namespace fvd::metrology

@@ -67,6 +67,27 @@ TEST(CuttingEdge, ReadsASharpEdgeAsSharpAndApparentlyRound) {
   }
 }
 
+TEST(CuttingEdge, TakesTheOperatorsSpreadForNoRounding) {
+  WedgeTruth truth = wedge(90.0);
+  truth.set_circle(5.0);
+  const HeightField sharp = make_field(truth, 202, 120, 5, 0.0, 1);
+  HeightField field = make_field(truth, 200, 120, 5, 0.0, 1);
+  for (int row = 0; row < field.height(); ++row) {
+    for (int column = 1; column < 199; ++column) {
+      field.z_um.at(column, row) = 0.25 * sharp.z_um.at(column - 1, row) + 0.5 * sharp.z_um.at(column, row) +
+                                   0.25 * sharp.z_um.at(column + 1, row);
+    }
+  }
+
+  const CuttingEdge without = measure_cutting_edge(field, {}, {});
+  field.kernel.operator_px2 = 0.5;
+  const CuttingEdge with = measure_cutting_edge(field, {}, {});
+
+  EXPECT_NEAR(median_of(with, EdgeQuantity::kRadius), 5.0, 0.02);
+  EXPECT_NEAR(median_of(without, EdgeQuantity::kRadius), std::sqrt(25.0 + 0.5 / 0.2146), 0.03);
+  EXPECT_EQ(with.window_um, without.window_um);
+}
+
 TEST(CuttingEdge, ReadsAsymmetryInEveryDirection) {
   for (const Direction& direction : kDirections) {
     for (const double k : {0.5, 2.0}) {

@@ -70,6 +70,23 @@ TEST(WindowProfile, IsTheProjectionOfASquareBoxSeenAtAnAngle) {
   }
 }
 
+TEST(WindowProfile, IsWiderByWhatTheOperatorAdds) {
+  const double angle = 17.0 * std::numbers::pi / 180.0;
+  for (const double operator_px2 : {0.0, 0.5, 5.0}) {
+    LateralKernel kernel = box(5);
+    kernel.operator_px2 = operator_px2;
+    const WindowProfile window(kernel, 2.0, 2.0, std::cos(angle), std::sin(angle));
+    const WindowProfile bare(box(5), 2.0, 2.0, std::cos(angle), std::sin(angle));
+
+    // The mean distance exceeds the distance itself by the window's variance, summed over all places.
+    double variance = 0.0;
+    for (double s = -30.0; s < 30.0; s += 0.01) variance += 0.01 * (window.mean_distance_um(s) - std::abs(s));
+
+    EXPECT_NEAR(variance, 4.0 * (25.0 / 12.0 + operator_px2), 0.003);
+    EXPECT_EQ(window.width_um(), bare.width_um());
+  }
+}
+
 TEST(Whitening, UndoesTheCorrelationItIsMadeOf) {
   std::vector<double> s;
   for (int i = 0; i < 40; ++i) s.push_back(0.5 * i + (i % 3 == 0 ? 0.1 : 0.0));

@@ -1,14 +1,18 @@
 #include "core/metrology/study/noise_study.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.hpp"
+#include "core/metrology/uncertainty/noise_map.hpp"
 #include "tests/core/metrology/study/scans.hpp"
 
 namespace fvd::metrology {
@@ -80,6 +84,28 @@ TEST(NoiseStudy, PoolsManyScans) {
   double squares = 0.0;
   for (const float here : study.noise_map_um.pixels()) squares += static_cast<double>(here) * static_cast<double>(here);
   EXPECT_NEAR(std::sqrt(squares / 30'000.0), study.noise_um, 1e-6);
+}
+
+TEST(NoiseStudy, OfTwoScansIsNearThatOfTwentyThroughAFocusWindow) {
+  HeightField flat{Plane<double>(480, 360), Plane<float>(480, 360, 0.2F), 1.0, 1.0, {}};
+  flat.kernel.weights.assign(9, 1.0 / 9.0);
+  NoiseMaps noise(flat, 5);
+  std::vector<HeightField> scans;
+  for (std::uint64_t draw = 0; draw < 20; ++draw) {
+    scans.push_back(flat.clone());
+    noise.add_to_heights(draw, scans.back().z_um);
+  }
+  const std::vector<const HeightField*> all = pointers(scans);
+
+  const double pooled = studied(all).noise_um;
+  double worst = 0.0;
+  for (std::size_t first = 0; first < 20; first += 2) {
+    worst = std::max(worst, std::abs(studied(std::span(all).subspan(first, 2)).noise_um / pooled - 1.0));
+  }
+
+  RecordProperty("noise_error", std::to_string(worst));
+  EXPECT_NEAR(pooled, 0.2, 0.004);
+  EXPECT_LT(worst, 0.05);
 }
 
 TEST(NoiseStudy, DoesNotCountTheSurface) {
