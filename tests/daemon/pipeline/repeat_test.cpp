@@ -109,6 +109,10 @@ TEST_F(AFlatSurface, HasHalfTheNoiseInTheMeanOfFourScans) {
   const Measured four = measure_with(4);
   const double of_four = noise_um(four.data.map, measure_with(4).data.map);
 
+  RecordProperty("noise_of_one_um", std::to_string(of_one));
+  RecordProperty("noise_of_four_um", std::to_string(of_four));
+  RecordProperty("sigma_over_noise", std::to_string(rms_um(four.data.map.sigma_m) / of_four));
+  RecordProperty("sd_rms_um", std::to_string(four.data.repeated.value().sd_rms_um.value()));
   EXPECT_GT(of_one, 0.02);
   EXPECT_GT(of_one / of_four, 1.6);
   EXPECT_LT(of_one / of_four, 2.4);
