@@ -11,6 +11,7 @@
 #include "daemon/jobs/job_runner.hpp"
 #include "daemon/jobs/machine_board.hpp"
 #include "daemon/jobs/machine_thread.hpp"
+#include "daemon/jobs/result_evaluator.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/task_runner.hpp"
 #include "daemon/jobs/work_queue.hpp"
@@ -61,6 +62,7 @@ class Engine {
   ThreadTicks ticks_;  // of thread_
   TaskRunner tasks_;
   JobRunner runner_;
+  ResultEvaluator evaluator_;
   JobQueue jobs_;
   MachineThread thread_;  // last: ends before anything it uses
 };

@@ -180,6 +180,7 @@ struct JobStore::Impl {
   KeptEnds kept_ends FVD_GUARDED_BY(kept_mutex);  ///< that could not be stored yet
   RecipeTable recipes{{database, mutex}, {reader, read_mutex}};
   CurveWidthTable widths{{database, mutex}, {reader, read_mutex}};
+  EvaluationTable evaluations{{database, mutex}, {reader, read_mutex}};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
@@ -342,6 +343,8 @@ int JobStore::acknowledge(const JobKey& key) {
 RecipeVersions& JobStore::recipe_versions() noexcept { return impl_->recipes; }
 
 CurveWidthTable& JobStore::curve_widths() noexcept { return impl_->widths; }
+
+EvaluationTable& JobStore::evaluations() noexcept { return impl_->evaluations; }
 
 std::int64_t JobStore::epoch() const noexcept { return impl_->epoch; }
 

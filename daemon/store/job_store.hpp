@@ -10,6 +10,7 @@
 
 #include "daemon/recipes/recipe_versions.hpp"
 #include "daemon/store/curve_width_table.hpp"
+#include "daemon/store/evaluation_table.hpp"
 #include "daemon/store/job_status.hpp"
 
 namespace fvd {
@@ -67,6 +68,9 @@ class JobStore {
 
   /// In the same file; as long as the store. context: thread-safe.
   [[nodiscard]] CurveWidthTable& curve_widths() noexcept;
+
+  /// In the same file; as long as the store. context: thread-safe.
+  [[nodiscard]] EvaluationTable& evaluations() noexcept;
 
   /// Counts the times this database was opened, from 1.
   [[nodiscard]] std::int64_t epoch() const noexcept;
