@@ -9,6 +9,7 @@
 #include "daemon/base/exit_code.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/recipes/recipe_document.hpp"
+#include "daemon/recipes/recipe_masks.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 
 namespace fvd {
@@ -43,7 +44,7 @@ namespace {
 
 int check_recipe(const std::filesystem::path& file, std::ostream& err) {
   try {
-    const Recipe recipe = parse_recipe(read_text_file(file), file.stem().string());
+    const Recipe recipe = read_recipe_file(file);
     for (const std::string& note : recipe.notes) err << file.string() << ": note: " << note << std::endl;
     return exit_code::kOk;
   } catch (const Error& error) {

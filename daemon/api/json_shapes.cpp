@@ -17,8 +17,8 @@ using nlohmann::ordered_json;
 constexpr std::size_t kLongestMessage_bytes = 200;
 /// What a full result repeats of result.json.
 constexpr std::array kFullGroups{"values", "focus", "frames", "slices", "steps", "times"};
-/// Of formats 2 and later.
-constexpr std::array kFullLists{"verdict", "warnings"};
+/// Of formats 2 and later; the last two only of results that were evaluated anew.
+constexpr std::array kFullLists{"verdict", "warnings", "evaluated", "source"};
 
 std::string shortened(const std::string& text) {
   return text.size() <= kLongestMessage_bytes ? text : text.substr(0, kLongestMessage_bytes - 3) + "...";

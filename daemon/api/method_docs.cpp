@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 
 #include "config/field_writer.hpp"
+#include "daemon/api/error_meanings.hpp"
 #include "daemon/api/rpc_errors.hpp"
 #include "daemon/base/version.hpp"
 
@@ -145,16 +147,23 @@ void write_params(const MethodTable& methods, std::ostream& out) {
 }
 
 void write_errors(std::ostream& out) {
-  std::map<int, std::pair<std::string, bool>> errors{{kNotAllowed, {kNotAllowedName, false}}};
+  struct Row {
+    std::string name;
+    bool retry;
+    std::string_view meaning;
+  };
+  std::map<int, Row> errors{{kNotAllowed, {kNotAllowedName, false, "this caller may not do that: ask who looks after the instrument"}}};
   for (int i = 0; i <= static_cast<int>(kLastErrorCode); ++i) {
     const auto code = static_cast<ErrorCode>(i);
     const RpcError wire = rpc_error(code);
-    errors[wire.code] = {std::string(error_name(code)), wire.retry};
+    errors[wire.code] = {std::string(error_name(code)), wire.retry, error_meaning(code)};
   }
-  out << "| code | error | may succeed later |\n|---|---|---|\n";
+  out << "| code | error | may succeed later | meaning, what to do |\n|---|---|---|---|\n";
   for (const auto& [code, error] : errors) {
-    out << "| " << code << " | " << error.first << " | " << (error.second ? "yes" : "") << " |\n";
+    out << "| " << code << " | " << error.name << " | " << (error.retry ? "yes" : "") << " | " << error.meaning
+        << " |\n";
   }
+  out << "\nReasons that an evaluation gives in a result, and no call fails with:\n\n" << result_codes_markdown();
 }
 
 }  // namespace

@@ -25,6 +25,13 @@ bool is_name(std::string_view name) {
   return !name.empty() && name.size() <= kMaxNameLength && std::all_of(name.begin(), name.end(), allowed);
 }
 
+/// A file of a folder, and of no other: no path can be made of it.
+bool is_mask_name(std::string_view name) {
+  constexpr std::string_view kSuffix = ".png";
+  if (!name.ends_with(kSuffix) || name.starts_with('.')) return false;
+  return std::all_of(name.begin(), name.end(), [](char c) { return c == '.' || is_name({&c, 1}); });
+}
+
 template <typename Value>
 std::vector<std::string> keys_of(const std::map<std::string, Value>& values) {
   std::vector<std::string> keys;
@@ -90,6 +97,10 @@ class Checker {
       for (const PlannedPoint& point : region.polygon) corners.push_back({point.x_um, point.y_um});
       if (const auto problem = metrology::polygon_problem(corners)) refuse(pointer + "/polygon_um", *problem);
     }
+    if (region.shape == "mask_png" && !is_mask_name(region.mask_png)) {
+      refuse(pointer + "/mask_png",
+             "is no name of a PNG file; expected one such as land.png, without a path, out of A-Z a-z 0-9 _ - .");
+    }
     if (region.shape == "threshold_um") check_threshold(pointer + "/threshold_um", region);
     if (region.shape == "union" || region.shape == "intersection" || region.shape == "not") {
       if (region.parts.empty()) refuse(pointer + "/" + region.shape, "is empty; expected names of regions");
@@ -130,6 +141,19 @@ class Checker {
                         did_you_mean(name, keys_of(plan_.surfaces)));
   }
 
+  /// Those before it on the way from the measured surface, in any order.
+  std::vector<PlannedOperation> earlier_steps(const PlannedSurface& surface, std::size_t index) const {
+    std::vector<PlannedOperation> steps(surface.steps.begin(),
+                                        surface.steps.begin() + static_cast<std::ptrdiff_t>(index));
+    std::set<std::string> seen;
+    auto from = plan_.surfaces.find(surface.from);
+    while (from != plan_.surfaces.end() && &from->second != &surface && seen.insert(from->first).second) {
+      steps.insert(steps.end(), from->second.steps.begin(), from->second.steps.end());
+      from = plan_.surfaces.find(from->second.from);
+    }
+    return steps;
+  }
+
   void check_step(const std::string& pointer, const PlannedSurface& surface, std::size_t index) {
     const PlannedOperation& step = surface.steps[index];
     for (const std::string& region : step.regions) check_region_name(pointer + "/regions", region);
@@ -140,8 +164,7 @@ class Checker {
     if (step.side == "S" && step.robust && step.method == "gaussian") {
       refuse(pointer + "/robust", "is for the regression methods; expected gaussian_regression_1 or _2");
     }
-    for (std::size_t other = 0; other < index; ++other) {
-      const PlannedOperation& before = surface.steps[other];
+    for (const PlannedOperation& before : earlier_steps(surface, index)) {
       if (before.op != "filter" || before.side == step.side) continue;
       const double s_um = before.side == "S" ? before.nesting_um : step.nesting_um;
       const double l_um = before.side == "S" ? step.nesting_um : before.nesting_um;

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "core/metrology/operations/region.hpp"
 #include "core/surface/verdict.hpp"
 #include "daemon/evaluation/field_check.hpp"
@@ -59,6 +61,20 @@ void add_missing(const std::vector<std::string>& names, std::vector<std::string>
   std::sort(list.begin(), list.end());
 }
 
+/// The files of regions that are pictures, with their digests: in the details of what rests on them.
+void note_masks(const MeasurementInput& input, EvaluatedMeasurement& made) {
+  nlohmann::ordered_json digests = nlohmann::ordered_json::object();
+  for (const std::string& name : used_regions(input.plan, input.planned)) {
+    const auto mask = input.plan.masks.find(input.plan.regions.at(name).mask_png);
+    if (mask != input.plan.masks.end()) digests[mask->first] = mask->second->sha256;
+  }
+  if (digests.empty()) return;
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();
+  if (!made.details.empty()) details = nlohmann::ordered_json::parse(made.details);
+  details["mask_sha256"] = std::move(digests);
+  made.details = details.dump();
+}
+
 /// Where nothing was measured, each limit is missed by the lack of a value.
 void add_invalid_values(const MeasurementInput& input, EvaluatedMeasurement& made) {
   for (const auto& [key, limits] : input.planned.limits) {
@@ -86,6 +102,7 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
   made.id = id;
   made.kind = input.planned.kind;
   made.surface = input.planned.surface;
+  note_masks(input, made);
   add_missing(never_evaluated(), made.not_evaluated);
   if (!knows_window(input.measured.field)) add_missing({"correlation"}, made.not_evaluated);
   made.warnings.insert(made.warnings.end(), input.surface.warnings.begin(), input.surface.warnings.end());

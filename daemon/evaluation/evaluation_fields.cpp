@@ -67,6 +67,11 @@ void describe(PlannedRegion& region, Fields& fields) {
             circle.require("radius");
           });
         }},
+       {"mask_png",
+        [&](Fields& in) {
+          in.text("mask_png", region.mask_png, kMaxNameLength,
+                  "a file in the folder masks beside the recipes: 8 bit grey, as large as the image; 0 = outside");
+        }},
        {"threshold_um",
         [&](Fields& in) {
           in.group("threshold_um", "the points whose height lies within these", [&](Fields& heights) {

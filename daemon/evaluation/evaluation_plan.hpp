@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/image/image.hpp"
 #include "core/surface/verdict.hpp"
 
 namespace fvd {
@@ -28,12 +30,19 @@ struct PlannedPoint {
   double y_um = 0.0;
 };
 
+/// A region as a picture: what a file masks/NAME.png beside the recipe holds. Who reads the recipe reads it too.
+struct RegionMask {
+  Plane<std::uint8_t> points;  ///< as large as the surface; 0 = outside of the region
+  std::string sha256;          ///< of the file's bytes
+};
+
 struct PlannedRegion {
-  std::string shape;  ///< rectangle_um, polygon_um, circle_um, threshold_um, not, union, intersection
+  std::string shape;  ///< rectangle_um, polygon_um, circle_um, mask_png, threshold_um, not, union, intersection
   PlannedRectangle rectangle;
   std::vector<PlannedPoint> polygon;
   PlannedPoint centre;             ///< of a circle
   double radius_um = 0.0;          ///< > 0
+  std::string mask_png;            ///< name of a file, without a path: a key of EvaluationPlan::masks
   std::optional<double> above_um;  ///< threshold: heights of the surface that is evaluated
   std::optional<double> below_um;
   bool largest = false;            ///< threshold: only the largest connected part
@@ -124,7 +133,8 @@ struct EvaluationPlan {
   std::map<std::string, PlannedRegion> regions;
   std::map<std::string, PlannedMeasurement> measurements;
   PlannedDecision decision;
-  std::vector<std::string> order;  ///< of the measurements, as the document has them
+  std::vector<std::string> order;                                  ///< of the measurements, as the document has them
+  std::map<std::string, std::shared_ptr<const RegionMask>> masks;  ///< by file name; not of the document
 
   [[nodiscard]] bool empty() const { return measurements.empty(); }
 };

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "daemon/evaluation/plan_regions.hpp"
 #include "daemon/evaluation/region_box.hpp"
 
 namespace fvd {
@@ -65,6 +66,10 @@ class FieldChecker {
   }
 
   void check_region(const std::string& name, const PlannedRegion& region) {
+    if (const auto mask = plan_.masks.find(region.mask_png); region.shape == "mask_png" && mask != plan_.masks.end()) {
+      const auto problem = mask_problem(*mask->second, field_);
+      if (problem) refuse("/regions/" + name + "/mask_png", region.mask_png + " " + *problem);
+    }
     const BoxUm box = region_box(plan_, name, &field_);
     if (has_point(field_, box)) return;
     const std::string pointer = "/regions/" + name + "/" + region.shape;
@@ -176,6 +181,8 @@ void add_with_parts(const EvaluationPlan& plan, const std::string& name, std::se
   for (const std::string& part : found->second.parts) add_with_parts(plan, part, names);
 }
 
+}  // namespace
+
 std::set<std::string> used_regions(const EvaluationPlan& plan, const PlannedMeasurement& planned) {
   std::set<std::string> names;
   for (const std::string& name : {planned.region, planned.lower, planned.upper}) add_with_parts(plan, name, names);
@@ -188,8 +195,6 @@ std::set<std::string> used_regions(const EvaluationPlan& plan, const PlannedMeas
   }
   return names;
 }
-
-}  // namespace
 
 Problems outside_every_field(const EvaluationPlan& plan, const std::string& place) {
   Problems problems;

@@ -2,6 +2,7 @@
 
 /// What an evaluation looks at, against the field of view: before anything is measured, and beside what was measured.
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ namespace fvd {
 /// as above; what they let pass tells itself in the measurement. context: pure.
 [[nodiscard]] Problems outside_field(const EvaluationPlan& plan, const metrology::Grid& field,
                                      const std::string& place);
+
+/// The regions that the measurement, or a surface that it is made on, uses, with those that they are made of.
+[[nodiscard]] std::set<std::string> used_regions(const EvaluationPlan& plan, const PlannedMeasurement& planned);
 
 /// One warning for each drawn shape that the measurement, or a surface that it is made on, uses and that lies outside
 /// of the field of view in part: with the share of its area outside, to 0.5 % of it. context: pure.

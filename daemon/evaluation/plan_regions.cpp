@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.hpp"
 #include "core/metrology/operations/region.hpp"
 #include "core/metrology/operations/region_combine.hpp"
 #include "core/metrology/operations/region_threshold.hpp"
@@ -30,6 +31,14 @@ Region unshrunk(const EvaluationPlan& plan, const PlannedRegion& region, const H
     for (const PlannedPoint& corner : region.polygon) corners.push_back({corner.x_um, corner.y_um});
     return metrology::polygon_region(grid, corners);
   }
+  if (region.shape == "mask_png") {
+    const auto mask = plan.masks.find(region.mask_png);
+    if (mask == plan.masks.end()) throw Error(ErrorCode::kBadRecipe, region.mask_png + " was not read");
+    if (const auto problem = mask_problem(*mask->second, grid)) {
+      throw Error(ErrorCode::kBadRecipe, region.mask_png + " " + *problem);
+    }
+    return metrology::mask_region(grid, mask->second->points);
+  }
   if (region.shape == "threshold_um") {
     return metrology::threshold_region(field, {region.above_um, region.below_um, region.largest}).region;
   }
@@ -44,6 +53,13 @@ Region unshrunk(const EvaluationPlan& plan, const PlannedRegion& region, const H
 }
 
 }  // namespace
+
+std::optional<std::string> mask_problem(const RegionMask& mask, const Grid& grid) {
+  const auto size = [](int width, int height) { return std::to_string(width) + " x " + std::to_string(height); };
+  if (mask.points.width() == grid.width && mask.points.height() == grid.height) return std::nullopt;
+  return "has " + size(mask.points.width(), mask.points.height()) + " points, the surface has " +
+         size(grid.width, grid.height) + ": draw the mask on an image of the same size";
+}
 
 Region region_points(const EvaluationPlan& plan, const std::string& name, const HeightField& field) {
   if (name.empty()) return {};

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/field_writer.hpp"
+#include "core/base/error.hpp"
 #include "core/base/units.hpp"
 #include "daemon/evaluation/apply_operation.hpp"
 #include "daemon/evaluation/evaluation_fields.hpp"
@@ -55,6 +56,16 @@ void hide_unusable(metrology::HeightField& field) {
 
 bool looks_at_sigma(const PlannedOperation& step, const metrology::HeightField& field) {
   return step.op == "mask_sigma" || (step.op == "outliers" && field.has_sigma()) || step.fit == "weighted";
+}
+
+/// Masks that do not fit the surface are data too: a refusal.
+metrology::OperationReport applied(const EvaluationPlan& plan, const PlannedOperation& step, WorkerPool* pool,
+                                   metrology::HeightField& field) {
+  try {
+    return apply_operation(plan, step, pool, field);
+  } catch (const Error& error) {
+    return metrology::refusal(error.what());
+  }
 }
 
 }  // namespace
@@ -110,7 +121,7 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
   ordered_json steps = ordered_json::parse(source.steps_json);
   for (PlannedOperation step : planned.steps) {
     ordered_json json = fields_to_json([&](Fields& fields) { describe(step, fields); });
-    const metrology::OperationReport report = apply_operation(plan_, step, pool_, made.field);
+    const metrology::OperationReport report = applied(plan_, step, pool_, made.field);
     if (report.refused) {
       made.refused = step.op + ": " + *report.refused;
       json["refused"] = *report.refused;

@@ -50,10 +50,12 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir, config.objectives}),
       runner_(
           {config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, deps.make_result}),
+      evaluator_({deps.store, board_, config.paths.state_dir / "results", memory_budget_bytes(config)}),
       jobs_({deps.store,
              board_,
              work_,
              runner_,
+             evaluator_,
              {pool_.threads(), memory_budget_bytes(config), pages_},
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
              [this] { return tasks_.task_stop(); },
@@ -82,6 +84,7 @@ void Engine::shut_down() {
 
 void Engine::finish() {
   shut_down();
+  evaluator_.finish();
   thread_.finish();
   study_runner_.finish();
   runner_.store_late_end();  // the last chance

@@ -13,6 +13,7 @@
 #include "daemon/jobs/machine_board.hpp"
 #include "daemon/jobs/machine_thread.hpp"
 #include "daemon/jobs/objective_book.hpp"
+#include "daemon/jobs/result_evaluator.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/study_runner.hpp"
 #include "daemon/jobs/task_runner.hpp"
@@ -69,6 +70,7 @@ class Engine {
   ThreadTicks ticks_;  // of thread_
   TaskRunner tasks_;
   JobRunner runner_;
+  ResultEvaluator evaluator_;
   JobQueue jobs_;
   StudyDesk desk_;
   StudyRunner study_runner_;

@@ -148,7 +148,21 @@ void JobQueue::prepare(const std::string& recipe_id) {
   });
 }
 
+std::optional<StoredJob> JobQueue::stored_evaluation(const JobKey& key) const {
+  const auto* id = std::get_if<std::string>(&key);
+  if (id == nullptr) return std::nullopt;
+  const auto evaluation = deps_.store.evaluations().find(*id);
+  if (!evaluation) return std::nullopt;
+  StoredJob told = deps_.store.find(evaluation->job_id);
+  told.status.job_id = evaluation->id;
+  told.status.request.recipe = evaluation->recipe;
+  told.result_dir = evaluation->result_dir;
+  told.result_json = evaluation->result_json;
+  return told;
+}
+
 StoredJob JobQueue::stored(const JobKey& key) const {
+  if (auto evaluation = stored_evaluation(key)) return *std::move(evaluation);
   StoredJob stored = deps_.store.find(key);
   if (stored.status.state != JobState::kProcessing) return stored;
   const auto running = on_board(key);
@@ -159,6 +173,14 @@ StoredJob JobQueue::stored(const JobKey& key) const {
 }
 
 std::optional<JobStatus> JobQueue::next_unacknowledged() const { return deps_.store.next_unacknowledged(); }
+
+std::shared_ptr<DeviceTask> JobQueue::evaluate(const JobKey& key, const std::string& recipe_id) {
+  if (const auto evaluation = stored_evaluation(key)) {
+    throw Error(ErrorCode::kBadInput,
+                evaluation->status.job_id + " is an evaluation itself: name the job whose surface is meant");
+  }
+  return deps_.evaluator.begin(stored(key), deps_.load_recipe(recipe_id));
+}
 
 int JobQueue::acknowledge(const JobKey& key) {
   const int remaining = deps_.store.acknowledge(key);

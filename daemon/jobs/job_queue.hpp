@@ -3,6 +3,7 @@
 /// Accepts jobs, one at a time, and tells of them and their results.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <stop_token>
@@ -14,6 +15,7 @@
 #include "daemon/jobs/job_check.hpp"
 #include "daemon/jobs/job_runner.hpp"
 #include "daemon/jobs/machine_board.hpp"
+#include "daemon/jobs/result_evaluator.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/work_queue.hpp"
 #include "daemon/recipes/recipe.hpp"
@@ -31,6 +33,7 @@ class JobQueue final : public JobService, public ResultService {
     MachineBoard& board;
     WorkQueue& work;
     JobRunner& runner;
+    ResultEvaluator& evaluator;
     ComputeLimits limits;
     std::function<Recipe(const std::string& recipe_id)> load_recipe;  ///< throws as load_recipe() does
     std::function<std::stop_source()> task_stop;                      ///< as TaskRunner::task_stop()
@@ -47,6 +50,7 @@ class JobQueue final : public JobService, public ResultService {
   [[nodiscard]] StoredJob stored(const JobKey& key) const override;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override;
   int acknowledge(const JobKey& key) override;
+  [[nodiscard]] std::shared_ptr<DeviceTask> evaluate(const JobKey& key, const std::string& recipe_id) override;
 
   /// Asks the job that waits or runs to end.
   void stop_job();
@@ -65,6 +69,7 @@ class JobQueue final : public JobService, public ResultService {
   [[nodiscard]] AcceptedJob made_durable(const JobRequest& request, const Offer& offer);
   void accept(const AcceptedJob& job);
   [[nodiscard]] Recipe checked_recipe(const Offer& offer) const;
+  [[nodiscard]] std::optional<StoredJob> stored_evaluation(const JobKey& key) const;
   [[nodiscard]] std::optional<JobStatus> on_board(const JobKey& key) const;
 
   const Dependencies deps_;

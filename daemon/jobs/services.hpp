@@ -60,8 +60,8 @@ class JobService {
   };
   /// Accepts a job and returns after its row is durable; the scan runs later on the machine's thread. A repeated
   /// request returns the existing job, also while the first is still being made durable: it waits for it then. Throws
-  /// Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kObjectiveMismatch, kMemoryBudget,
-  /// kSeqConflict, kSeqStale, kStorageFull, kDatabase, kShuttingDown.
+  /// Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kObjectiveMismatch, kRegionOutside,
+  /// kMemoryBudget, kSeqConflict, kSeqStale, kStorageFull, kDatabase, kShuttingDown.
   virtual Started start(const JobRequest& request) = 0;
 
   /// Throws Error kUnknownJob.
@@ -74,7 +74,7 @@ class JobService {
   virtual JobStatus abort(const JobKey& key) = 0;
 
   /// Loads and checks a recipe and makes it the prepared one. Throws Error kUnknownRecipe, kBadRecipe, kStageLimit,
-  /// kObjectiveMismatch, kMemoryBudget, kBusy.
+  /// kObjectiveMismatch, kRegionOutside, kMemoryBudget, kBusy.
   virtual void prepare(const std::string& recipe_id) = 0;
 };
 
@@ -84,7 +84,8 @@ class ResultService {
  public:
   virtual ~ResultService() = default;
 
-  /// The job, its result's folder and the text of its result.json, of one moment. Throws Error kUnknownJob.
+  /// The job, its result's folder and the text of its result.json, of one moment; for the id of an evaluation the job
+  /// as it is told with that id, the evaluation's recipe, folder and text. Throws Error kUnknownJob.
   [[nodiscard]] virtual StoredJob stored(const JobKey& key) const = 0;
 
   /// The oldest ended job that was not acknowledged.
@@ -92,6 +93,10 @@ class ResultService {
 
   /// Returns how many remain. Repeating it changes nothing. Throws Error kUnknownJob, kBusy while the job runs.
   virtual int acknowledge(const JobKey& key) = 0;
+
+  /// Evaluates the result's surface by another recipe into a record of its own; see ResultEvaluator. Throws Error
+  /// kUnknownJob, kUnknownRecipe, kBadRecipe, kBadInput, kMemoryBudget, kBusy, kShuttingDown.
+  [[nodiscard]] virtual std::shared_ptr<DeviceTask> evaluate(const JobKey& key, const std::string& recipe_id) = 0;
 };
 
 /// Commands to the devices between the jobs.

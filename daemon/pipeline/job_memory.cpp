@@ -58,7 +58,7 @@ std::size_t evaluation_bytes(const EvaluationPlan& plan, std::size_t pixels) {
   std::size_t working = kMeasurementBytesPerPixel + weight_map_bytes(plan);
   if (has_filter(plan)) working = std::max(working, kFilterBytesPerPixel);
   if (has_autocorrelation(plan)) working = std::max(working, kMeasurementBytesPerPixel + kAutocorrelationBytesPerPixel);
-  bytes += working;
+  bytes += working + plan.masks.size();  // a byte a point each
   return bytes * pixels;
 }
 
@@ -100,6 +100,18 @@ void require_memory(const JobMemory& needed, int width, int height, std::size_t 
     throw Error(ErrorCode::kMemoryBudget, message.str());
   }
   if (pages != nullptr && needed.total_bytes() + pages->kept_bytes() > budget_bytes) pages->release();
+}
+
+void require_evaluation_memory(const Recipe& recipe, int width, int height, std::size_t budget_bytes) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const std::size_t needed =
+      evaluation_bytes(recipe.evaluation, pixels) + pixels * (sizeof(MaskReasons) + kEncodingBytesPerPixel);
+  if (needed <= budget_bytes) return;
+  std::ostringstream message;
+  message << "the evaluation by recipe " << recipe.id << " needs " << mebibytes(needed) << " MiB for " << width << " x "
+          << height << " points, the budget is " << mebibytes(budget_bytes)
+          << " MiB: use fewer surfaces, or raise compute.memory_budget_mib";
+  throw Error(ErrorCode::kMemoryBudget, message.str());
 }
 
 }  // namespace fvd

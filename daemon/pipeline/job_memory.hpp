@@ -29,4 +29,8 @@ struct JobMemory {
 /// jobs left for reuse, are given back to the system where the budget would not hold both.
 void require_memory(const JobMemory& needed, int width, int height, std::size_t budget_bytes, KeptPages* pages);
 
+/// Throws Error kMemoryBudget, with the figure, if the evaluation of a stored surface of this size, and its report,
+/// need more than the budget.
+void require_evaluation_memory(const Recipe& recipe, int width, int height, std::size_t budget_bytes);
+
 }  // namespace fvd

@@ -7,9 +7,13 @@
 #include <cstddef>
 #include <limits>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/focus/fit/smooth_heights.hpp"
 #include "daemon/evaluation/evaluate_surface.hpp"
+#include "daemon/export/exporter_table.hpp"
 #include "daemon/pipeline/evaluation_input.hpp"
 
 namespace fvd {
@@ -22,6 +26,21 @@ HeightMap finish(const StreamingFocusStack& stack, PeakMethod method, const Resu
   HeightMap map = stack.finish(method);
   hide_border(map, data.hidden_border, data.focus.window_px / 2 + data.focus.distance_px);
   return map;
+}
+
+/// The files that the recipe asks for, with its report or without it as its section "report" says.
+std::optional<std::vector<std::string>> files_of(const Recipe& recipe) {
+  constexpr std::string_view kReport = "report.pdf";
+  if (!recipe.report.pdf) return recipe.exports;
+  std::vector<std::string> names;
+  if (recipe.exports) {
+    names = *recipe.exports;
+  } else {
+    for (const Exporter& exporter : chosen_exporters(std::nullopt)) names.emplace_back(exporter.name);
+  }
+  std::erase(names, kReport);
+  if (*recipe.report.pdf) names.emplace_back(kReport);
+  return names;
 }
 
 }  // namespace
@@ -46,7 +65,7 @@ void note_recipe(const Recipe& recipe, ResultData& data) {
     data.drift_undone_y_px_per_um = recipe.drift_px_per_um_y;
   }
   data.min_valid_fraction = recipe.min_valid_fraction;
-  data.exports = recipe.exports;
+  data.exports = files_of(recipe);
 }
 
 void note_light(const std::vector<SuspectSlice>& left_out, double flicker_percent, ResultData& data) {

@@ -22,6 +22,12 @@ struct LearntWidth {
   int most_bin_slices = kMaxBinSlices;  ///< larger bins would have cost heights near the ends of the range
 };
 
+/// The report for people, beside the other files of a result.
+struct ReportSettings {
+  std::optional<bool> pdf;      ///< with or without report.pdf, whatever export says; absent = as export says
+  std::string language = "en";  ///< the only one so far
+};
+
 struct Recipe {
   std::string id;  ///< file name without .json: [A-Za-z0-9_-]{1,32}
   std::string description;
@@ -60,7 +66,8 @@ struct Recipe {
   /// Names of exporters whose files a result has beside result.json; nothing = all there are.
   std::optional<std::vector<std::string>> exports;
   EvaluationPlan evaluation;  ///< what is measured on the heights; empty = nothing
-  bool keep_slices = false;   ///< also keep the slices (PGM) and their z in the result's folder slices/
+  ReportSettings report;
+  bool keep_slices = false;  ///< also keep the slices (PGM) and their z in the result's folder slices/
 };
 
 /// Whether the bins follow from a width that the document does not tell.

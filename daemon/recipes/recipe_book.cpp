@@ -9,6 +9,7 @@
 #include "core/base/error.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 #include "daemon/recipes/recipe_folder.hpp"
+#include "daemon/recipes/recipe_masks.hpp"
 
 namespace fvd {
 
@@ -94,16 +95,25 @@ RecipeVersion RecipeBook::get(const std::string& id) const {
   return current_locked(id);
 }
 
+Recipe RecipeBook::parsed_with_masks(const std::string& text, const std::string& id) const {
+  Problems problems;
+  Recipe recipe = read_recipe(text, id, problems);
+  read_masks(folders_.shipped, recipe.evaluation, problems);
+  throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
+  return recipe;
+}
+
 Recipe RecipeBook::load(const std::string& id) const {
   bool edited = false;
-  Recipe recipe = parse_recipe(text_of(id, edited), id);
+  Recipe recipe = parsed_with_masks(text_of(id, edited), id);
   for (const std::string& note : recipe.notes) spdlog::warn("recipe {} {}", id, note);
   return recipe;
 }
 
 RecipeCheck RecipeBook::check(const std::string& text, const std::string& id) const {
   Problems problems;
-  const Recipe recipe = read_recipe(text, id, problems);
+  Recipe recipe = read_recipe(text, id, problems);
+  read_masks(folders_.shipped, recipe.evaluation, problems);
   for (Problem& found : check_stage_limits(recipe, limits_, problems)) {
     problems.push_back(std::move(found));
   }
@@ -152,7 +162,7 @@ std::int64_t RecipeBook::save(const RecipeSave& request) {
 }
 
 std::int64_t RecipeBook::save_locked(const RecipeSave& request) {
-  const Recipe recipe = parse_recipe(request.text, request.id);
+  const Recipe recipe = parsed_with_masks(request.text, request.id);
   const std::vector<std::string> ids = edited_ids(folders_.edited);
   const bool shadows = std::find(ids.begin(), ids.end(), request.id) != ids.end();
   RecipeVersion current;

@@ -21,9 +21,10 @@ struct RecipeFolders {
   std::filesystem::path edited;  ///< made when the first recipe is saved
 };
 
-/// A file that was changed by hand becomes a version of its own as soon as the book looks at its versions. A file that
-/// was removed by hand uncovers the shipped recipe; its versions stay.
-/// context: every function thread-safe; blocks for files and the database.
+/// Masks of regions are read from the shipped folder's masks/, for edited recipes too; see recipe_masks.hpp. list()
+/// does not look at them. A file that was changed by hand becomes a version of its own as soon as the book looks at its
+/// versions. A file that was removed by hand uncovers the shipped recipe; its versions stay. context: every function
+/// thread-safe; blocks for files and the database.
 class RecipeBook final : public RecipeService {
  public:
   static constexpr int kVersionsKept = 100;  ///< per recipe
@@ -42,6 +43,8 @@ class RecipeBook final : public RecipeService {
                        const std::string& author) override;
 
  private:
+  /// With the masks of the shipped folder. Throws Error kBadRecipe.
+  [[nodiscard]] Recipe parsed_with_masks(const std::string& text, const std::string& id) const;
   /// Of all recipes: whether it is an edited one, by id.
   [[nodiscard]] std::map<std::string, bool> ids() const;
   [[nodiscard]] std::string text_of(const std::string& id, bool& edited) const;

@@ -219,6 +219,12 @@ void describe(Recipe& recipe, Fields& fields) {
                "files of a result beside result.json, by name or format; absent = all but height.x3p, .sdf, .ply, "
                ".stl, .csv, sigma.gsf, repeat_sd.gsf, report.pdf and the pictures sigma.png, holes.png and view3d.png");
   });
+  fields.group("report", "for people", [&](Fields& in) {
+    in.optional("pdf", recipe.report.pdf, [](Fields& inner, bool& pdf) {
+      inner.boolean("pdf", pdf, "with report.pdf, or without it, whatever export says; absent = as export says");
+    });
+    in.choice("language", recipe.report.language, {"en"}, "of the report");
+  });
   fields.group("keep", "what else is kept", [&](Fields& in) { describe_slices_kept("slices", recipe, in); });
 }
 

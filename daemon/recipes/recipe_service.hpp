@@ -65,7 +65,7 @@ class RecipeService {
   [[nodiscard]] virtual std::vector<RecipeVersion> versions(const std::string& id) const = 0;
 
   /// Saves the text of an earlier version, or of the shipped recipe (0), as a new version. base_version, author: as in
-  /// save(). Throws as save(), kUnknownRecipe if there is no such version.
+  /// save(). Masks are as they are now. Throws as save(), kUnknownRecipe if there is no such version.
   virtual std::int64_t restore(const std::string& id, std::int64_t version, std::int64_t base_version,
                                const std::string& author) = 0;
 };

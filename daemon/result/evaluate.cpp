@@ -236,6 +236,8 @@ std::vector<Warning> warnings_of(const Result& result, const ResultData& data) {
   return warnings;
 }
 
+}  // namespace
+
 std::optional<Verdict> verdict_of(const Result& result) {
   std::vector<Verdict> verdicts;
   for (const MeasuredValue& value : result.measurements) {
@@ -246,8 +248,6 @@ std::optional<Verdict> verdict_of(const Result& result) {
   if (!of_map) return result.evaluation->verdict;
   return worst_verdict(std::vector{*of_map, *result.evaluation->verdict});
 }
-
-}  // namespace
 
 Result evaluate(const ResultData& data, const HeightSummary& summary) {
   Result result;

@@ -16,6 +16,9 @@ namespace fvd {
 /// here: 4 bytes per pixel for that time.
 [[nodiscard]] Result evaluate(const ResultData& data, const HeightSummary& summary);
 
+/// The worst of the map's values and of the evaluation; absent where neither is judged.
+[[nodiscard]] std::optional<Verdict> verdict_of(const Result& result);
+
 /// Why a job fails though it has a result.
 struct Shortfall {
   ErrorCode code;

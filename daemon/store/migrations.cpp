@@ -156,6 +156,24 @@ void keep_temperatures_of_jobs(Database& database) {
   database.execute("ALTER TABLE jobs ADD COLUMN temperature_c REAL");
 }
 
+/// Version 9: results that were evaluated anew by other recipes, beside their jobs.
+void keep_evaluations(Database& database) {
+  database.execute(R"(
+CREATE TABLE evaluations (
+  evaluation_id TEXT    NOT NULL PRIMARY KEY,
+  job_id        TEXT    NOT NULL,
+  number        INTEGER NOT NULL,
+  recipe        TEXT    NOT NULL,
+  recipe_sha256 TEXT    NOT NULL,
+  verdict       TEXT    NOT NULL,
+  result_dir    TEXT    NOT NULL,
+  result_json   TEXT    NOT NULL,
+  created_utc   TEXT    NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+  UNIQUE (job_id, number)
+) STRICT;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -165,6 +183,7 @@ constexpr std::array kSteps{
     MigrationStep{"bins that keep the ends of the range", remember_bins_that_keep_the_ends},
     MigrationStep{"objectives that were confirmed", keep_confirmed_objectives},
     MigrationStep{"temperatures of jobs", keep_temperatures_of_jobs},
+    MigrationStep{"evaluations of results by other recipes", keep_evaluations},
 };
 
 void require_own_file(const Database& database, int version) {

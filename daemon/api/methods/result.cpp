@@ -1,8 +1,10 @@
 /// Results of jobs that ended.
 
 #include "daemon/api/json_shapes.hpp"
+#include "daemon/api/methods/device_task.hpp"
 #include "daemon/api/methods/job_key_params.hpp"
 #include "daemon/api/methods/methods.hpp"
+#include "daemon/api/replies.hpp"
 #include "daemon/api/result_fields.hpp"
 
 namespace fvd {
@@ -22,6 +24,28 @@ struct GetParams {
     client.describe(fields);
   }
 };
+
+struct EvaluateParams {
+  JobKeyParams job;
+  std::string recipe;
+  ClientParam client;
+
+  void describe(Fields& fields) {
+    job.describe(fields);
+    fields.text("recipe", recipe, kMaxForeignText_bytes, "id of the recipe whose section evaluation is done");
+    fields.require("recipe");
+    client.describe(fields);
+  }
+};
+
+void describe_evaluated(Fields& fields) {
+  const ResultFields result(fields);
+  result.text("id", "of the new record, for result.get: the job's with -e1, -e2, ...");
+  result.text("job_id", "whose surface was evaluated");
+  result.text("recipe", "as given");
+  result.any("verdict", "pass, fail, uncertain, invalid; null where nothing is limited");
+  result.text("directory", "with result.json and report.pdf");
+}
 
 void describe_acknowledged(Fields& fields) {
   ResultFields(fields).integer("remaining", "results that are not acknowledged yet");
@@ -45,6 +69,19 @@ void add_result_methods(MethodTable& methods, const Services& services) {
                            .run = with<GetParams>([services](const Call&, const GetParams& params) {
                              return result_of(services, params.job.key(params.client), params.format);
                            })};
+  methods["result.evaluate"] = {
+      .about = {.summary =
+                    "Evaluates a stored result's surface by another recipe: a new record; the job's result stays",
+                .params = described<EvaluateParams>(),
+                .result = describe_evaluated,
+                .errors = {kBusy, kUnknownJob, kUnknownRecipe, kBadRecipe, kBadInput, kSurfaceFile, kMemoryBudget,
+                           kTimeout, kShuttingDown, kStorageFull, kStorageWrite, kDatabase},
+                .may_wait = true,
+                .needs_id = true},
+      .run = with<EvaluateParams>([&results = services.results](const Call& call, const EvaluateParams& params) {
+        require_wait(call);
+        return Answer(reply_when_done(results.evaluate(params.job.key(params.client), params.recipe)));
+      })};
   methods["result.next"] = {
       .about = {.summary =
                     "The oldest result that was not acknowledged, of any client; job_id is empty if there is none",

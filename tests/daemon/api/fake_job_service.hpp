@@ -95,6 +95,14 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     if (found.state != JobState::kCompleted) return {found, "", ""};
     return {found, "/results/x", result};
   }
+  /// Done only when a test ends it.
+  std::shared_ptr<DeviceTask> evaluate(const JobKey& key, const std::string& recipe_id) override {
+    static_cast<void>(job(key));
+    evaluated_by = recipe_id;
+    task = std::make_shared<DeviceTask>(DeviceTask::Work{});
+    return task;
+  }
+  std::string evaluated_by;
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return history; }
   std::optional<StepHistorySummary> history;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override {

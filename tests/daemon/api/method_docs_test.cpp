@@ -10,6 +10,7 @@
 
 #include "config/field_reader.hpp"
 #include "daemon/api/dispatcher.hpp"
+#include "daemon/api/error_meanings.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "tests/daemon/api/fake_job_service.hpp"
 #include "tests/support/scratch_dir.hpp"
@@ -70,6 +71,9 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"job.latest", nothing},
       {"result.get", one},
       {"result.next", nothing},
+      {"result.evaluate",
+       {{"seq", 1}, {"recipe", "chapter"}},
+       R"({"id":"j-e1","job_id":"j","recipe":"chapter","verdict":null,"directory":"/r/j-e1"})"},
       {"stage.accuracy", nothing},
       {"objective.list", nothing},
       {"objective.confirm", {{"name", "50x"}, {"person", "Anna"}}},
@@ -122,6 +126,19 @@ TEST_F(EveryMethod, StandsInOpenRpcWithAllThatIsKnownOfIt) {
   EXPECT_EQ((*start)["params"][0]["required"], true);
   EXPECT_EQ((*start)["params"][0]["schema"]["maximum"], kLargestExactInteger);
   EXPECT_EQ((*start)["params"][3]["schema"]["default"], "plc");
+}
+
+TEST_F(EveryMethod, FailsWithErrorsThatTheTableExplains) {
+  for (int i = 0; i <= static_cast<int>(kLastErrorCode); ++i) {
+    const auto code = static_cast<ErrorCode>(i);
+    EXPECT_FALSE(error_meaning(code).empty()) << error_name(code);
+  }
+  const std::string table = methods_markdown(dispatcher_.methods());
+  for (const char* row :
+       {"| 1142 | region_outside |  | ", "| 1143 | calibration_missing |", "| 1145 | verdict_uncertain |",
+        "| 1146 | objective_mismatch |", "| 1147 | study_refused |", "| 1141 | evaluation_invalid |"}) {
+    EXPECT_NE(table.find(row), std::string::npos) << row;
+  }
 }
 
 /// With FVD_WRITE_TABLES=1 in the environment the README is written instead of compared.

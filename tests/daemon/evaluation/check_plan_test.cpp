@@ -88,6 +88,39 @@ TEST(APlan, IsRefusedWhereFiltersLeaveNothing) {
               ElementsAre(problem("/surfaces/a/steps/1/nesting_um", "leave nothing")));
 }
 
+TEST(APlan, IsRefusedWhereFiltersOfSurfacesOnOneWayLeaveNothing) {
+  EXPECT_THAT(problems_of(R"({"surfaces": {
+    "first": {"steps": [{"op": "filter", "side": "L", "nesting_um": 80}]},
+    "between": {"from": "first", "steps": [{"op": "invert"}]},
+    "last": {"from": "between", "steps": [{"op": "invert"}, {"op": "filter", "side": "S", "nesting_um": 100}]},
+    "beside": {"steps": [{"op": "filter", "side": "S", "nesting_um": 100}]}}})"),
+              ElementsAre(problem("/surfaces/last/steps/1/nesting_um", "expected S below L")));
+}
+
+TEST(APlan, IsRefusedForAllOfItsMistakesAtOnce) {
+  EXPECT_THAT(
+      problems_of(R"({
+    "surfaces": {"a": {"from": "b"}, "b": {"from": "a"},
+                 "c": {"steps": [{"op": "filter", "side": "S", "nesting_um": 90},
+                                 {"op": "filter", "side": "L", "nesting_um": 80}]}},
+    "regions": {"none": {"threshold_um": {}},
+                "left": {"rectangle_um": {"x": -5, "y": 0, "width": 5, "height": 5}},
+                "file": {"mask_png": "../x.png"}},
+    "measurements": {
+      "one": {"kind": "areal", "surface": "no", "region": "nowhere", "parameters": ["Sa"],
+              "limits": {"Sa_um": {"lower": 2, "upper": 1}, "height_um": {"upper": 1}}},
+      "two": {"kind": "step_height", "band_from_to_um": [9, 3]}}})"),
+      UnorderedElementsAre(
+          problem("/surfaces/a/from", "made of itself"), problem("/surfaces/b/from", "made of itself"),
+          problem("/surfaces/c/steps/1/nesting_um", "expected S below L"),
+          problem("/regions/none/threshold_um", "is empty"), problem("/regions/left/rectangle_um", "left of or above"),
+          problem("/regions/file/mask_png", "without a path"), problem("/measurements/one/surface", "no surface"),
+          problem("/measurements/one/region", "no region"),
+          problem("/measurements/one/limits/Sa_um", "lower is above upper"),
+          problem("/measurements/one/limits/height_um", "no value of this measurement"),
+          problem("/measurements/two/band_from_to_um", "the first the smaller")));
+}
+
 TEST(APlan, IsRefusedForLimitsThatNothingHasOrThatCross) {
   EXPECT_THAT(problems_of(R"({"measurements": {
                 "s": {"kind": "step_height", "limits": {"depth_um": {"lower": 1}, "height_um": {"lower": 2, "upper": 1}}},

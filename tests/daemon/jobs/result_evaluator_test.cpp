@@ -1,0 +1,173 @@
+/// Stored results are evaluated anew beside the machine: records of their own, and the first result as it was.
+
+#include "daemon/jobs/result_evaluator.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "config/field_writer.hpp"
+#include "daemon/evaluation/evaluate_surface.hpp"
+#include "daemon/pipeline/stored_surface.hpp"
+#include "daemon/recipes/recipe_document.hpp"
+#include "tests/daemon/jobs/engine_bench.hpp"
+#include "tests/support/expect_error.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr const char* kTexture = R"({"format": 2,
+  "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 5}},
+  "reconstruct": {"lateral": {"pixel_pitch_x_um": 0.5, "pixel_pitch_y_um": 0.5}},
+  "evaluation": {"measurements": {"texture": {"kind": "areal", "parameters": ["Sa", "Sq"],
+                                              "limits": {"Sa_um": {"upper": 0.8}}}}}})";
+
+/// As result.json has it.
+json json_of(Evaluation evaluation) {
+  return json::parse(fields_to_json([&](Fields& fields) { describe(evaluation, fields); }).dump());
+}
+
+class AStoredResult : public test::AnEngine {
+ protected:
+  void SetUp() override {
+    test::write_text(folder_.path() / "texture.json", kTexture);
+    open();
+    ASSERT_TRUE(await_state(ScanState::kInitialized));
+    job_id_ = jobs().start({1, "a", "part"}).job.job_id;
+    ASSERT_TRUE(await_end_of(1));
+  }
+
+  [[nodiscard]] ResultService& results() { return services_->results; }
+  [[nodiscard]] std::filesystem::path results_dir() const { return folder_.path() / "results"; }
+
+  [[nodiscard]] DeviceTask::Outcome outcome_of(const JobKey& key, const std::string& recipe = "texture") {
+    const auto task = results().evaluate(key, recipe);
+    EXPECT_TRUE(await_answer(*task));
+    return task->outcome().value_or(DeviceTask::Outcome{});
+  }
+
+  std::string job_id_;
+};
+
+TEST_F(AStoredResult, IsEvaluatedIntoARecordThatNamesItsSource) {
+  const DeviceTask::Outcome outcome = outcome_of(ClientSeq{1});
+  ASSERT_EQ(outcome.error, std::nullopt) << outcome.message;
+
+  const json reply = json::parse(outcome.json);
+  const std::string id = job_id_ + "-e1";
+  EXPECT_EQ(reply["id"], id);
+  EXPECT_EQ(reply["job_id"], job_id_);
+  EXPECT_EQ(reply["recipe"], "texture");
+  EXPECT_EQ(reply["directory"], (results_dir() / id).string());
+  const StoredJob told = results().stored(id);
+  EXPECT_EQ(told.status.job_id, id);
+  EXPECT_EQ(told.status.request.recipe, "texture");
+  EXPECT_EQ(told.status.request.seq, 1);
+  EXPECT_EQ(told.result_json, test::read_text(results_dir() / id / "result.json"));
+  EXPECT_TRUE(std::filesystem::exists(results_dir() / id / "report.pdf"));
+  const json record = json::parse(told.result_json);
+  EXPECT_EQ(record["source"]["job_id"], job_id_);
+  EXPECT_EQ(record["source"]["recipe"]["id"], "part");
+  EXPECT_EQ(record["recipe"]["sha256"], recipe_sha256(kTexture));
+  EXPECT_EQ(record["verdict"], reply["verdict"]);
+}
+
+TEST_F(AStoredResult, HasTheValuesOfTheSameEvaluationOfItsFolder) {
+  const json reply = json::parse(outcome_of(job_id_).json);
+
+  const StoredSurface stored = read_stored_surface(results_dir() / job_id_);
+  const Recipe recipe = parse_recipe(kTexture, "texture");
+  const Evaluation same = evaluate_surface(stored.surface, recipe.evaluation, stored.context, nullptr);
+  const json record = json::parse(results().stored(reply["id"].get<std::string>()).result_json);
+  EXPECT_EQ(record["evaluation"], json_of(same));
+}
+
+TEST_F(AStoredResult, StaysAsItWasHoweverOftenItIsEvaluated) {
+  const StoredJob before = results().stored(ClientSeq{1});
+  const std::string file = test::read_text(results_dir() / job_id_ / "result.json");
+
+  const json first = json::parse(outcome_of(job_id_).json);
+  const json second = json::parse(outcome_of(job_id_).json);
+
+  EXPECT_EQ(first["id"], job_id_ + "-e1");
+  EXPECT_EQ(second["id"], job_id_ + "-e2");
+  EXPECT_EQ(results().stored(ClientSeq{1}).result_json, before.result_json);
+  EXPECT_EQ(results().stored(job_id_).result_dir, before.result_dir);
+  EXPECT_EQ(test::read_text(results_dir() / job_id_ / "result.json"), file);
+  EXPECT_EQ(machine().snapshot()->job->job_id, job_id_);
+}
+
+TEST_F(AStoredResult, PassesOverAFolderThatADeadProcessLeft) {
+  std::filesystem::create_directories(results_dir() / (job_id_ + "-e1"));
+
+  EXPECT_EQ(json::parse(outcome_of(job_id_).json)["id"], job_id_ + "-e2");
+}
+
+TEST_F(AStoredResult, IsKeptWithItsRecordsOverARestart) {
+  const json reply = json::parse(outcome_of(job_id_).json);
+  engine_->finish();
+  machine().on_change({});
+  services_.reset();
+  engine_.reset();
+  store_.reset();
+
+  JobStore again(folder_.path() / "fvd.sqlite");
+  const auto row = again.evaluations().find(reply["id"].get<std::string>());
+  ASSERT_TRUE(row.has_value());
+  EXPECT_EQ(row->job_id, job_id_);
+  EXPECT_EQ(row->recipe, "texture");
+}
+
+TEST_F(AStoredResult, IsNotEvaluatedByWhatCannotDoIt) {
+  FVD_EXPECT_ERROR(kUnknownJob, static_cast<void>(results().evaluate("nothing", "texture")));
+  FVD_EXPECT_ERROR(kUnknownRecipe, static_cast<void>(results().evaluate(job_id_, "nothing")));
+  FVD_EXPECT_ERROR(kBadRecipe, static_cast<void>(results().evaluate(job_id_, "part")));  // measures nothing
+  const std::string id = json::parse(outcome_of(job_id_).json)["id"];
+  FVD_EXPECT_ERROR(kBadInput, static_cast<void>(results().evaluate(id, "texture")));
+  FVD_EXPECT_ERROR(kUnknownJob, results().acknowledge(id));
+}
+
+TEST_F(AStoredResult, IsRefusedWhereItsFilesAreGone) {
+  std::filesystem::remove(results_dir() / job_id_ / "height.tiff");
+  std::filesystem::remove(results_dir() / job_id_ / "height.gsf");
+
+  const DeviceTask::Outcome outcome = outcome_of(job_id_);
+
+  EXPECT_EQ(outcome.error, ErrorCode::kSurfaceFile);
+  EXPECT_THAT(outcome.message, HasSubstr(job_id_));
+  EXPECT_FALSE(std::filesystem::exists(results_dir() / (job_id_ + "-e1")));
+  FVD_EXPECT_ERROR(kUnknownJob, static_cast<void>(results().stored(job_id_ + "-e1")));
+}
+
+TEST_F(AStoredResult, IsNotEvaluatedWhereTheJobHasNone) {
+  StoredJob none;
+  none.status.job_id = "j";
+  none.status.state = JobState::kAborted;
+  ResultEvaluator evaluator({*store_, dynamic_cast<MachineBoard&>(machine()), results_dir(), std::size_t{1} << 30U});
+
+  FVD_EXPECT_ERROR(kBadInput, static_cast<void>(evaluator.begin(none, parse_recipe(kTexture, "texture"))));
+  none.status.state = JobState::kProcessing;
+  FVD_EXPECT_ERROR(kBusy, static_cast<void>(evaluator.begin(none, parse_recipe(kTexture, "texture"))));
+  evaluator.finish();
+  FVD_EXPECT_ERROR(kShuttingDown,
+                   static_cast<void>(evaluator.begin(results().stored(job_id_), parse_recipe(kTexture, "texture"))));
+}
+
+TEST_F(AStoredResult, IsNotEvaluatedBeyondTheMemoryBudget) {
+  ResultEvaluator evaluator({*store_, dynamic_cast<MachineBoard&>(machine()), results_dir(), 1000});
+
+  std::string message;
+  try {
+    static_cast<void>(evaluator.begin(results().stored(job_id_), parse_recipe(kTexture, "texture")));
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kMemoryBudget);
+    message = error.what();
+  }
+
+  EXPECT_THAT(message, HasSubstr("16 x 16 points"));
+}
+
+}  // namespace
+}  // namespace fvd
