@@ -45,7 +45,7 @@ struct PlannedRegion {
 struct PlannedOperation {
   std::string op = "level";
   double max_sigma_um = 1.0;          ///< mask_sigma
-  std::vector<std::string> reasons;   ///< mask_reasons: none
+  std::vector<std::string> reasons;   ///< mask_reasons: points that carry one of these
   int window_px = 7;                  ///< outliers: odd
   double limit = 6.0;                 ///< outliers: deviations of the window
   std::string form = "plane";         ///< level, form
@@ -124,7 +124,8 @@ struct EvaluationPlan {
   std::map<std::string, PlannedRegion> regions;
   std::map<std::string, PlannedMeasurement> measurements;
   PlannedDecision decision;
-  std::vector<std::string> order;  ///< of the measurements, as the document has them
+  std::optional<double> expansion_per_k;  ///< of the part's material; absent = not known
+  std::vector<std::string> order;         ///< of the measurements, as the document has them
 
   [[nodiscard]] bool empty() const { return measurements.empty(); }
 };
