@@ -36,6 +36,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
       recipes_({config.paths.recipe_dir, config.paths.state_dir / "recipes"},
                {config.stage.min, config.stage.max, config.stage.take_up, config.stage.speed_um_per_s},
                deps.store.recipe_versions()),
+      calibrations_(config.paths.state_dir / "calibration"),
       board_(constants(config, deps.store), deps.store.latest()),
       hub_(deps.openers, deps.clock,
            [this](bool at_rest) {
@@ -45,8 +46,8 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
            }),
       ticks_("fvd-machine", kLongestStep),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir}),
-      runner_(
-          {config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, deps.make_result}),
+      runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, calibrations_,
+               deps.make_result, deps.repeatability}),
       jobs_({deps.store,
              board_,
              work_,

@@ -4,6 +4,7 @@
 
 #include "core/base/clock.hpp"
 #include "core/runtime/worker_pool.hpp"
+#include "daemon/calibration/calibration_book.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
@@ -25,12 +26,14 @@ struct EngineDependencies {
   Clock& clock;
   DeviceOpeners openers;
   ResultPipeline make_result = store_result;
+  RepeatabilityOf repeatability = {};  ///< of the recipes' values; empty = nobody keeps gauge studies
 };
 
 /// context: made and destroyed on one thread; the services are thread-safe.
 class Engine {
  public:
-  /// Warns of the latest job if a restart interrupted it and nobody acknowledged that yet.
+  /// Warns of the latest job if a restart interrupted it and nobody acknowledged that yet. Throws Error
+  /// kBadInput where the constants of the instrument cannot be read.
   Engine(const Config& config, const EngineDependencies& dependencies);
   /// finish().
   ~Engine();
@@ -43,6 +46,9 @@ class Engine {
 
   [[nodiscard]] Services services() { return {board_, jobs_, jobs_, tasks_, recipes_}; }
 
+  /// The instrument's constants, in <state_dir>/calibration. context: any thread.
+  [[nodiscard]] CalibrationBook& calibrations() { return calibrations_; }
+
   /// Takes no more jobs and commands from now on, and asks what runs to end; returns at once. context: any thread.
   void shut_down();
   /// shut_down(), then waits until all has ended and the devices were given up. A job that ran ends as aborted, one
@@ -54,6 +60,7 @@ class Engine {
   KeptPagesPtr pages_;
   StageHistory history_;
   RecipeBook recipes_;
+  CalibrationBook calibrations_;
   PreviewHub preview_;
   MachineBoard board_;
   DeviceHub hub_;
