@@ -9,7 +9,10 @@
 
 #include "daemon/evaluation/evaluate_surface.hpp"
 #include "daemon/export/gsf.hpp"
-#include "daemon/export/result_writer.hpp"
+#include "daemon/export/mask_png.hpp"
+#include "daemon/export/result_json.hpp"
+#include "daemon/export/step_csv.hpp"
+#include "daemon/result/evaluate.hpp"
 #include "daemon/surface_files/reference_map.hpp"
 #include "daemon/surface_files/result_folder.hpp"
 #include "tests/daemon/calibration/some_calibration.hpp"
@@ -41,6 +44,17 @@ void write_reference(const std::filesystem::path& folder) {
   test::write_text(folder / "cal-0003-flatness-sigma.gsf", encode_gsf(errors, {"flat", 0.5, 0.5, {}}));
 }
 
+/// The files of a result that an evaluation reads.
+void write_files(const std::filesystem::path& folder, const ResultData& data) {
+  std::filesystem::create_directories(folder);
+  const GsfHeader header{"job", data.pixel_pitch_x_um, data.pixel_pitch_y_um, {}};
+  test::write_text(folder / "height.gsf", encode_gsf(data.map.height_m, header));
+  test::write_text(folder / "sigma.gsf", encode_gsf(data.map.sigma_m, header));
+  test::write_text(folder / "mask.png", encode_mask_png(data.map));
+  test::write_text(folder / "step_log.csv", step_csv(data.steps));
+  test::write_text(folder / "result.json", result_json_text(evaluate(data, test::summary_of(data.map))));
+}
+
 ResultData calibrated_job(const std::filesystem::path& calibration_folder) {
   ResultData data = test::sample_result();
   data.map = test::sample_map(40, 30);
@@ -68,7 +82,7 @@ TEST(EvaluationInput, IsTheSameFromTheFolderOfAResult) {
   const ScratchDir scratch;
   write_reference(scratch / "calibration");
   const ResultData data = calibrated_job(scratch / "calibration");
-  write_result(scratch / "job", data);
+  write_files(scratch / "job", data);
 
   ResultSurface read = read_result_surface(scratch / "job");
   note_window(read.result.focus, read.surface);
@@ -90,7 +104,7 @@ TEST(EvaluationInput, IsTheSameFromTheFolderOfAResult) {
 TEST(EvaluationInput, OfAResultWithoutConstantsHasNone) {
   const ScratchDir scratch;
   const ResultData data = test::sample_result();
-  write_result(scratch / "job", data);
+  write_files(scratch / "job", data);
 
   const EvaluationContext context =
       read_evaluation_context(scratch / "job", read_result_surface(scratch / "job").result);
