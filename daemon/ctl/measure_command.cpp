@@ -1,6 +1,7 @@
 #include "daemon/ctl/measure_command.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "core/base/error.hpp"
 #include "core/base/units.hpp"
 #include "core/runtime/worker_pool.hpp"
+#include "daemon/calibration/calibration_book.hpp"
 #include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/pitch_option.hpp"
@@ -23,6 +25,7 @@
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/pipeline/evaluation_input.hpp"
 #include "daemon/recipes/recipe_document.hpp"
+#include "daemon/surface_files/reference_map.hpp"
 #include "daemon/surface_files/result_folder.hpp"
 
 namespace fvd::ctl {
@@ -36,15 +39,55 @@ struct Input {
   EvaluationContext context;
 };
 
-Input read_input(const MeasureArguments& arguments) {
+/// The reference map of the constants that the surface is evaluated with, where they name one.
+void read_reference(const std::string& folder, EvaluationContext& context) {
+  const auto& calibration = context.calibration;
+  if (!calibration || !calibration->flatness || calibration->flatness->reference.empty()) return;
+  context.flatness_reference = read_reference_map(folder, calibration->flatness->reference);
+}
+
+/// A surface from elsewhere is taken to be of this instrument as it is now.
+void use_newest_constants(const MeasureArguments& arguments, const Terminal& terminal, EvaluationContext& context) {
+  if (arguments.calibration.empty()) {
+    if (!arguments.objective.empty()) throw UsageError("--objective is for --calibration, which is not given");
+    return;
+  }
+  context.calibration = CalibrationBook(arguments.calibration).current(arguments.objective);
+  if (!context.calibration) {
+    throw UsageError(arguments.calibration + " has no constants of " +
+                     (arguments.objective.empty() ? "an instrument without a named objective; say --objective"
+                                                  : "the objective " + arguments.objective));
+  }
+  const std::string parts = lapsed_text(*context.calibration, calendar_day(std::chrono::system_clock::now()));
+  if (!parts.empty()) {
+    terminal.err << "fvdctl: calibration " << context.calibration->id << " is past the day to be renewed by: " << parts
+                 << "\n";
+  }
+  read_reference(arguments.calibration, context);
+}
+
+/// A result tells its constants itself; the folder, of the same instrument, has the map that they name.
+void use_folder_of_constants(const MeasureArguments& arguments, EvaluationContext& context) {
+  if (!arguments.objective.empty()) throw UsageError("--objective is for files; a result tells its own");
+  if (arguments.calibration.empty() || !context.calibration) return;
+  if (CalibrationBook(arguments.calibration).find(context.calibration->id) != context.calibration) {
+    throw UsageError(arguments.calibration + " has other constants than the result by the name " +
+                     context.calibration->id + ": it is another instrument's");
+  }
+  read_reference(arguments.calibration, context);
+}
+
+Input read_input(const MeasureArguments& arguments, const Terminal& terminal) {
   const SurfaceReadOptions options = read_options(arguments.pitch_um);
   Input input;
   if (!fs::is_directory(arguments.source)) {
     input.surface = read_surface(arguments.source, options);
+    use_newest_constants(arguments, terminal, input.context);
     return input;
   }
   ResultSurface read = read_result_surface(arguments.source, options);
   input.context = read_evaluation_context(arguments.source, read.result);
+  use_folder_of_constants(arguments, input.context);
   input.surface = std::move(read.surface);
   note_window(read.result.focus, input.surface);
   return input;
@@ -89,6 +132,12 @@ void add_measure_options(CLI::App& command, MeasureArguments& a) {
       .add_option("--noise-um", a.noise_um,
                   "standard error of every point, where the source has none; without it U is not known")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option("--calibration", a.calibration,
+                  "folder of calibration.json: of a result only for the reference map that its constants name; of a "
+                  "file, the newest constants there")
+      ->check(CLI::ExistingDirectory);
+  command.add_option("--objective", a.objective, "whose constants a file is evaluated with");
   command.add_option("--out", a.out, "new folder for evaluation.json");
   command.add_flag("--json", a.json, "print all of it as JSON in place of the summary");
 }
@@ -96,7 +145,7 @@ void add_measure_options(CLI::App& command, MeasureArguments& a) {
 int run_measure(const MeasureArguments& arguments, const Terminal& terminal) {
   const std::optional<Recipe> recipe = read_measured_recipe(arguments.recipe, terminal);
   if (!recipe) return kExitConfig;
-  Input input = read_input(arguments);
+  Input input = read_input(arguments, terminal);
   if (arguments.noise_um) set_noise(*arguments.noise_um, input.surface);
   WorkerPool pool(0);
   const Evaluation evaluation = evaluate_surface(input.surface, recipe->evaluation, input.context, &pool);

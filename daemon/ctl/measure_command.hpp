@@ -20,6 +20,8 @@ struct MeasureArguments {
   std::string recipe;  ///< file
   std::string out;     ///< new folder for evaluation.json; empty = none
   std::vector<double> pitch_um;
+  std::string calibration;         ///< folder of calibration.json; empty = none
+  std::string objective;           ///< of a surface from elsewhere
   std::optional<double> noise_um;  ///< standard error of every point, where the source has none
   bool json = false;
 };

@@ -14,8 +14,10 @@
 #include "core/metrology/operations/rearrange.hpp"
 #include "core/metrology/operations/region.hpp"
 #include "core/metrology/operations/region_combine.hpp"
+#include "daemon/evaluation/calibration_operation.hpp"
 #include "daemon/evaluation/filter_operation.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
+#include "daemon/evaluation/reason_names.hpp"
 
 namespace fvd {
 
@@ -76,11 +78,18 @@ OperationReport keep_rectangle(const PlannedOperation& step, HeightField& field)
 
 }  // namespace
 
-OperationReport apply_operation(const EvaluationPlan& plan, const PlannedOperation& step, WorkerPool* pool,
+OperationReport apply_operation(const EvaluationPlan& plan, const PlannedOperation& step,
+                                const EvaluationContext& context, WorkerPool* pool, Plane<MaskReasons>* reasons,
                                 HeightField& field) {
-  if (step.op == "mask_sigma") return metrology::mask_sigma(field, step.max_sigma_um);
+  if (step.op == "lateral") return lateral_operation(context, reasons, field);
+  if (step.op == "flatness_reference") return flatness_operation(context, reasons, field);
+  if (step.op == "mask_reasons") {
+    if (reasons == nullptr) return metrology::refusal("the surface does not tell why its points are holes (mask.png)");
+    return metrology::mask_reasons(field, *reasons, reason_bits(step.reasons));
+  }
+  if (step.op == "mask_sigma") return metrology::mask_sigma(field, step.max_sigma_um, reasons);
   if (step.op == "outliers") {
-    return metrology::remove_outliers(field, {step.window_px, step.limit}, nullptr, pool);
+    return metrology::remove_outliers(field, {step.window_px, step.limit}, reasons, pool);
   }
   if (step.op == "level") return level(plan, step, pool, field);
   if (step.op == "form") return form(plan, step, field);

@@ -160,6 +160,10 @@ class Checker {
     if (step.op == "outliers" && step.window_px % 2 == 0) {
       refuse(pointer + "/window_px", "is even; expected an odd number so that a point is its centre");
     }
+    if (step.op == "mask_reasons" && step.reasons.empty()) {
+      refuse(pointer + "/reasons", "is empty; expected one or more of the reasons of holes");
+    }
+    check_calibration_step(pointer, surface, index);
     if (step.op != "filter") return;
     if (step.side == "S" && step.robust && step.method == "gaussian") {
       refuse(pointer + "/robust", "is for the regression methods; expected gaussian_regression_1 or _2");
@@ -172,6 +176,37 @@ class Checker {
       std::ostringstream text;
       text << "the S filter's " << s_um << " um and the L filter's " << l_um << " um leave nothing; expected S below L";
       refuse(pointer + "/nesting_um", text.str());
+    }
+  }
+
+  /// Operations on the way from the measured surface, the last first; from a circle of surfaces only one round.
+  [[nodiscard]] std::vector<std::string> operations_before(const PlannedSurface& surface, std::size_t index) const {
+    std::vector<std::string> operations;
+    for (std::size_t i = index; i > 0; --i) operations.push_back(surface.steps[i - 1].op);
+    std::set<std::string> seen;
+    auto from = plan_.surfaces.find(surface.from);
+    while (from != plan_.surfaces.end() && seen.insert(from->first).second) {
+      for (auto step = from->second.steps.rbegin(); step != from->second.steps.rend(); ++step) {
+        operations.push_back(step->op);
+      }
+      from = plan_.surfaces.find(from->second.from);
+    }
+    return operations;
+  }
+
+  void check_calibration_step(const std::string& pointer, const PlannedSurface& surface, std::size_t index) {
+    const std::string& op = surface.steps[index].op;
+    if (op != "lateral" && op != "flatness_reference") return;
+    const std::vector<std::string> before = operations_before(surface, index);
+    const auto comes_after = [&before](const char* other) {
+      return std::find(before.begin(), before.end(), other) != before.end();
+    };
+    if (comes_after(op.c_str())) refuse(pointer + "/op", op + " was done to this surface before");
+    if (op != "flatness_reference") return;
+    for (const char* other : {"lateral", "invert"}) {
+      if (!comes_after(other)) continue;
+      refuse(pointer + "/op", std::string("comes after ") + other +
+                                  ": the reference map is as the scan made it; expected flatness_reference first");
     }
   }
 

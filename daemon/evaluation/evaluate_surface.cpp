@@ -15,6 +15,7 @@
 #include "core/metrology/operations/region.hpp"
 #include "core/surface/verdict.hpp"
 #include "daemon/evaluation/field_check.hpp"
+#include "daemon/evaluation/instrument_budget.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/surface_chain.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
@@ -32,9 +33,10 @@ constexpr std::array<std::pair<std::string_view, Measure>, 6> kKinds{{{"step_hei
                                                                       {"profile", measure_profile},
                                                                       {"cutting_edge", measure_edge}}};
 
-EvaluatedMeasurement invalid_for(const std::string& reason) {
+EvaluatedMeasurement invalid_for(const std::string& reason, int code = 0) {
   EvaluatedMeasurement invalid;
   invalid.reason = reason;
+  invalid.reason_code = code;
   return invalid;
 }
 
@@ -43,7 +45,8 @@ EvaluatedMeasurement measured_by_kind(const MeasurementInput& input) {
   const auto kind = std::find_if(kKinds.begin(), kKinds.end(),
                                  [&input](const auto& known) { return known.first == input.planned.kind; });
   if (!input.surface.refused.empty()) {
-    return invalid_for("the surface " + input.planned.surface + " cannot be made: " + input.surface.refused);
+    return invalid_for("the surface " + input.planned.surface + " cannot be made: " + input.surface.refused,
+                       input.surface.refused_code);
   }
   try {
     return kind->second(input);
@@ -103,7 +106,7 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
   made.kind = input.planned.kind;
   made.surface = input.planned.surface;
   note_masks(input, made);
-  add_missing(never_evaluated(), made.not_evaluated);
+  add_missing(instrument_not_evaluated(input), made.not_evaluated);
   if (!knows_window(input.measured.field)) add_missing({"correlation"}, made.not_evaluated);
   made.warnings.insert(made.warnings.end(), input.surface.warnings.begin(), input.surface.warnings.end());
   for (EvaluationWarning& warning : partly_outside(input.plan, input.planned, metrology::grid_of(input.measured.field)))
@@ -127,19 +130,23 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
 
 Evaluation evaluate_surface(const Surface& surface, const EvaluationPlan& plan, const EvaluationContext& context,
                             WorkerPool* pool) {
-  SurfaceChain chain(surface, plan, pool);
+  SurfaceChain chain(surface, plan, context, pool);
   Evaluation evaluation;
+  if (context.calibration) evaluation.calibration = context.calibration->id;
   evaluation.rule = plan.decision.rule;
   evaluation.probability = plan.decision.probability;
   std::vector<Verdict> verdicts;
   for (const auto& [name, planned] : plan.measurements) {
     const SurfaceState& measured = chain.state(kMeasuredSurface);
     const SurfaceState& state = chain.state(planned.surface);
-    const MeasurementInput input{plan, planned, state, measured, context, surface.lateral_period_um.value_or(0.0)};
+    const MeasurementInput input{plan, planned, state, measured, context, surface.lateral_period_um.value_or(0.0),
+                                 name};
     EvaluatedMeasurement made = finished(plc_id(name, planned), input);
     if (made.verdict) verdicts.push_back(*made.verdict);
     evaluation.measurements.emplace(name, std::move(made));
   }
+  const std::string measured_steps = chain.state(kMeasuredSurface).steps_json;
+  if (measured_steps != "[]") evaluation.surfaces[kMeasuredSurface] = measured_steps;
   for (const auto& [name, planned] : plan.surfaces) evaluation.surfaces[name] = chain.state(name).steps_json;
   for (const std::string& name : plan.order) {
     if (evaluation.measurements.contains(name)) evaluation.order.push_back(name);

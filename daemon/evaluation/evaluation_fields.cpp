@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "daemon/evaluation/reason_names.hpp"
 #include "daemon/evaluation/value_names.hpp"
 
 namespace fvd {
@@ -125,7 +126,14 @@ void describe_filter(PlannedOperation& step, Fields& fields) {
 void describe(PlannedOperation& step, Fields& fields) {
   fields.variant(
       "op", step.op,
-      {{"mask_sigma",
+      {{"lateral", [](Fields&) {}},
+       {"flatness_reference", [](Fields&) {}},
+       {"mask_reasons",
+        [&](Fields& in) {
+          in.choices("reasons", step.reasons, reason_names(), "points that carry one of these become holes");
+          in.require("reasons");
+        }},
+       {"mask_sigma",
         [&](Fields& in) {
           in.number("max_sigma_um", step.max_sigma_um, positive(1e5), "points of a larger standard error become holes");
           in.require("max_sigma_um");
@@ -283,6 +291,8 @@ void describe(EvaluationPlan& plan, Fields& fields) {
              [](Fields& in, const std::string& key, PlannedMeasurement& measurement) {
                in.group(key, "a measurement", [&](Fields& group) { describe(measurement, group); });
              });
+  optional_number(fields, "expansion_per_k", plan.expansion_per_k, {0.0, 1e-3},
+                  "linear thermal expansion of the part per kelvin, such as 11.5e-6 of steel; absent = not known");
   fields.group("decision", "how limits are judged", [&](Fields& in) {
     in.choice("rule", plan.decision.rule, {"iso14253_1", "simple", "guard_U"},
               "iso14253_1: by the probability of conformity; simple: by the value alone; guard_U: U inside the limits");

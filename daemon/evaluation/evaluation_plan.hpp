@@ -54,7 +54,7 @@ struct PlannedRegion {
 struct PlannedOperation {
   std::string op = "level";
   double max_sigma_um = 1.0;          ///< mask_sigma
-  std::vector<std::string> reasons;   ///< mask_reasons: none
+  std::vector<std::string> reasons;   ///< mask_reasons: points that carry one of these
   int window_px = 7;                  ///< outliers: odd
   double limit = 6.0;                 ///< outliers: deviations of the window
   std::string form = "plane";         ///< level, form
@@ -133,6 +133,7 @@ struct EvaluationPlan {
   std::map<std::string, PlannedRegion> regions;
   std::map<std::string, PlannedMeasurement> measurements;
   PlannedDecision decision;
+  std::optional<double> expansion_per_k;  ///< of the part's material; absent = not known
   std::vector<std::string> order;                                  ///< of the measurements, as the document has them
   std::map<std::string, std::shared_ptr<const RegionMask>> masks;  ///< by file name; not of the document
 

@@ -12,6 +12,7 @@
 #include "core/metrology/areal/height_weights.hpp"
 #include "core/metrology/operations/region.hpp"
 #include "core/metrology/uncertainty/monte_carlo.hpp"
+#include "daemon/evaluation/instrument_budget.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/noise_floor.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
@@ -73,7 +74,7 @@ class ArealUncertainty {
     if (const auto weights = metrology::height_weights(field, region_, parameter)) {
       value.u_method = "linear";
       add_noise(field.has_sigma() ? metrology::linear_noise(field, *weights) : std::nullopt, value.budget);
-      if (field.has_sigma()) add_slice_z(input_.context, input_.measured.field, *weights, value.budget);
+      if (field.has_sigma()) add_slice_z(input_.context, input_.measured, *weights, value.budget);
       return;
     }
     const auto place = std::find(drawn_.begin(), drawn_.end(), parameter);
@@ -137,6 +138,7 @@ EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
     value.reason = found.values[i].reason;
     value.below_noise = below_noise;
     if (value.value) uncertainty.add_to(value, parameters[i]);
+    add_instrument(input, key, value);
     note_not_evaluated(value.budget, made);
     EvaluatedValue judged = judged_value(value, key, input.planned, input.plan.decision);
     if (found.values[i].tie) judged.warnings.push_back({"tie", "two candidates are equal; the first was taken"});

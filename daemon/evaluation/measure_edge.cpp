@@ -10,6 +10,7 @@
 
 #include "core/metrology/edge/cutting_edge.hpp"
 #include "core/metrology/operations/region.hpp"
+#include "daemon/evaluation/instrument_budget.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/noise_floor.hpp"
@@ -87,8 +88,10 @@ void judge_at_least(EvaluatedValue& value) {
   value.probability.reset();
 }
 
-void add_value(const MeasurementInput& input, const std::string& key, const ValueInput& value,
-               EvaluatedMeasurement& made) {
+void add_value(const MeasurementInput& input, const std::string& key, ValueInput value, EvaluatedMeasurement& made) {
+  // The sharpest place is a biased one, which no scatter tells.
+  if (key != metrology::edge_quantity_key(EdgeQuantity::kRMin)) add_instrument(input, key, value);
+  note_not_evaluated(value.budget, made);
   made.values[key] = judged_value(value, key, input.planned, input.plan.decision);
 }
 

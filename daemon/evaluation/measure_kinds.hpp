@@ -2,6 +2,8 @@
 
 /// The kinds of measurement, each from a surface to an entry of the result.
 
+#include <string>
+
 #include "core/metrology/height_field.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
@@ -19,6 +21,7 @@ struct MeasurementInput {
   const SurfaceState& measured;  ///< as the scan made it
   const EvaluationContext& context;
   double lateral_period_um = 0.0;  ///< that the measured surface shows at half its amplitude; 0 = not known
+  std::string name = {};           ///< of the measurement in its plan
 };
 
 /// Each never throws for data: what cannot be given is absent with a reason. context: one thread.

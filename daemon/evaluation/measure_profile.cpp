@@ -14,6 +14,7 @@
 #include "core/metrology/operations/region.hpp"
 #include "core/metrology/profile/profile_evaluation.hpp"
 #include "core/metrology/uncertainty/monte_carlo.hpp"
+#include "daemon/evaluation/instrument_budget.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/noise_floor.hpp"
@@ -183,6 +184,10 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   judge_points(input, found, made);
   const auto draws = drawn(field, line, parameters, settings);
   bool told_below_noise = false;
+  made.not_evaluated = texture_not_evaluated(input);
+  if (std::find(made.not_evaluated.begin(), made.not_evaluated.end(), "slice_z") == made.not_evaluated.end()) {
+    made.not_evaluated.emplace_back("slice_z");
+  }
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string key = profile_value_key(input.planned.parameters[i]);
     ValueInput value;
@@ -203,13 +208,11 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
       value.budget.entries.push_back(entry);
       value.u_method = "monte_carlo";
     }
+    add_instrument(input, key, value);
+    note_not_evaluated(value.budget, made);
     EvaluatedValue judged = judged_value(value, key, input.planned, input.plan.decision);
     if (found.values[i].tie) judged.warnings.push_back({"tie", "two candidates are equal; the first was taken"});
     made.values[key] = std::move(judged);
-  }
-  made.not_evaluated = texture_not_evaluated(input);
-  if (std::find(made.not_evaluated.begin(), made.not_evaluated.end(), "slice_z") == made.not_evaluated.end()) {
-    made.not_evaluated.emplace_back("slice_z");
   }
   ordered_json details = details_json(input, floor, *profile, found);
   details["monte_carlo"] = draws ? ordered_json{{"draws", draws->draws}, {"seed", draws->seed}} : ordered_json(nullptr);

@@ -11,6 +11,7 @@
 
 #include "core/metrology/step/groove_step.hpp"
 #include "core/metrology/step/region_step.hpp"
+#include "daemon/evaluation/instrument_budget.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
@@ -46,19 +47,22 @@ void add_height(const MeasurementInput& input, const std::string& key, const Ste
   value.u_method = "linear";
   add_noise(step.noise, value.budget);
   if (step.noise) {
-    add_slice_z(input.context, input.measured.field, step.weights, value.budget);
+    add_slice_z(input.context, input.measured, step.weights, value.budget);
   } else {
     value.budget.not_evaluated.emplace_back("slice_z");  // alone it would pass for all of U
   }
   for (metrology::BudgetEntry& entry : value.budget.entries) entry.sensitivity *= factor;
+  add_instrument(input, key, value);
   note_not_evaluated(value.budget, made);
   made.values[key] = judged_value(value, key, input.planned, input.plan.decision);
 }
 
-/// A value that only tells something, without uncertainty.
+/// A value that only tells something: no uncertainty but what a gauge study found.
 void add_figure(const MeasurementInput& input, const std::string& key, double figure, EvaluatedMeasurement& made) {
   ValueInput value;
   value.value = figure;
+  add_instrument(input, key, value);
+  note_not_evaluated(value.budget, made);
   made.values[key] = judged_value(value, key, input.planned, input.plan.decision);
 }
 

@@ -58,7 +58,7 @@ void warn_below_noise(double sq_um, const NoiseFloor& floor, EvaluatedMeasuremen
 }
 
 std::vector<std::string> texture_not_evaluated(const MeasurementInput& input) {
-  std::vector<std::string> sources{"lateral", "reproducibility", "window_transfer"};
+  std::vector<std::string> sources{"window_transfer"};
   if (!input.surface.field.has_sigma()) sources.emplace_back("noise");
   if (input.surface.robust) sources.emplace_back("robust_steps");
   if (input.context.samples.empty()) sources.emplace_back("slice_z");

@@ -31,7 +31,7 @@ struct NoiseFloor {
 
 void warn_below_noise(double sq_um, const NoiseFloor& floor, EvaluatedMeasurement& made);
 
-/// What no texture value's budget contains.
+/// What no texture value's budget contains, beside instrument_not_evaluated().
 [[nodiscard]] std::vector<std::string> texture_not_evaluated(const MeasurementInput& input);
 
 /// Why the measurement is invalid; empty where enough points are valid.

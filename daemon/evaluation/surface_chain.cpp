@@ -12,6 +12,7 @@
 #include "core/base/error.hpp"
 #include "core/base/units.hpp"
 #include "daemon/evaluation/apply_operation.hpp"
+#include "daemon/evaluation/calibration_operation.hpp"
 #include "daemon/evaluation/evaluation_fields.hpp"
 
 namespace fvd {
@@ -54,15 +55,23 @@ void hide_unusable(metrology::HeightField& field) {
   }
 }
 
+bool asks_for_reasons(const EvaluationPlan& plan) {
+  const auto asks = [](const PlannedOperation& step) { return step.op == "mask_reasons"; };
+  return std::any_of(plan.surfaces.begin(), plan.surfaces.end(), [&asks](const auto& surface) {
+    return std::any_of(surface.second.steps.begin(), surface.second.steps.end(), asks);
+  });
+}
+
 bool looks_at_sigma(const PlannedOperation& step, const metrology::HeightField& field) {
   return step.op == "mask_sigma" || (step.op == "outliers" && field.has_sigma()) || step.fit == "weighted";
 }
 
 /// Masks that do not fit the surface are data too: a refusal.
-metrology::OperationReport applied(const EvaluationPlan& plan, const PlannedOperation& step, WorkerPool* pool,
+metrology::OperationReport applied(const EvaluationPlan& plan, const PlannedOperation& step,
+                                   const EvaluationContext& context, WorkerPool* pool, Plane<MaskReasons>* reasons,
                                    metrology::HeightField& field) {
   try {
-    return apply_operation(plan, step, pool, field);
+    return apply_operation(plan, step, context, pool, reasons, field);
   } catch (const Error& error) {
     return metrology::refusal(error.what());
   }
@@ -70,8 +79,9 @@ metrology::OperationReport applied(const EvaluationPlan& plan, const PlannedOper
 
 }  // namespace
 
-SurfaceChain::SurfaceChain(const Surface& surface, const EvaluationPlan& plan, WorkerPool* pool)
-    : surface_(surface), plan_(plan), pool_(pool) {}
+SurfaceChain::SurfaceChain(const Surface& surface, const EvaluationPlan& plan, const EvaluationContext& context,
+                           WorkerPool* pool)
+    : surface_(surface), plan_(plan), context_(context), pool_(pool) {}
 
 const SurfaceState& SurfaceChain::state(const std::string& name) {
   if (const auto found = states_.find(name); found != states_.end()) return found->second;
@@ -95,6 +105,14 @@ SurfaceState SurfaceChain::measured() const {
   field.pitch_y_um = surface_.pitch_y_um;
   field.kernel = surface_.kernel;
   state.steps_json = "[]";
+  if (context_.calibration && context_.calibration->z) {
+    state.z_scale = z_amplification(context_);
+    divide_heights(state.z_scale, field);
+    const ordered_json step{
+        {"op", "calibration"}, {"alpha_z", state.z_scale}, {"calibration", context_.calibration->id}};
+    state.steps_json = ordered_json::array({step}).dump();
+  }
+  if (surface_.has_mask() && asks_for_reasons(plan_)) state.reasons = surface_.mask.clone();
   if (field.has_sigma() && !knows_window(field)) {
     state.warnings.push_back({"window_unknown",
                               "the focus window of the surface is not known: its points' errors are taken to be "
@@ -107,9 +125,13 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
   const SurfaceState& source = state(planned.from);
   SurfaceState made;
   made.refused = source.refused;
+  made.refused_code = source.refused_code;
   made.steps_json = source.steps_json;  // of which the last says why
   if (!made.refused.empty()) return made;
   made.field = source.field.clone();
+  made.z_scale = source.z_scale;
+  made.reasons = source.reasons.clone();
+  made.reference_subtracted = source.reference_subtracted;
   made.s_nesting_um = source.s_nesting_um;
   made.l_nesting_um = source.l_nesting_um;
   made.uses_sigma = source.uses_sigma;
@@ -121,14 +143,19 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
   ordered_json steps = ordered_json::parse(source.steps_json);
   for (PlannedOperation step : planned.steps) {
     ordered_json json = fields_to_json([&](Fields& fields) { describe(step, fields); });
-    const metrology::OperationReport report = applied(plan_, step, pool_, made.field);
+    const std::string missing = missing_calibration(step, context_);
+    Plane<MaskReasons>* const reasons = made.reasons.empty() ? nullptr : &made.reasons;
+    const metrology::OperationReport report =
+        missing.empty() ? applied(plan_, step, context_, pool_, reasons, made.field) : metrology::refusal(missing);
     if (report.refused) {
+      if (!missing.empty()) made.refused_code = evaluation_code::kCalibrationMissing;
       made.refused = step.op + ": " + *report.refused;
       json["refused"] = *report.refused;
       steps.push_back(std::move(json));
       break;
     }
     if (step.op == "filter") note_filter(step, made);
+    made.reference_subtracted = made.reference_subtracted || step.op == "flatness_reference";
     made.levelled = made.levelled || step.op == "level" || step.op == "form";
     made.robust = made.robust || step.op == "outliers" || step.robust;
     if (const auto* slope = report.find("slope_x")) made.removed_slope_x += slope->value;

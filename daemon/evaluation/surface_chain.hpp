@@ -10,6 +10,7 @@
 #include "core/metrology/height_field.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "core/surface/surface.hpp"
+#include "daemon/evaluation/evaluation_context.hpp"
 #include "daemon/evaluation/evaluation_plan.hpp"
 #include "daemon/result/evaluation_result.hpp"
 
@@ -27,7 +28,12 @@ struct SurfaceState {
   bool robust = false;    ///< points were judged by the heights themselves
   bool levelled = false;  ///< a form was fitted and taken away on that way, with errors of its own
   std::vector<EvaluationWarning> warnings;
-  std::string refused;  ///< why the surface cannot be made; empty = it is there
+  /// Measured heights of the scan over those of the surface "measured": alpha_z of the calibration.
+  double z_scale = 1.0;
+  Plane<MaskReasons> reasons;         ///< why points are holes; empty where no step asks
+  bool reference_subtracted = false;  ///< of flatness
+  int refused_code = 0;               ///< evaluation_code of `refused`; 0 = no special one
+  std::string refused;                ///< why the surface cannot be made; empty = it is there
 };
 
 /// Whether the surface tells what its focus window did: which neighbours share their errors.
@@ -35,10 +41,10 @@ struct SurfaceState {
   return measured.kernel.weights.size() > 1;
 }
 
-/// surface, plan and pool outlive it; pool may be null. context: one thread.
+/// surface, plan, context and pool outlive it; pool may be null. context: one thread.
 class SurfaceChain {
  public:
-  SurfaceChain(const Surface& surface, const EvaluationPlan& plan, WorkerPool* pool);
+  SurfaceChain(const Surface& surface, const EvaluationPlan& plan, const EvaluationContext& context, WorkerPool* pool);
 
   /// kMeasuredSurface or one of the plan's; the plan was checked.
   [[nodiscard]] const SurfaceState& state(const std::string& name);
@@ -49,6 +55,7 @@ class SurfaceChain {
 
   const Surface& surface_;
   const EvaluationPlan& plan_;
+  const EvaluationContext& context_;
   WorkerPool* pool_;
   std::map<std::string, SurfaceState> states_;
 };

@@ -78,6 +78,24 @@ std::vector<std::string> value_keys(const PlannedMeasurement& measurement) {
   return keys;
 }
 
+ValuePowers value_powers(const std::string& kind, const std::string& key) {
+  constexpr ValuePowers kHeight{1.0, 0.0};
+  constexpr ValuePowers kInImage{0.0, 1.0};
+  if (kind == "cutting_edge") {
+    for (const char* length :
+         {"radius_um", "radius_apparent_um", "S_gamma_um", "S_alpha_um", "delta_r_um", "r_min_um"}) {
+      if (key == length) return kInImage;
+    }
+    return {};
+  }
+  if (key == "width_um" && kind == "step_height") return kInImage;
+  if (key == "bottom_radius_um" && kind == "step_height") return {-1.0, 2.0};
+  if ((key == "Sal_um" && kind == "areal") || (key == "RSm_um" && kind == "profile")) return kInImage;
+  if (key == "Sdq" || key == "Rdq") return {1.0, -1.0};
+  if (key == "Sdr_percent") return {2.0, -2.0};
+  return unit_of_key(key) == "um" ? kHeight : ValuePowers{};
+}
+
 std::string unit_of_key(const std::string& key) {
   constexpr std::array<std::pair<std::string_view, const char*>, 4> kUnits{
       {{"_um", "um"}, {"_deg", "deg"}, {"_percent", "%"}, {"_um2", "um2"}}};

@@ -23,6 +23,19 @@ namespace fvd {
 /// The value of a height of region `upper` over region `lower`, among the levels.
 [[nodiscard]] std::string level_value_key(const std::string& upper, const std::string& lower);
 
+/// By which powers a value grows with the lengths that it is made of.
+struct ValuePowers {
+  double z = 0.0;   ///< of heights along the axis
+  double xy = 0.0;  ///< of lengths in the image
+  bool operator==(const ValuePowers&) const = default;
+};
+
+/// Of a value of this kind of measurement, own definition: 1, 0 of heights, steps, levels and every texture parameter
+/// in um but Sal and RSm, which are lengths in the image: 0, 1, as are the groove's width and radii and lengths of
+/// cutting edges. Gradients Sdq and Rdq: 1, -1. Sdr: 2, -2, its limit for small slopes, which steep ones stay below.
+/// The radius of a groove's bottom: -1, 2. Shapes, shares, angles, counts and the edge line: 0, 0.
+[[nodiscard]] ValuePowers value_powers(const std::string& kind, const std::string& key);
+
 /// "um" of "radius_um", "deg" of "beta_deg", "%" of "Smr1_percent", "1" of "K".
 [[nodiscard]] std::string unit_of_key(const std::string& key);
 

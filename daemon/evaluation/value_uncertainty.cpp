@@ -68,8 +68,8 @@ void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Bu
   budget.entries.push_back(entry);
 }
 
-void add_slice_z(const EvaluationContext& context, const metrology::HeightField& measured,
-                 const metrology::WeightMap& map, metrology::Budget& budget) {
+void add_slice_z(const EvaluationContext& context, const SurfaceState& measured, const metrology::WeightMap& map,
+                 metrology::Budget& budget) {
   if (!are_known(context)) {
     budget.not_evaluated.emplace_back("slice_z");
     return;
@@ -85,8 +85,11 @@ void add_slice_z(const EvaluationContext& context, const metrology::HeightField&
   for (int row = 0; row < map.weights.height(); ++row) {
     for (int column = 0; column < map.weights.width(); ++column) {
       const double weight = map.weights.at(column, row);
-      if (weight == 0.0 || measured.is_hole(map.left + column, map.top + row)) continue;
-      heights.push_back({measured.z_um.at(map.left + column, map.top + row), weight});
+      const int x = map.left + column;
+      const int y = map.top + row;
+      if (weight == 0.0 || measured.field.is_hole(x, y)) continue;
+      // The slices' z are as the stage told them.
+      heights.push_back({measured.field.z_um.at(x, y) * measured.z_scale, weight / measured.z_scale});
     }
   }
   budget.entries.push_back(metrology::slice_z_entry(slice_sensitivities(z_um, context.curve_width_um, heights), u_um));
@@ -138,7 +141,5 @@ EvaluatedValue judged_value(const ValueInput& input, const std::string& key, con
   }
   return value;
 }
-
-std::vector<std::string> never_evaluated() { return {"alpha_z", "flatness", "l_z", "temperature"}; }
 
 }  // namespace fvd

@@ -11,6 +11,7 @@
 #include "core/metrology/uncertainty/weight_map.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
 #include "daemon/evaluation/evaluation_plan.hpp"
+#include "daemon/evaluation/surface_chain.hpp"
 #include "daemon/result/evaluation_result.hpp"
 
 namespace fvd {
@@ -20,7 +21,7 @@ struct ValueInput {
   std::optional<double> value;
   std::string reason;        ///< why there is no value
   metrology::Budget budget;  ///< without entries: U is not known
-  std::string u_method;      ///< "linear", "monte_carlo", "jacobian", "spread"
+  std::string u_method;      ///< "linear", "monte_carlo", "jacobian", "spread", "repeated"
   bool below_noise = false;  ///< of a texture value
   bool exact = false;        ///< a count or a share of points: judged by itself
 };
@@ -29,10 +30,11 @@ struct ValueInput {
 void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Budget& budget);
 
 /// Adds the errors of the slices' z, which whole plateaus share. weights: of the value, on the measured field, whose
-/// heights tell which slices each point rests on. "slice_z" is not evaluated where the context does not know the
+/// heights, times z_scale, tell which slices each point rests on; a step that moved points along x by a few columns is
+/// not undone for that. "slice_z" is not evaluated where the context does not know the
 /// slices, or where their z neither rise nor fall throughout.
-void add_slice_z(const EvaluationContext& context, const metrology::HeightField& measured,
-                 const metrology::WeightMap& weights, metrology::Budget& budget);
+void add_slice_z(const EvaluationContext& context, const SurfaceState& measured, const metrology::WeightMap& weights,
+                 metrology::Budget& budget);
 
 /// Adds what this budget does not contain to what the measurement says of all its budgets.
 void note_not_evaluated(const metrology::Budget& budget, EvaluatedMeasurement& made);
@@ -40,8 +42,5 @@ void note_not_evaluated(const metrology::Budget& budget, EvaluatedMeasurement& m
 /// key: of the value in `planned`, whose limits and `decision` make the verdict.
 [[nodiscard]] EvaluatedValue judged_value(const ValueInput& input, const std::string& key,
                                           const PlannedMeasurement& planned, const PlannedDecision& decision);
-
-/// What no measurement's budget contains as long as nothing is known of it.
-[[nodiscard]] std::vector<std::string> never_evaluated();
 
 }  // namespace fvd

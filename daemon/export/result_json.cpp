@@ -227,6 +227,26 @@ Json file_list(const std::vector<ResultFile>& files) {
   return list;
 }
 
+Json temperature(const Temperature& measured) {
+  return {{"celsius", measured.celsius}, {"source", measured.source}, {"age_s", measured.age_s}};
+}
+
+/// What the evaluation knew beside the surface, with every digit: it is evaluated again with these.
+void add_conditions(const Result& result, Json& json) {
+  json["objective"] = text_or_null(result.objective);
+  json["temperature"] = result.temperature ? temperature(*result.temperature) : Json(nullptr);
+  json["calibration"] = nullptr;
+  if (result.calibration) {
+    Calibration calibration = *result.calibration;
+    json["calibration"] = fields_to_json([&](Fields& fields) { describe(calibration, fields); });
+  }
+  json["repeatability"] = Json::object();
+  for (const auto& [name, found] : result.repeatability) {
+    Repeatability repeatability = found;
+    json["repeatability"][name] = fields_to_json([&](Fields& fields) { describe(repeatability, fields); });
+  }
+}
+
 }  // namespace
 
 std::string result_json_text(const Result& result) {
@@ -237,6 +257,7 @@ std::string result_json_text(const Result& result) {
                  {"part_id", text_or_null(result.job.part_id)},
                  {"recipe", text_or_null(result.recipe.id)}};
   json["recipe"] = {{"id", text_or_null(result.recipe.id)}, {"sha256", text_or_null(result.recipe.sha256)}};
+  add_conditions(result, json);
   json["verdict"] = result.verdict ? Json(verdict_name(*result.verdict)) : Json(nullptr);
   json["measurements"] = measurements(result.measurements);
   if (result.evaluation) {

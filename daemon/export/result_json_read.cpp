@@ -31,6 +31,7 @@ class Node {
   }
 
   [[nodiscard]] const Json& json() const { return *json_; }
+  [[nodiscard]] const std::string& pointer() const { return pointer_; }
   [[nodiscard]] bool has(const char* key) const { return json_->is_object() && json_->contains(key); }
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
 
@@ -64,6 +65,12 @@ class Node {
   [[nodiscard]] double number() const {
     if (json_->is_null()) return std::numeric_limits<double>::quiet_NaN();
     if (!json_->is_number()) refuse("a number or null");
+    return json_->get<double>();
+  }
+
+  /// null and what is out of range are refused.
+  [[nodiscard]] double finite() const {
+    if (!json_->is_number() || !std::isfinite(json_->get<double>())) refuse("a number");
     return json_->get<double>();
   }
 
@@ -268,15 +275,32 @@ ResultFile file(const Node& node) {
   return file;
 }
 
-Evaluation evaluation(const Node& node) {
-  Evaluation evaluation;
+/// What has a description of its own.
+template <typename Described>
+Described described(const Node& node) {
+  Described value;
   Problems problems;
   const nlohmann::json members = node.json();
-  FieldReader reader(members, problems, "/evaluation");
-  describe(evaluation, reader);
+  FieldReader reader(members, problems, node.pointer());
+  describe(value, reader);
   reader.finish();
   if (!problems.empty()) throw Error(ErrorCode::kBadInput, to_text(problems, "result.json"));
-  return evaluation;
+  return value;
+}
+
+/// What results of before 0.4.0 do not tell.
+void read_conditions(const Node& root, Result& result) {
+  const auto is_told = [&root](const char* key) { return root.has(key) && !root.at(key).is_null(); };
+  if (is_told("objective")) result.objective = root.at("objective").text();
+  if (is_told("temperature")) {
+    const Node node = root.at("temperature");
+    result.temperature = Temperature{node.at("celsius").finite(), node.at("source").text(), node.at("age_s").finite()};
+  }
+  if (is_told("calibration")) result.calibration = described<Calibration>(root.at("calibration"));
+  if (!is_told("repeatability")) return;
+  root.at("repeatability").members([&result](const std::string& name, const Node& node) {
+    result.repeatability.emplace(name, described<Repeatability>(node));
+  });
 }
 
 }  // namespace
@@ -316,7 +340,8 @@ Result read_result_json(std::string_view text) {
   if (root.at("steps").has("encoder_resolution_um")) {
     result.encoder_resolution_um = root.at("steps").at("encoder_resolution_um").number();
   }
-  if (root.has("evaluation")) result.evaluation = evaluation(root.at("evaluation"));
+  if (root.has("evaluation")) result.evaluation = described<Evaluation>(root.at("evaluation"));
+  read_conditions(root, result);
   const Node stage = root.at("stage_in_curves");
   result.stage = {stage.at("corrected").boolean(), stage.at("reason").text_or_empty(),
                   stage.at("offsets_rms_um").number(), stage.at("offset_error_um").number()};

@@ -48,8 +48,8 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
            }),
       ticks_("fvd-machine", kLongestStep),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir, config.objectives}),
-      runner_(
-          {config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, deps.make_result}),
+      runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, calibrations_,
+               deps.make_result, deps.repeatability}),
       evaluator_({deps.store, board_, config.paths.state_dir / "results", memory_budget_bytes(config)}),
       jobs_({deps.store,
              board_,

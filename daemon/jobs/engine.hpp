@@ -29,12 +29,14 @@ struct EngineDependencies {
   Clock& clock;
   DeviceOpeners openers;
   ResultPipeline make_result = store_result;
+  RepeatabilityOf repeatability = {};  ///< of the recipes' values; empty = nobody keeps gauge studies
 };
 
 /// context: made and destroyed on one thread; the services are thread-safe.
 class Engine {
  public:
-  /// Warns of the latest job if a restart interrupted it and nobody acknowledged that yet.
+  /// Warns of the latest job if a restart interrupted it and nobody acknowledged that yet. Throws Error
+  /// kBadInput where the constants of the instrument cannot be read.
   Engine(const Config& config, const EngineDependencies& dependencies);
   /// finish().
   ~Engine();
@@ -48,6 +50,9 @@ class Engine {
   [[nodiscard]] Services services() {
     return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_};
   }
+
+  /// The instrument's constants, in <state_dir>/calibration. context: any thread.
+  [[nodiscard]] CalibrationBook& calibrations() { return calibrations_; }
 
   /// Takes no more jobs and commands from now on, and asks what runs to end; returns at once. context: any thread.
   void shut_down();

@@ -103,6 +103,7 @@ JobRunner::JobEnd JobRunner::measured(const AcceptedJob& job, const std::stop_to
 JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_token& stop) {
   const Recipe recipe = with_learnt_width(job.recipe, deps_.store.curve_widths());
   ResultData acquired = described(job, recipe, deps_.config, deps_.board.read().objective);
+  note_constants(recipe, deps_.calibrations, deps_.repeatability, acquired);
   AtomicDirectory directory(deps_.config.paths.state_dir / "results" / job.status.job_id);
   MeasurementObserver observer = this->observer();
   const auto tell_phase = observer.on_phase;

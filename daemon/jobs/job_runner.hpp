@@ -12,9 +12,11 @@
 #include "core/base/clock.hpp"
 #include "core/runtime/thread_ticks.hpp"
 #include "core/runtime/worker_pool.hpp"
+#include "daemon/calibration/calibration_book.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
+#include "daemon/jobs/job_constants.hpp"
 #include "daemon/jobs/machine_board.hpp"
 #include "daemon/jobs/result_pipeline.hpp"
 #include "daemon/pipeline/measurement.hpp"
@@ -43,7 +45,9 @@ class JobRunner {
     PreviewHub& preview;
     StageHistory& history;
     ThreadTicks& ticks;  ///< of the machine's thread
+    const CalibrationBook& calibrations;
     ResultPipeline make_result = store_result;
+    RepeatabilityOf repeatability = {};  ///< empty = nobody keeps gauge studies
   };
   explicit JobRunner(Dependencies dependencies) : deps_(std::move(dependencies)) {}
 

@@ -112,6 +112,7 @@ Surface evaluated_surface(const ResultData& data) {
   Surface surface;
   surface.height_m = data.map.height_m.clone();
   surface.sigma_m = data.map.sigma_m.clone();
+  surface.mask = data.map.mask.clone();
   surface.pitch_x_um = data.pixel_pitch_x_um.value_or(1.0);
   surface.pitch_y_um = data.pixel_pitch_y_um.value_or(1.0);
   Result::Focus focus;
@@ -127,8 +128,14 @@ EvaluationContext evaluation_context(const ResultData& data) {
     slices.push_back(
         {rounded(step.measured_um, kLogDigits), rounded(step.measured_sd_um, kLogDigits), step.position_samples});
   }
-  return {samples_of(slices, data.focus.bin_slices, data.encoder_resolution_um),
-          rounded(data.map.curve_width_um, kWidthDigits)};
+  EvaluationContext context;
+  context.samples = samples_of(slices, data.focus.bin_slices, data.encoder_resolution_um);
+  context.curve_width_um = rounded(data.map.curve_width_um, kWidthDigits);
+  context.calibration = data.calibration;
+  context.flatness_reference = data.flatness_reference;
+  if (data.temperature) context.temperature_c = data.temperature->celsius;
+  context.repeatability = data.repeatability;
+  return context;
 }
 
 void note_window(const Result::Focus& focus, Surface& surface) {
@@ -139,6 +146,9 @@ void note_window(const Result::Focus& focus, Surface& surface) {
 EvaluationContext read_evaluation_context(const std::filesystem::path& folder, const Result& result) {
   EvaluationContext context;
   context.curve_width_um = result.focus.curve_width_um.value_or(0.0);
+  context.calibration = result.calibration;
+  if (result.temperature) context.temperature_c = result.temperature->celsius;
+  context.repeatability = result.repeatability;
   const std::filesystem::path log = folder / "step_log.csv";
   if (!std::filesystem::exists(log)) return context;
   context.samples =

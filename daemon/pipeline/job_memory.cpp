@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <sstream>
+#include <string_view>
 
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
@@ -18,8 +19,10 @@ constexpr std::size_t kMapBytesPerPixel = 3 * sizeof(float) + sizeof(MaskReasons
 /// The preview's picture is drawn and encoded while the largest file of four bytes a point is made beside it.
 constexpr std::size_t kEncodingBytesPerPixel = 12;
 
-/// The measured surface as it was and in double precision, with its standard errors.
-constexpr std::size_t kMeasuredSurfaceBytesPerPixel = 2 * sizeof(float) + sizeof(double) + sizeof(float);
+/// The measured surface as it was, with reasons, and in double precision, with its standard errors.
+constexpr std::size_t kMeasuredSurfaceBytesPerPixel =
+    2 * sizeof(float) + sizeof(MaskReasons) + sizeof(double) + sizeof(float);
+constexpr std::size_t kReferenceBytesPerPixel = sizeof(double) + sizeof(float);
 constexpr std::size_t kSurfaceBytesPerPixel = sizeof(double) + sizeof(float);
 /// While one measurement is made: regions, weights, sorted heights, draws of noise (41 bytes); with filters their
 /// moments; with the autocorrelation the transforms of three times the region (400 MiB for 5 Mpx were measured).
@@ -27,10 +30,10 @@ constexpr std::size_t kMeasurementBytesPerPixel = 80;
 constexpr std::size_t kFilterBytesPerPixel = 100;
 constexpr std::size_t kAutocorrelationBytesPerPixel = 90;
 
-bool has_filter(const EvaluationPlan& plan) {
-  return std::any_of(plan.surfaces.begin(), plan.surfaces.end(), [](const auto& surface) {
+bool has_step(const EvaluationPlan& plan, std::string_view op) {
+  return std::any_of(plan.surfaces.begin(), plan.surfaces.end(), [op](const auto& surface) {
     return std::any_of(surface.second.steps.begin(), surface.second.steps.end(),
-                       [](const PlannedOperation& step) { return step.op == "filter"; });
+                       [op](const PlannedOperation& step) { return step.op == op; });
   });
 }
 
@@ -56,9 +59,11 @@ std::size_t evaluation_bytes(const EvaluationPlan& plan, std::size_t pixels) {
   if (plan.empty()) return 0;
   std::size_t bytes = kMeasuredSurfaceBytesPerPixel + kSurfaceBytesPerPixel * plan.surfaces.size();
   std::size_t working = kMeasurementBytesPerPixel + weight_map_bytes(plan);
-  if (has_filter(plan)) working = std::max(working, kFilterBytesPerPixel);
+  if (has_step(plan, "filter")) working = std::max(working, kFilterBytesPerPixel);
   if (has_autocorrelation(plan)) working = std::max(working, kMeasurementBytesPerPixel + kAutocorrelationBytesPerPixel);
   bytes += working + plan.masks.size();  // a byte a point each
+  if (has_step(plan, "flatness_reference")) bytes += 2 * kReferenceBytesPerPixel;  // as kept, and divided by alpha_z
+  if (has_step(plan, "mask_reasons")) bytes += sizeof(MaskReasons) * (1 + plan.surfaces.size());
   return bytes * pixels;
 }
 

@@ -42,6 +42,17 @@ std::string recipe_text(const Result& result) {
   return result.recipe.id + "  " + result.recipe.sha256.substr(0, kShownDigits);
 }
 
+/// The identifier with the day it was made, and what of it was past its day when the part was measured.
+std::string calibration_text(const Result& result) {
+  if (!result.calibration) return result.evaluation ? result.evaluation->calibration : "none";
+  const Calibration& calibration = *result.calibration;
+  constexpr std::size_t kDay = 10;  // of "2026-11-29T20:15:00Z"
+  std::string text = calibration.id + ", " + calibration.created.substr(0, kDay);
+  const std::string parts = lapsed_text(calibration, calendar_day(result.provenance.created));
+  if (!parts.empty()) text += ", lapsed: " + parts;
+  return text;
+}
+
 std::string job_text(const Result& result) {
   if (result.job.id.empty()) return "none: recorded slices";
   return result.job.id + (result.job.seq ? ", number " + std::to_string(*result.job.seq) : std::string());
@@ -68,7 +79,7 @@ double draw_head(Canvas& canvas, const PageRect& page, const Result& result) {
   draw_fact(canvas, {middle, y}, width, "Instrument", result.provenance.source);
   y += kLine;
   draw_fact(canvas, {page.x, y}, width, "Time", people_time_text(result.provenance.created));
-  draw_fact(canvas, {middle, y}, width, "Calibration", result.evaluation ? result.evaluation->calibration : "none");
+  draw_fact(canvas, {middle, y}, width, "Calibration", calibration_text(result));
   y += 6.0;
   canvas.line({page.x, y}, {page.right(), y}, colour::kInk, 0.6);
   return y + 10.0;

@@ -1,5 +1,7 @@
 #include "daemon/result/calibration.hpp"
 
+#include <cstdio>
+
 namespace fvd {
 
 namespace {
@@ -88,6 +90,14 @@ void describe(Calibration& calibration, Fields& fields) {
   part(fields, "texture", calibration.texture, "of texture values");
 }
 
+std::string calendar_day(std::chrono::system_clock::time_point time) {
+  const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(time));
+  char text[32];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02u", static_cast<int>(day.year()), static_cast<unsigned>(day.month()),
+                static_cast<unsigned>(day.day()));
+  return text;
+}
+
 std::vector<std::string> lapsed(const Calibration& calibration, const std::string& today) {
   std::vector<std::string> parts;
   const auto add = [&](const char* name, const auto& constants) {
@@ -100,6 +110,12 @@ std::vector<std::string> lapsed(const Calibration& calibration, const std::strin
   add("lateral", calibration.lateral);
   add("texture", calibration.texture);
   return parts;
+}
+
+std::string lapsed_text(const Calibration& calibration, const std::string& today) {
+  std::string text;
+  for (const std::string& part : lapsed(calibration, today)) text += (text.empty() ? "" : ", ") + part;
+  return text;
 }
 
 }  // namespace fvd

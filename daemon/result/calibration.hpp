@@ -2,6 +2,7 @@
 
 /// The constants of an instrument that were found on artefacts and accepted by a person.
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,7 +85,13 @@ struct Calibration {
 /// Written and read back by config/field_writer.hpp and field_reader.hpp.
 void describe(Calibration& calibration, Fields& fields);
 
+/// The day in UTC, "2026-11-29".
+[[nodiscard]] std::string calendar_day(std::chrono::system_clock::time_point time);
+
 /// The origins whose last day is before this one ("2026-11-29"), as "z", "flatness", ...
 [[nodiscard]] std::vector<std::string> lapsed(const Calibration& calibration, const std::string& today);
+
+/// lapsed() as a list for people, "z, flatness"; empty where nothing has.
+[[nodiscard]] std::string lapsed_text(const Calibration& calibration, const std::string& today);
 
 }  // namespace fvd

@@ -207,6 +207,15 @@ void warn_of_holes(const Result& result, std::vector<Warning>& warnings) {
   }
 }
 
+void warn_of_lapsed(const ResultData& data, std::vector<Warning>& warnings) {
+  if (!data.calibration) return;
+  const std::string parts = lapsed_text(*data.calibration, calendar_day(data.created));
+  if (parts.empty()) return;
+  warnings.push_back({"calibration_lapsed", "constants of the calibration " + data.calibration->id +
+                                                " are past the day that they were to be renewed by: " + parts +
+                                                "; values and U still rest on them: calibrate again"});
+}
+
 std::vector<Warning> warnings_of(const Result& result, const ResultData& data) {
   std::vector<Warning> warnings = data.warnings;
   const int missing = result.slices.planned - result.slices.measured;
@@ -218,6 +227,7 @@ std::vector<Warning> warnings_of(const Result& result, const ResultData& data) {
                                             std::to_string(result.slices.planned) +
                                             " that were planned cover the range: the camera is faster than asked"});
   }
+  warn_of_lapsed(data, warnings);
   warn_of_suspects(result.slices, warnings);
   warn_of_drift(data, warnings);
   warn_of_scale(data, warnings);
@@ -253,6 +263,10 @@ Result evaluate(const ResultData& data, const HeightSummary& summary) {
   Result result;
   result.job = {data.job_id, data.seq, data.part_id};
   result.recipe = {data.recipe_id, data.recipe_sha256};
+  result.objective = data.objective;
+  result.temperature = data.temperature;
+  result.calibration = data.calibration;
+  result.repeatability = data.repeatability;
   result.points = summary.points;
   result.valid_points = summary.valid;
   result.holes = summary.holes;

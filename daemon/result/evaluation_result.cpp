@@ -57,7 +57,7 @@ void describe(EvaluatedValue& value, Fields& fields) {
   optional_number(fields, "U", value.expanded_u, "expanded uncertainty k u, 95 %");
   optional_number(fields, "k", value.k, "coverage factor");
   optional_number(fields, "dof", value.dof, "effective degrees of freedom; absent = infinite, or not known");
-  optional_text(fields, "u_method", value.u_method, "how u was found: linear, monte_carlo, jacobian, spread");
+  optional_text(fields, "u_method", value.u_method, "how u was found: linear, monte_carlo, jacobian, spread, repeated");
   fields.list("budget", value.budget, {0, 100}, "what u consists of",
               [](Fields& in, UncertaintyLine& line) { describe(line, in); });
   fields.optional("limits", value.limits, [](Fields& in, Limits& limits) {

@@ -17,9 +17,10 @@ namespace fvd {
 /// Reasons of verdicts, by their numbers on the wire (the error codes of daemon/README.md).
 namespace evaluation_code {
 inline constexpr int kTooFewValid = 1122;
-inline constexpr int kInvalid = 1141;        ///< a measurement is invalid for another reason
-inline constexpr int kRegionOutside = 1142;  ///< what it looks at does not lie in the field of view
-inline constexpr int kUncertain = 1145;      ///< information: a verdict is uncertain
+inline constexpr int kInvalid = 1141;             ///< a measurement is invalid for another reason
+inline constexpr int kRegionOutside = 1142;       ///< what it looks at does not lie in the field of view
+inline constexpr int kCalibrationMissing = 1143;  ///< a surface needs constants of the instrument that there are not
+inline constexpr int kUncertain = 1145;           ///< information: a verdict is uncertain
 }  // namespace evaluation_code
 
 /// One line of an uncertainty budget, in the unit of its value.
@@ -48,7 +49,7 @@ struct EvaluatedValue {
   std::optional<double> expanded_u;
   std::optional<double> k;
   std::optional<double> dof;  ///< absent = infinite, or not known
-  std::string u_method;       ///< "linear", "monte_carlo", "jacobian", "spread"; empty without u
+  std::string u_method;       ///< "linear", "monte_carlo", "jacobian", "spread", "repeated"; empty without u
   std::vector<UncertaintyLine> budget;
   std::optional<Limits> limits;
   std::optional<Verdict> verdict;     ///< present where limits are

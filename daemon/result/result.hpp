@@ -20,6 +20,7 @@
 #include "core/surface/verdict.hpp"
 #include "daemon/result/calibration.hpp"
 #include "daemon/result/evaluation_result.hpp"
+#include "daemon/result/repeatability.hpp"
 
 namespace fvd {
 
@@ -189,6 +190,7 @@ struct Result {
   std::string objective;                   ///< that was confirmed; empty = none is named
   std::optional<Temperature> temperature;  ///< absent = not known
   std::optional<Calibration> calibration;  ///< that was in force for the objective; absent = none
+  RepeatabilityMap repeatability;          ///< of the recipe's values, from its newest gauge study
   std::optional<Verdict> verdict;          ///< absent = nothing was judged; says nothing about how the job ended
   std::vector<MeasuredValue> measurements;
   std::optional<Evaluation> evaluation;  ///< where the recipe asks for one

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,11 +15,13 @@
 #include "core/focus/fit/smooth_heights.hpp"
 #include "core/focus/judge/suspect_slice.hpp"
 #include "core/focus/measure/focus_settings.hpp"
+#include "core/metrology/height_field.hpp"
 #include "core/scan/frame_ledger.hpp"
 #include "core/scan/scan_plan.hpp"
 #include "core/stage/stage_accuracy.hpp"
 #include "core/stage/step_log.hpp"
 #include "daemon/result/evaluation_result.hpp"
+#include "daemon/result/repeatability.hpp"
 #include "daemon/result/repeated_scans.hpp"
 #include "daemon/result/result.hpp"
 
@@ -39,6 +42,9 @@ struct ResultData {
   std::string objective;                   ///< that was confirmed; empty = none is named
   std::optional<Temperature> temperature;  ///< absent = not known
   std::optional<Calibration> calibration;  ///< in force for the objective; absent = none
+  RepeatabilityMap repeatability;          ///< of the recipe's values, from its newest gauge study
+  /// The map that the calibration names, where the recipe asks for it; null = not at hand.
+  std::shared_ptr<const metrology::HeightField> flatness_reference;
 
   FocusSettings focus;
   PeakMethod peak = PeakMethod::kParabola;

@@ -108,27 +108,14 @@ TEST(CalibrationBook, IsTheSameAfterARestart) {
   EXPECT_EQ(add_noise(next_day, "10x", 0.06).id, "cal-0003");
 }
 
-TEST(CalibrationBook, ReadsItsFileBackHoweverManyVersionsItHas) {
+TEST(CalibrationBook, ReadsItsFileBackHoweverLongItIs) {
   const ScratchDir folder;
-  constexpr int kVersions = 60;
   CalibrationBook book(folder.path());
-  for (int i = 0; i < kVersions; ++i) {
-    book.add("", [](Calibration& next) {
-      next.z = ZConstants{};
-      next.z->origin.person = std::string(256, 'x');
-      next.z->origin.study = std::string(256, '\x01');  // six characters each in JSON
-      next.lateral = test::whole_calibration().lateral;
-      next.lateral->origin = next.z->origin;
-      next.lateral->origin.certificate = std::string(256, '\x02');
-      next.texture = TextureConstants{1.0, next.lateral->origin};
-      next.noise = NoiseConstants{1.0, next.lateral->origin};
-      next.flatness = FlatnessConstants{1.0, 0.1, std::string(256, '\x03'), next.lateral->origin};
-      return std::vector<CalibrationFile>();
-    });
-  }
+  add_z(book, "", 1.01);
+  const std::string text = read_text(folder / "calibration.json");
+  write_text(folder / "calibration.json", std::string(2U << 20U, ' ') + text);
 
-  EXPECT_EQ(CalibrationBook(folder.path()).versions().size(), static_cast<std::size_t>(kVersions));
-  EXPECT_GT(std::filesystem::file_size(folder / "calibration.json"), 1U << 20U);
+  EXPECT_EQ(CalibrationBook(folder.path()).versions(), book.versions());
 }
 
 TEST(CalibrationBook, WritesTheFilesThatAVersionNames) {

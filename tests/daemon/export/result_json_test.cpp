@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/result/evaluate.hpp"
+#include "tests/daemon/calibration/some_calibration.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -27,6 +28,10 @@ Result full_result() {
   Result result;
   result.job = {"J7", 4711, "part-42"};
   result.recipe = {"chapter", "abc"};
+  result.objective = "10x";
+  result.temperature = Temperature{21.37, "/run/room.json", 12.5};
+  result.calibration = test::whole_calibration();
+  result.repeatability = {{"step.height_um", {0.0123456789, 24.0, "study-0007"}}};
   result.verdict = Verdict::kFail;
   result.measurements = {
       {"step", "height_step", 50.125, "um", 0.25, 0.5, 2.0, 90, 0.75, Limits{49.5, 50.5}, Verdict::kPass},
@@ -82,6 +87,10 @@ TEST(ResultJson, IsReadBackWithEveryField) {
   const Result read = read_result_json(result_json_text(written));
   EXPECT_EQ(read.job, written.job);
   EXPECT_EQ(read.recipe, written.recipe);
+  EXPECT_EQ(read.objective, written.objective);
+  EXPECT_EQ(read.temperature, written.temperature);
+  EXPECT_EQ(read.calibration, written.calibration);
+  EXPECT_EQ(read.repeatability, written.repeatability);
   EXPECT_EQ(read.verdict, written.verdict);
   EXPECT_EQ(read.measurements, written.measurements);
   EXPECT_EQ(read.warnings, written.warnings);
@@ -112,6 +121,18 @@ TEST(ResultJson, IsReadBackWithEveryField) {
   EXPECT_EQ(read.provenance, written.provenance);
   EXPECT_EQ(read.files, written.files);
   EXPECT_EQ(result_json_text(read), result_json_text(written));
+}
+
+TEST(ResultJson, OfBeforeCalibrationsKnowsNone) {
+  json document = json::parse(result_json_text(full_result()));
+  for (const char* key : {"objective", "temperature", "calibration", "repeatability"}) document.erase(key);
+
+  const Result read = read_result_json(document.dump());
+
+  EXPECT_EQ(read.objective, "");
+  EXPECT_FALSE(read.temperature);
+  EXPECT_FALSE(read.calibration);
+  EXPECT_TRUE(read.repeatability.empty());
 }
 
 TEST(ResultJson, IsTheSameTextAgainWhereNothingIsKnown) {
@@ -175,6 +196,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadDocument{"FormatThatIsText", [](json& d) { d["format"] = "2"; }, "/format"},
         BadDocument{"SeqOfOneHalf", [](json& d) { d["job"]["seq"] = 0.5; }, "/job/seq"},
         BadDocument{"SeqTooLarge", [](json& d) { d["job"]["seq"] = 18'446'744'073'709'551'615U; }, "/job/seq"},
+        BadDocument{"AmplificationAsText", [](json& d) { d["calibration"]["z"]["alpha_z"] = "1"; },
+                    "/calibration/z/alpha_z"},
+        BadDocument{"CalibrationWithoutId", [](json& d) { d["calibration"].erase("id"); }, "/calibration/id"},
+        BadDocument{"UnknownConstant", [](json& d) { d["calibration"]["z"]["beta"] = 1; }, "/calibration/z/beta"},
+        BadDocument{"NoTemperature", [](json& d) { d["temperature"]["celsius"] = nullptr; }, "/temperature/celsius"},
+        BadDocument{"NoDegreesOfFreedom", [](json& d) { d["repeatability"]["step.height_um"]["dof"] = 0; },
+                    "/repeatability/step.height_um/dof"},
+        BadDocument{"ObjectiveAsNumber", [](json& d) { d["objective"] = 10; }, "/objective"},
         BadDocument{"UnknownVerdict", [](json& d) { d["verdict"] = "good"; }, "/verdict"},
         BadDocument{"MeasurementsAsList", [](json& d) { d["measurements"] = json::array(); }, "/measurements"},
         BadDocument{"ValueThatIsText", [](json& d) { d["measurements"]["step"]["value"] = "50"; },

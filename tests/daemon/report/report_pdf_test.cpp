@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/daemon/calibration/some_calibration.hpp"
 #include "tests/daemon/report/sample_report.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -148,6 +149,18 @@ TEST(ReportPdf, SaysAsTextWhatWasMeasuredAndUnderWhichConditions) {
   }
   EXPECT_THAT(words, Not(HasSubstr("0123456789abc"))) << "twelve digits";
   EXPECT_THAT(words, Not(HasSubstr(" um"))) << "micrometres are written with their letter";
+}
+
+TEST(ReportPdf, NamesTheCalibrationWithItsDayAndWhatHasLapsed) {
+  if (!has_pdftotext()) GTEST_SKIP() << "pdftotext (poppler-utils) is not installed";
+  Result result = test::sample_report_result();  // of 2023-11-14
+  result.calibration = test::whole_calibration();
+  EXPECT_THAT(words_of(report_of(result)), testing::AllOf(HasSubstr("cal-0003, 2026-11-29"), Not(HasSubstr("lapsed"))));
+
+  result.calibration->z->origin.renew_by = "2023-11-14";
+  result.calibration->lateral->origin.renew_by = "2023-11-13";
+
+  EXPECT_THAT(words_of(report_of(result)), HasSubstr("cal-0003, 2026-11-29, lapsed: lateral"));
 }
 
 TEST(ReportPdf, ShowsEachVerdictInItsWord) {

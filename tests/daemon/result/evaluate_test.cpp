@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/daemon/calibration/some_calibration.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 
 namespace fvd {
@@ -45,6 +46,24 @@ TEST(Evaluate, WarnsOfSlicesThatMustNotBeBelievedAndOfFlicker) {
   for (const Warning& warning : result.warnings) {
     if (warning.code != "slices_left_out") continue;
     EXPECT_THAT(warning.text, HasSubstr("slice 2 at 20 um"));
+  }
+}
+
+TEST(Evaluate, WarnsOfConstantsThatWerePastTheirDayWhenThePartWasMeasured) {
+  ResultData data = test::sample_result();  // of 2023-11-14
+  EXPECT_THAT(codes(evaluated(data)), testing::Not(testing::Contains("calibration_lapsed")));
+  data.calibration = test::whole_calibration();
+  data.calibration->noise->origin.renew_by = "2023-11-14";
+  EXPECT_THAT(codes(evaluated(data)), testing::Not(testing::Contains("calibration_lapsed")));
+
+  data.calibration->z->origin.renew_by = "2023-11-13";
+  const Result result = evaluated(data);
+
+  ASSERT_THAT(codes(result), testing::Contains("calibration_lapsed"));
+  EXPECT_EQ(result.calibration, data.calibration);
+  for (const Warning& warning : result.warnings) {
+    if (warning.code != "calibration_lapsed") continue;
+    EXPECT_THAT(warning.text, testing::AllOf(HasSubstr("cal-0003 are past"), HasSubstr(": z;")));
   }
 }
 
