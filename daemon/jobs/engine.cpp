@@ -49,7 +49,9 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
       ticks_("fvd-machine", kLongestStep),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir, config.objectives}),
       runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, calibrations_,
-               deps.make_result, deps.repeatability}),
+               deps.make_result,
+               deps.repeatability ? deps.repeatability
+                                  : [this](const Recipe& recipe) { return studies_.newest_repeatability(recipe.id); }}),
       evaluator_({deps.store, board_, config.paths.state_dir / "results", memory_budget_bytes(config)}),
       jobs_({deps.store,
              board_,

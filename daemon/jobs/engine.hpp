@@ -29,7 +29,7 @@ struct EngineDependencies {
   Clock& clock;
   DeviceOpeners openers;
   ResultPipeline make_result = store_result;
-  RepeatabilityOf repeatability = {};  ///< of the recipes' values; empty = nobody keeps gauge studies
+  RepeatabilityOf repeatability = {};  ///< of the recipes' values; empty = as its own gauge studies found it
 };
 
 /// context: made and destroyed on one thread; the services are thread-safe.

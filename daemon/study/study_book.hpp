@@ -10,18 +10,11 @@
 #include <vector>
 
 #include "core/base/mutex.hpp"
+#include "daemon/result/repeatability.hpp"
 #include "daemon/study/study.hpp"
 #include "daemon/study/study_draft.hpp"
 
 namespace fvd {
-
-/// What repeated measurements of one part differ by, from a gauge study.
-struct Repeatability {
-  double sd = 0.0;    ///< standard deviation of one measurement, in the unit of the value
-  double dof = 0.0;   ///< degrees of freedom
-  std::string study;  ///< identifier
-  bool operator==(const Repeatability&) const = default;
-};
 
 /// A study that cannot be read.
 struct BrokenStudy {
