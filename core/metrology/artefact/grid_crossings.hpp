@@ -38,7 +38,7 @@ struct CrossGridPlaces {
 /// offsets, a tilt and whatever a focus window does to both edges alike move nothing. Own definition.
 /// A crossing counts where each of its lines is seen on both sides of it. What is not there, or lies far from where the
 /// others have it, is left out. Refused, with a sentence: fewer than six crossings or under a quarter of those
-/// expected, no two levels, no grid. Cost: 0.1 s a megapixel. context: pure.
+/// expected, no two levels, no grid. Cost: up to 1 s a megapixel. context: pure.
 [[nodiscard]] StudyOutcome<CrossGridPlaces> grid_crossings(const HeightField& field, const Region& region = {},
                                                            const GridSearch& search = {});
 

@@ -116,7 +116,7 @@ TEST(EdgeResponse, HasUnitsOfThePitch) {
 }
 
 TEST(EdgeResponse, SaysWhereItIsResolvedAsFarAsPixelsTell) {
-  HeightField field(Plane<double>(200, 160), {}, 1.0, 1.0, {});
+  HeightField field{Plane<double>(200, 160), {}, 1.0, 1.0, {}};
   for (int y = 0; y < 160; ++y) {
     for (int x = 0; x < 200; ++x) field.z_um.at(x, y) = x < 100 ? 0.0 : 20.0;
   }
