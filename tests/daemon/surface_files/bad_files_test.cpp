@@ -1,5 +1,6 @@
 #include <functional>
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -9,6 +10,7 @@
 #include "daemon/export/surface_writers.hpp"
 #include "daemon/surface_files/surface_files.hpp"
 #include "tests/daemon/surface_files/byte_text.hpp"
+#include "tests/daemon/surface_files/peak_memory.hpp"
 #include "tests/daemon/surface_files/sample_surface.hpp"
 #include "tests/daemon/surface_files/zip_builder.hpp"
 #include "tests/support/expect_error.hpp"
@@ -339,10 +341,14 @@ TEST_P(BadFiles, AreRefusedWithFilePlaceAndReason) {
   const test::ScratchDir scratch;
   const auto path = scratch / ("bad." + GetParam().ending);
   GetParam().make(path);
+  const test::PeakMemory memory;
 
   test::expect_error(ErrorCode::kSurfaceFile,
                      {path.string() + (GetParam().ending == "gsf" ? "" : ": "), GetParam().says},
                      [&] { (void)read_surface(path, GetParam().options); });
+
+  RecordProperty("reader_peak_mib", std::to_string(memory.risen_mib()));
+  EXPECT_LE(memory.risen_mib(), 64.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, BadFiles, testing::ValuesIn(bad_files()),

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <random>
@@ -11,6 +12,7 @@
 #include "daemon/export/surface_writers.hpp"
 #include "daemon/surface_files/surface_files.hpp"
 #include "tests/daemon/surface_files/byte_text.hpp"
+#include "tests/daemon/surface_files/peak_memory.hpp"
 #include "tests/daemon/surface_files/sample_surface.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -30,6 +32,28 @@ SurfaceOrigin origin_of(const Surface& surface) {
 
 std::string bytes_in(const std::string& format, const Surface& surface) {
   return surface_bytes(*find_surface_writer(format), surface_view(surface, origin_of(surface)));
+}
+
+TEST(SurfaceFiles, TakeFewMebibytesBesideTheSurface) {
+  const ScratchDir scratch;
+  Surface surface;
+  surface.height_m = Plane<float>(2400, 1800);
+  surface.pitch_x_um = surface.pitch_y_um = 0.5;
+  for (std::size_t i = 0; i < surface.height_m.pixels().size(); ++i) {
+    surface.height_m.pixels()[i] = 1e-9F * static_cast<float>(i % 104729);
+  }
+  for (const std::string format : {"x3p", "gsf", "sdf", "csv"}) {
+    SCOPED_TRACE(format);
+    test::write_text(scratch / ("s." + format), bytes_in(format, surface));
+    const test::PeakMemory memory;
+
+    const Surface got = read_surface(scratch / ("s." + format));
+
+    const auto bytes = static_cast<double>(got.height_m.pixels().size() * sizeof(float));
+    const double beside_mib = memory.risen_mib() - bytes / 1048576.0;
+    RecordProperty("reader_peak_mib", std::to_string(std::max(0.0, beside_mib)));
+    EXPECT_LE(beside_mib, 64.0);
+  }
 }
 
 TEST(SurfaceFiles, ReadBackWhatWasWrittenBitForBit) {
