@@ -19,6 +19,7 @@
 #include "daemon/ctl/report_command.hpp"
 #include "daemon/ctl/rpc_client.hpp"
 #include "daemon/ctl/stage_command.hpp"
+#include "daemon/ctl/study_commands.hpp"
 #include "daemon/ctl/suggest_command.hpp"
 
 namespace fvd::ctl {
@@ -45,6 +46,7 @@ struct Arguments {
   StackChoice suggest_choice;
   StageArguments stage;
   RecipeArguments recipe;
+  StudyArguments study;
 };
 
 RpcClient connect(const Arguments& arguments) {
@@ -251,6 +253,8 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_stage_commands(app, a.stage, terminal, chosen);
   add_recipe_commands(
       app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
+  add_study_commands(
+      app, a.study, [&a] { return connect(a); }, a.client, terminal, chosen);
 
   sub = command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
                 [&] { return run_suggest(a.suggest_source, a.suggest_choice, terminal); });
