@@ -78,7 +78,9 @@ std::string accepted_text(const ordered_json& schema) {
     std::ostringstream text;
     text.precision(16);
     const bool whole = schema.value("type", "") == "integer";
-    text << (whole ? "integer " : "") << schema["minimum"].get<double>() << " .. " << schema["maximum"].get<double>();
+    const bool open = schema.contains("exclusiveMinimum");
+    text << (whole ? "integer " : "") << (open ? "above " : "")
+         << schema[open ? "exclusiveMinimum" : "minimum"].get<double>() << " .. " << schema["maximum"].get<double>();
     return text.str();
   }
   return schema.value("type", std::string("any JSON"));

@@ -21,6 +21,7 @@
 #include "daemon/ctl/report_command.hpp"
 #include "daemon/ctl/rpc_client.hpp"
 #include "daemon/ctl/stage_command.hpp"
+#include "daemon/ctl/study_commands.hpp"
 #include "daemon/ctl/suggest_command.hpp"
 
 namespace fvd::ctl {
@@ -48,6 +49,7 @@ struct Arguments {
   StageArguments stage;
   RecipeArguments recipe;
   ObjectiveArguments objective;
+  StudyArguments study;
 };
 
 RpcClient connect(const Arguments& arguments) {
@@ -265,6 +267,8 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_stage_commands(app, a.stage, terminal, chosen);
   add_recipe_commands(
       app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
+  add_study_commands(
+      app, a.study, [&a] { return connect(a); }, a.client, terminal, chosen);
 
   add_objective_commands(
       app, a.objective, [&a] { return connect(a); }, terminal, chosen);

@@ -55,11 +55,52 @@ class FakeObjectives final : public ObjectiveService {
   bool busy = false;
 };
 
+/// One study, and constants made of it.
+class FakeStudies final : public StudyService {
+ public:
+  std::shared_ptr<DeviceTask> begin(StudyRequest request) override {
+    if (busy) throw Error(ErrorCode::kBusy, "another study is being made");
+    begun = std::move(request);
+    task = std::make_shared<DeviceTask>(DeviceTask::Work{});
+    return task;
+  }
+  [[nodiscard]] Study get(const std::string& id) const override {
+    if (id != "study-0001") throw Error(ErrorCode::kStudyRefused, "there is no study '" + id + "'");
+    Study study;
+    study.id = id;
+    study.kind = "calibrate.z";
+    study.proposal = Calibration{};
+    return study;
+  }
+  [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const override { return "/studies/" + id; }
+  [[nodiscard]] std::vector<Study> list() const override { return {get("study-0001")}; }
+  [[nodiscard]] std::vector<BrokenStudy> broken() const override { return {{"study-0002", "no valid JSON"}}; }
+  AcceptedConstants accept(const AcceptRequest& request) override {
+    accepted = request;
+    return {calibrations().front(), false};
+  }
+  [[nodiscard]] std::vector<Calibration> calibrations() const override {
+    Calibration first;
+    first.id = "cal-0001";
+    first.z = ZConstants{};
+    first.z->origin.study = "study-0001";
+    first.z->origin.renew_by = "2020-01-01";
+    Calibration second = first;
+    second.id = "cal-0002";
+    return {first, second};
+  }
+  std::optional<StudyRequest> begun;
+  std::shared_ptr<DeviceTask> task;
+  std::optional<AcceptRequest> accepted;
+  bool busy = false;
+};
+
 class FakeJobService final : public MachineView, public JobService, public ResultService, public TaskService {
  public:
   FakeRecipes recipes;
   FakeObjectives objectives;
-  [[nodiscard]] Services services() { return {*this, *this, *this, *this, recipes, objectives}; }
+  FakeStudies studies;
+  [[nodiscard]] Services services() { return {*this, *this, *this, *this, recipes, objectives, studies}; }
 
   Started start(const JobRequest& request) override {
     if (before_start) before_start();

@@ -27,7 +27,9 @@ class EveryMethod : public testing::Test {
     const json request{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}};
     Handled handled = dispatcher_.handle(request.dump(), caller_);
     if (handled.waiting) {
-      if (!task_result.empty()) service_.task->end({task_result, std::nullopt, {}});
+      if (!task_result.empty()) {
+        std::get<std::shared_ptr<DeviceTask>>(handled.waiting->until.awaited)->end({task_result, std::nullopt, {}});
+      }
       handled.reply = dispatcher_.resume(*handled.waiting, true);
     }
     const json answer = json::parse(handled.reply.value());
@@ -86,7 +88,25 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"camera.suggest_exposure", nothing, R"({"exposure_us":1,"reached":true,"looks":3,"grey":)" + grey + "}"},
       {"stage.autofocus", {{"from_um", 0}, {"to_um", 10}}, R"({"z_um":5,"focus":9,"curve_um_focus":[[0,1]]})"},
       {"stage.home", nothing, R"({"z_um":0,"homed":true})"},
-      {"stage.move", {{"z_um", 1}}, R"({"z_um":1})"}};
+      {"stage.move", {{"z_um", 1}}, R"({"z_um":1})"},
+      {"study.list", nothing},
+      {"study.get", {{"id", "study-0001"}}},
+      {"calibration.get", nothing},
+      {"calibrate.accept", {{"study", "study-0001"}, {"person", "anna"}, {"renew_by", "2027-11-29"}}}};
+  const std::string study = R"({"study":{},"directory":"/x","report":"/x/report.pdf"})";
+  const json jobs{{"jobs", {"a", "b"}}};
+  const json step{{"job", "a"}, {"measurement", "step"}, {"reference_um", 50}, {"u_reference_um", 0.02}};
+  const json at_z{{"job", "a"}, {"measurement", "step"}, {"z_um", 5}};
+  const json type1{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"reference", 50}, {"tolerance", 1}};
+  const json rr{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"parts", 2}, {"operators", 1}, {"trials", 2}};
+  for (const Case& call :
+       {Case{"verify.noise", jobs, study}, Case{"calibrate.noise", jobs, study}, Case{"verify.flatness", jobs, study},
+        Case{"calibrate.flatness", jobs, study}, Case{"verify.step", {{"steps", {step}}}, study},
+        Case{"calibrate.z", {{"steps", {step}}}, study}, Case{"verify.linearity", {{"steps", {at_z, at_z}}}, study},
+        Case{"gauge.type1", type1, study}, Case{"gauge.rr", rr, study},
+        Case{"gauge.capability", {{"type1", "study-0001"}, {"rr", "study-0002"}}, study}}) {
+    cases.push_back(call);
+  }
   std::set<std::string> seen{"result.ack"};
   const auto check = [&](const Case& call) {
     seen.insert(call.method);
