@@ -19,9 +19,9 @@ std::string limits_text(const Limits& limits) {
   return text.str();
 }
 
-std::string value_text(const EvaluatedValue& value) {
+std::string value_text(const std::string& key, const EvaluatedValue& value) {
   if (!value.value) return "-  (" + value.reason + ")";
-  const int digits = digits_behind_point(value);
+  const int digits = digits_behind_point(key, value);
   std::string text = fixed_digits(*value.value, digits);
   if (value.expanded_u) text += " +- " + fixed_digits(*value.expanded_u, digits);
   if (value.unit != "1") text += " " + value.unit;
@@ -29,7 +29,7 @@ std::string value_text(const EvaluatedValue& value) {
 }
 
 void add_value(const std::string& key, const EvaluatedValue& value, std::ostringstream& text) {
-  text << "  " << std::left << std::setw(kNameWidth) << key << value_text(value);
+  text << "  " << std::left << std::setw(kNameWidth) << key << value_text(key, value);
   if (value.limits) text << limits_text(*value.limits);
   if (value.verdict) text << ": " << verdict_name(*value.verdict);
   text << "\n";

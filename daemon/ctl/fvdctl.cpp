@@ -11,6 +11,7 @@
 #include "config/nearest_name.hpp"
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/export_command.hpp"
 #include "daemon/ctl/job_commands.hpp"
@@ -27,6 +28,8 @@
 namespace fvd::ctl {
 
 namespace {
+
+constexpr std::chrono::seconds kCommandTimeout{330};  ///< the daemon gives a command up after 5 minutes
 
 /// The options of all commands; CLI11 fills them.
 struct Arguments {
@@ -124,14 +127,23 @@ int result(const Arguments& arguments, const Terminal& terminal) {
   return report_end(wait_for_job(client, {{"job_id", reply.at("job_id")}}), terminal);
 }
 
+int evaluate(const Arguments& arguments, const Terminal& terminal) {
+  RpcClient client = connect(arguments);
+  Json params = job_key(client, arguments.job, arguments.client);
+  params["recipe"] = arguments.start.recipe;
+  const Json reply = client.call("result.evaluate", params, kCommandTimeout);
+  print(terminal.out, reply);
+  if (!reply.contains("verdict") || !reply["verdict"].is_string()) return kExitOk;
+  return exit_code_of(verdict_from_name(reply["verdict"].get<std::string>()));
+}
+
 int rpc(const Arguments& arguments, const Terminal& terminal) {
   const Json params = Json::parse(arguments.params, nullptr, false);
   if (!params.is_object() && !params.is_array()) {
     throw Error(ErrorCode::kBadInput, "'" + arguments.params + "' is not a JSON object or array");
   }
   RpcClient client = connect(arguments);
-  constexpr std::chrono::seconds kTimeout{330};  // a command of the stage may take 5 minutes
-  print(terminal.out, client.call(arguments.method, params, kTimeout));
+  print(terminal.out, client.call(arguments.method, params, kCommandTimeout));
   return kExitOk;
 }
 
@@ -243,6 +255,11 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
          "result.json")
       ->check(CLI::IsMember({"compact", "full", "complete"}))
       ->capture_default_str();
+
+  sub = command("evaluate", "evaluate a job's stored surface by another recipe: a new record; the job's result stays",
+                [&] { return evaluate(a, terminal); });
+  sub->add_option("job", a.job, job_help);
+  sub->add_option("--recipe", a.start.recipe, "recipe id")->required();
 
   sub = command("rpc", "call any method and print what it returns", [&] { return rpc(a, terminal); });
   sub->add_option("method", a.method, "e.g. recipe.list")->required();

@@ -21,23 +21,18 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/pitch_option.hpp"
 #include "daemon/ctl/process_command.hpp"
+#include "daemon/ctl/readable_range.hpp"
 #include "daemon/evaluation/evaluate_surface.hpp"
 #include "daemon/export/atomic_directory.hpp"
-#include "daemon/pipeline/evaluation_input.hpp"
-#include "daemon/recipes/recipe_document.hpp"
+#include "daemon/pipeline/stored_surface.hpp"
+#include "daemon/recipes/recipe_masks.hpp"
 #include "daemon/surface_files/reference_map.hpp"
-#include "daemon/surface_files/result_folder.hpp"
 
 namespace fvd::ctl {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Input {
-  Surface surface;
-  EvaluationContext context;
-};
 
 /// The reference map of the constants that the surface is evaluated with, where they name one.
 void read_reference(const std::string& folder, EvaluationContext& context) {
@@ -77,19 +72,16 @@ void use_folder_of_constants(const MeasureArguments& arguments, EvaluationContex
   read_reference(arguments.calibration, context);
 }
 
-Input read_input(const MeasureArguments& arguments, const Terminal& terminal) {
+StoredSurface read_input(const MeasureArguments& arguments, const Terminal& terminal) {
   const SurfaceReadOptions options = read_options(arguments.pitch_um);
-  Input input;
-  if (!fs::is_directory(arguments.source)) {
-    input.surface = read_surface(arguments.source, options);
-    use_newest_constants(arguments, terminal, input.context);
+  if (fs::is_directory(arguments.source)) {
+    StoredSurface input = read_stored_surface(arguments.source, options);
+    use_folder_of_constants(arguments, input.context);
     return input;
   }
-  ResultSurface read = read_result_surface(arguments.source, options);
-  input.context = read_evaluation_context(arguments.source, read.result);
-  use_folder_of_constants(arguments, input.context);
-  input.surface = std::move(read.surface);
-  note_window(read.result.focus, input.surface);
+  StoredSurface input;
+  input.surface = read_surface(arguments.source, options);
+  use_newest_constants(arguments, terminal, input.context);
   return input;
 }
 
@@ -105,7 +97,7 @@ void set_noise(double noise_um, Surface& surface) {
 /// Nothing where the recipe was refused, which is said on err.
 std::optional<Recipe> read_measured_recipe(const std::string& file, const Terminal& terminal) {
   try {
-    Recipe recipe = parse_recipe(read_text_file(file), fs::path(file).stem().string());
+    Recipe recipe = read_recipe_file(file);
     if (!recipe.evaluation.empty()) return recipe;
     terminal.err << "fvdctl: recipe " << file << ": /evaluation: has no measurements, so that there is nothing to do\n";
   } catch (const Error& error) {
@@ -122,6 +114,7 @@ std::string json_text(Evaluation evaluation) {
 }  // namespace
 
 void add_measure_options(CLI::App& command, MeasureArguments& a) {
+  command.footer("Names, units and meanings of the values: daemon/evaluation/README.md, section Values.");
   command.add_option("source", a.source, "folder of a result, or a file of a surface: X3P, GSF, SDF, float TIFF, CSV")
       ->required();
   command.add_option("--recipe", a.recipe, "file of a recipe with a section evaluation")
@@ -131,7 +124,7 @@ void add_measure_options(CLI::App& command, MeasureArguments& a) {
   command
       .add_option("--noise-um", a.noise_um,
                   "standard error of every point, where the source has none; without it U is not known")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveCheck());
   command
       .add_option("--calibration", a.calibration,
                   "folder of calibration.json: of a result only for the reference map that its constants name; of a "
@@ -145,7 +138,7 @@ void add_measure_options(CLI::App& command, MeasureArguments& a) {
 int run_measure(const MeasureArguments& arguments, const Terminal& terminal) {
   const std::optional<Recipe> recipe = read_measured_recipe(arguments.recipe, terminal);
   if (!recipe) return kExitConfig;
-  Input input = read_input(arguments, terminal);
+  StoredSurface input = read_input(arguments, terminal);
   if (arguments.noise_um) set_noise(*arguments.noise_um, input.surface);
   WorkerPool pool(0);
   const Evaluation evaluation = evaluate_surface(input.surface, recipe->evaluation, input.context, &pool);

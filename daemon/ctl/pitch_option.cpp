@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/ctl/process_command.hpp"
+#include "daemon/ctl/readable_range.hpp"
 
 namespace fvd::ctl {
 
@@ -11,7 +12,7 @@ void add_pitch_option(CLI::App& command, std::vector<double>& pitch_um) {
       .add_option("--pitch-um", pitch_um,
                   "distance of the points, or X,Y of columns and rows, where the source does not tell it")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveCheck());
 }
 
 SurfaceReadOptions read_options(const std::vector<double>& pitch_um) {

@@ -12,9 +12,10 @@
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_stack.hpp"
 #include "daemon/ctl/progress_line.hpp"
+#include "daemon/ctl/readable_range.hpp"
 #include "daemon/export/exporter_table.hpp"
 #include "daemon/export/recorded_slices.hpp"
-#include "daemon/recipes/recipe_document.hpp"
+#include "daemon/recipes/recipe_masks.hpp"
 
 namespace fvd::ctl {
 
@@ -140,8 +141,7 @@ ProcessOptions options_of(const ProcessArguments& arguments) {
   if (arguments.recipe.empty()) {
     options.recipe.focus.stage_correction = false;  // recorded z are taken as they are unless asked for
   } else {
-    const std::filesystem::path file = arguments.recipe;
-    options.recipe = parse_recipe(read_text_file(file), file.stem().string());
+    options.recipe = read_recipe_file(arguments.recipe);
   }
   options.simulated = recorded_of_simulation(options.source);
   options.recipe_plans_scan = !arguments.recipe.empty();
@@ -257,9 +257,9 @@ void add_choice_options(CLI::App& command, StackChoice& choice) {
                      "names of the slices, such as 'z_{z_um}um_*.png': {n} a count, {z_um}, {z_mm} or {z_nm} z with "
                      "sign and decimals, * any text; default: by the names themselves");
   command.add_option("--channel", choice.channel, "of the pages of a TIFF that has several, from 1")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveCheck());
   command.add_option("--time", choice.time, "of the pages of a TIFF that has several times, from 1")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveCheck());
 }
 
 namespace {
@@ -269,28 +269,28 @@ void add_hole_options(CLI::App& command, ProcessArguments& a) {
   command
       .add_option("--min-prominence", a.min_prominence,
                   "points with a flatter focus curve become holes, 0..1, default 0.5")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(NumberRangeCheck(0.0, 1.0));
   command
       .add_option("--min-significance", a.min_significance,
                   "points whose curve rises by less noise become holes, default 6")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(NumberRangeCheck(0.0, 1e6));
   command
       .add_option("--broad-curve", a.broad_curve,
                   "points whose focus curve bends less than so many medians become holes, 0 = off, default 0.2")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(NumberRangeCheck(0.0, 1.0));
   command
       .add_option("--narrow-curve", a.narrow_curve,
                   "points whose focus curve is less than so many medians wide become holes, 0 = off, default 0.55")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(NumberRangeCheck(0.0, 1.0));
   command
       .add_option("--second-peak", a.second_peak,
                   "points whose focus curve has a second peak higher than so much of the first become holes, 0.8 is "
                   "usual, 0.5 the least; takes 2 bytes more per pixel; 0 = off, the default")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(NumberRangeCheck(0.0, 1.0));
   command
       .add_option("--clipped-share", a.clipped_share,
                   "points with more of their window at full scale become holes, 0 = off, default 0.7")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(NumberRangeCheck(0.0, 1.0));
   command
       .add_option("--edge-band", a.edge_band_slices,
                   "a strip beside heights that jump by more slices becomes holes, 0 = off, default 3")
@@ -298,7 +298,7 @@ void add_hole_options(CLI::App& command, ProcessArguments& a) {
   command
       .add_option("--max-sigma", a.max_sigma_um,
                   "points with a larger standard error in um become holes, 0 = off, the default")
-      ->check(CLI::Range(0.0, kMaxSigmaLimit_um));
+      ->check(NumberRangeCheck(0.0, kMaxSigmaLimit_um));
 }
 
 }  // namespace
@@ -322,7 +322,7 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
   command.add_option("--window-shape", a.window, "weights of the window, default double_box")
       ->check(CLI::IsMember({"box", "double_box"}));
   command.add_option("--smooth", a.smooth_px, "also a smoothed map, standard deviation of the weights in pixels")
-      ->check(CLI::Range(kMinSmoothPx, kMaxSmoothPx));
+      ->check(NumberRangeCheck(kMinSmoothPx, kMaxSmoothPx));
   command
       .add_option("--distance", a.distance_px,
                   "from a pixel to the neighbours its operator looks at, 1..7 pixels, default 2")
@@ -352,7 +352,7 @@ void add_process_options(CLI::App& command, ProcessArguments& a) {
   command
       .add_option("--pixel-pitch-um", a.pixel_pitch_um,
                   "distance of pixels on the object; default: the recipe's, else what an OME-TIFF says")
-      ->check(CLI::PositiveNumber);
+      ->check(PositiveCheck());
   command.add_option("--part", a.part_id, "part id to write into the result; default: the name of the source");
   command.add_option("--threads", a.threads, "threads that compute, 0 = one per core")
       ->check(CLI::Range(0, 256))

@@ -8,6 +8,7 @@
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/readable_range.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 
 namespace fvd::ctl {
@@ -133,7 +134,7 @@ void add_recipe_commands(CLI::App& app, RecipeArguments& a, const std::function<
     sub.add_option("--author", a.author, "who changes it; default: the name of the user");
     sub.add_option("--base", a.base_version,
                    "version that the change was made from; as `get` tells; default: 0, the shipped recipe or a new one")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CountCheck());
   };
   command("list", "print ids and versions of all recipes", [connect, terminal] { return list(connect(), terminal); });
   add_id(
@@ -156,11 +157,15 @@ void add_recipe_commands(CLI::App& app, RecipeArguments& a, const std::function<
   sub = command("restore", "save an earlier version of a recipe anew",
                 [&a, connect, terminal] { return restore(a, connect(), terminal); });
   add_id(*sub);
-  sub->add_option("version", a.version, "which one; 0 = the shipped recipe")->required()->check(CLI::NonNegativeNumber);
+  sub->add_option("version", a.version, "which one; 0 = the shipped recipe")->required()->check(CountCheck());
   add_base(*sub);
 
   add_file(*command("convert", "print a recipe of the old format in the new one, without the daemon",
                     [&a, terminal] { return convert(a, terminal); }));
+  add_suggest_filters_options(
+      *command("suggest-filters", "suggest filters and evaluation area for texture, without the daemon",
+               [&a, terminal] { return run_suggest_filters(a.filters, terminal); }),
+      a.filters);
 }
 
 }  // namespace fvd::ctl

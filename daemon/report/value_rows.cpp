@@ -56,7 +56,7 @@ ValueRow row_of(const std::string& name, const EvaluatedValue& value) {
     row.reason = with_micro_sign(value.reason);
     return row;
   }
-  const int digits = digits_behind_point(value);
+  const int digits = digits_behind_point(name, value);
   row.value = fixed_digits(*value.value, digits);
   if (value.expanded_u) row.uncertainty = fixed_digits(*value.expanded_u, digits);
   if (value.expanded_u && value.k) row.uncertainty += "  (k " + fixed_digits(*value.k, 2) + ")";

@@ -12,10 +12,12 @@ namespace {
 
 constexpr int kMostDigits = 6;
 constexpr int kDigitsWithoutU = 4;
+constexpr std::string_view kNotches = "notches";  ///< the only value that counts something
 
 }  // namespace
 
-int digits_behind_point(const EvaluatedValue& value) {
+int digits_behind_point(std::string_view key, const EvaluatedValue& value) {
+  if (key == kNotches) return 0;
   const double scale = value.expanded_u.value_or(0.0);
   if (!(scale > 0.0)) return kDigitsWithoutU;
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(scale))), 0, kMostDigits);

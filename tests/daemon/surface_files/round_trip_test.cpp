@@ -162,6 +162,17 @@ TEST(SurfaceWriters, MarkHolesInTheMaskOfAnX3pAsWell) {
   EXPECT_EQ(bytes.substr(directory - 5, 5), "\xFB\xFF\xFF\xFF\xFB") << "points 2 and 34 of 35; the rest is filled up";
 }
 
+TEST(SurfaceWriters, DateTheCalibrationOfAnX3pAsTheResult) {
+  const Surface surface = test::sample_surface();
+  SurfaceOrigin origin = origin_of(surface);
+  origin.created = std::chrono::system_clock::time_point(std::chrono::milliseconds(1'700'000'000'123));
+
+  const std::string xml = surface_bytes(*find_surface_writer("x3p"), surface_view(surface, origin));
+
+  EXPECT_THAT(xml, testing::HasSubstr("<Date>2023-11-14T22:13:20.123Z</Date>"));
+  EXPECT_THAT(xml, testing::HasSubstr("<CalibrationDate>2023-11-14T22:13:20.123Z</CalibrationDate>"));
+}
+
 TEST(SurfaceWriters, OrderTheElementsOfAnX3pAsItsSchemaDoes) {
   const std::string xml = bytes_in("x3p", test::sample_surface());
   std::size_t place = 0;
