@@ -45,8 +45,9 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
            }),
       ticks_("fvd-machine", kLongestStep),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir}),
-      runner_(
-          {config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, deps.make_result}),
+      following_(deps.store),
+      runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, following_,
+               deps.make_result}),
       jobs_({deps.store,
              board_,
              work_,
@@ -67,6 +68,7 @@ Engine::~Engine() { finish(); }
 void Engine::shut_down() {
   board_.update([](MachineRecord& machine) { machine.apply(MachineEvent::kHalt); });
   thread_.request_stop();
+  following_.request_stop();
   jobs_.stop_job();
   tasks_.task_stop().request_stop();
 }
@@ -75,6 +77,7 @@ void Engine::finish() {
   shut_down();
   thread_.finish();
   runner_.store_late_end();  // the last chance
+  following_.finish();
 }
 
 }  // namespace fvd

@@ -139,6 +139,14 @@ ALTER TABLE curve_widths ADD COLUMN most_bin_slices INTEGER NOT NULL DEFAULT 64;
 )");
 }
 
+/// Version 7: whether files of the result are still to be made.
+void keep_whether_files_are_pending(Database& database) {
+  database.execute(R"(
+ALTER TABLE jobs ADD COLUMN files_pending INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX jobs_with_pending_files ON jobs (number) WHERE files_pending = 1;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -146,6 +154,7 @@ constexpr std::array kSteps{
     MigrationStep{"whether the part was free at a job's end", keep_whether_the_part_was_free},
     MigrationStep{"widths of focus curves", remember_curve_widths},
     MigrationStep{"bins that keep the ends of the range", remember_bins_that_keep_the_ends},
+    MigrationStep{"whether files of a result are pending", keep_whether_files_are_pending},
 };
 
 void require_own_file(const Database& database, int version) {
