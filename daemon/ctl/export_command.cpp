@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +13,7 @@
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/surface_writers.hpp"
 #include "daemon/surface_files/result_folder.hpp"
-#include "drivers/replay/image_file.hpp"
+#include "daemon/surface_files/texture_image.hpp"
 
 namespace fvd::ctl {
 
@@ -22,53 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTexture = "texture.png";
-
 std::vector<std::string> formats() {
   std::vector<std::string> names;
   for (const SurfaceWriter& writer : surface_writers()) names.emplace_back(writer.format);
   return names;
-}
-
-/// The all-in-focus image of a result; empty where there is none of the surface's size.
-struct Texture {
-  Plane<std::uint16_t> grey;
-  Plane<std::uint8_t> colour;
-};
-
-Texture read_texture(const fs::path& path, const Surface& surface) {
-  Texture texture;
-  if (!fs::exists(path)) return texture;
-  ImageFile image;
-  try {
-    read_png(path, image);
-  } catch (const ImageFileError& error) {
-    throw Error(ErrorCode::kSurfaceFile, path.string() + ": " + error.what());
-  }
-  if (image.width != surface.width() || image.height != surface.height()) return texture;
-  if (image.channels == 3 && image.bytes_per_sample == 1) {
-    texture.colour = Plane<std::uint8_t>(3 * image.width, image.height);
-    std::memcpy(texture.colour.row(0), image.samples.data(), image.samples.size());
-  } else if (image.channels == 1) {
-    texture.grey = Plane<std::uint16_t>(image.width, image.height);
-    std::size_t at = 0;
-    for (std::uint16_t& level : texture.grey.pixels()) {
-      level = 0;
-      std::memcpy(&level, image.samples.data() + at, static_cast<std::size_t>(image.bytes_per_sample));
-      at += static_cast<std::size_t>(image.bytes_per_sample);
-    }
-  }
-  return texture;
-}
-
-/// The largest level of the format that the image came in: a PNG of 16 bit does not tell how many of them count.
-int max_grey_of(const Plane<std::uint16_t>& grey) {
-  const auto pixels = grey.pixels();
-  const int highest = pixels.empty() ? 0 : *std::max_element(pixels.begin(), pixels.end());
-  for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono10, PixelFormat::kMono12}) {
-    if (highest <= max_grey_level(format)) return max_grey_level(format);
-  }
-  return max_grey_level(PixelFormat::kMono16);
 }
 
 void write(const ExportArguments& arguments, const SurfaceView& view) {
@@ -101,11 +57,11 @@ int run_export(const ExportArguments& arguments, const Terminal& terminal) {
   const SurfaceReadOptions options = read_options(arguments.pitch_um);
   if (fs::is_directory(arguments.source)) {
     const ResultSurface read = read_result_surface(arguments.source, options);
-    const Texture texture = read_texture(fs::path(arguments.source) / kTexture, read.surface);
+    const TextureImage texture = read_texture(arguments.source, read.surface, read.result);
     SurfaceView view = surface_view(read.surface, surface_origin(read.result));
     if (!texture.colour.empty()) view.colour = texture.colour.view();
     if (!texture.grey.empty()) view.grey = texture.grey.view();
-    view.max_grey = max_grey_of(texture.grey);
+    view.max_grey = max_grey_level(texture.format);
     write(arguments, view);
     print_summary(arguments, read.surface, terminal);
     return kExitOk;

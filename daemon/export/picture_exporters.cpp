@@ -1,9 +1,9 @@
 #include "daemon/export/picture_exporters.hpp"
 
 #include "daemon/export/export_input.hpp"
+#include "daemon/report/measurement_pictures.hpp"
 #include "daemon/report/report_pdf.hpp"
 #include "daemon/report/surface_pictures.hpp"
-#include "daemon/result/evaluate.hpp"
 
 namespace fvd {
 
@@ -29,8 +29,23 @@ std::string holes_picture_file(const ExportInput& input) { return holes_png(pict
 
 std::string view_picture_file(const ExportInput& input) { return view3d_png(picture_of(input)); }
 
-std::string report_file(const ExportInput& input) {
-  return report_pdf(evaluate(input.data, input.summary.get()), picture_of(input));
+std::string texture_view_file(const ExportInput& input) {
+  PictureTexture texture;
+  if (!input.map.texture.empty()) texture.grey = input.map.texture.view();
+  if (!input.map.colour.empty()) texture.colour = input.map.colour.view();
+  texture.max_grey = max_grey_level(input.map.texture_format);
+  return texture_view_png(picture_of(input), texture);
 }
+
+std::string edge_picture_file(const ExportInput& input) {
+  return edge_png(picture_of(input), input.result.get().evaluation.value());
+}
+
+std::string profile_picture_file(const ExportInput& input) {
+  return profile_png(picture_of(input), input.measurement,
+                     input.result.get().evaluation.value().measurements.at(input.measurement));
+}
+
+std::string report_file(const ExportInput& input) { return report_pdf(input.result.get(), picture_of(input)); }
 
 }  // namespace fvd

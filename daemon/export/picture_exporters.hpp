@@ -8,13 +8,18 @@ namespace fvd {
 
 struct ExportInput;
 
-// The exporters. They are made on request. Throw Error kInternal.
+// The exporters. Throw Error kInternal.
 
 [[nodiscard]] std::string sigma_picture_file(const ExportInput& input);
 [[nodiscard]] std::string holes_picture_file(const ExportInput& input);
 [[nodiscard]] std::string view_picture_file(const ExportInput& input);
 
-/// Judges the input once more: exporters run before its result is written, and it is the same then.
+[[nodiscard]] std::string texture_view_file(const ExportInput& input);
+[[nodiscard]] std::string edge_picture_file(const ExportInput& input);
+
+/// Of input.measurement.
+[[nodiscard]] std::string profile_picture_file(const ExportInput& input);
+
 [[nodiscard]] std::string report_file(const ExportInput& input);
 
 }  // namespace fvd

@@ -155,7 +155,7 @@ PreviewText preview_text(const ResultData& data, const HeightSummary& summary) {
   PreviewText text;
   text.title = result_title(data);
   text.subtitle = (data.recipe_id.empty() ? "" : "recipe " + data.recipe_id + ", ") +
-                  std::to_string(data.steps.size()) + " slices, window " + std::to_string(data.focus.window_px) +
+                  std::to_string(data.step_summary.steps) + " slices, window " + std::to_string(data.focus.window_px) +
                   " px, " + std::string(peak_method_name(data.peak)) + ", " + std::to_string(tenths / 10) + "." +
                   std::to_string(tenths % 10) + " % valid";
   text.simulated = data.simulated;

@@ -119,6 +119,7 @@ Json focus(const Result::Focus& focus) {
   }
   json["extra_peaks"] = std::move(extra);
   json["state_bytes_per_pixel"] = rounded(focus.state_bytes_per_pixel, 3);
+  if (focus.texture_max_grey) json["texture_max_grey"] = *focus.texture_max_grey;
   return json;
 }
 
@@ -203,6 +204,7 @@ Json times(const PhaseTimes& times) {
 Json times(const Result& result) {
   Json json = times(result.times);
   if (result.times.evaluate_ms) json["evaluate_ms"] = ms(*result.times.evaluate_ms);
+  if (result.times.follow_ms) json["follow_ms"] = ms(*result.times.follow_ms);
   return json;
 }
 
@@ -220,8 +222,14 @@ Json file_list(const std::vector<ResultFile>& files) {
   Json list = Json::array();
   for (const ResultFile& file : files) {
     Json entry{{"name", file.name}};
-    if (file.files) entry["files"] = *file.files;
-    entry["size_bytes"] = file.size_bytes;
+    if (file.files) {
+      entry["files"] = *file.files;
+    } else {
+      entry["state"] = file_state_name(file.state);
+    }
+    if (file.state == FileState::kWritten) entry["size_bytes"] = file.size_bytes;
+    if (!file.sha256.empty()) entry["sha256"] = file.sha256;
+    if (!file.reason.empty()) entry["reason"] = file.reason;
     list.push_back(std::move(entry));
   }
   return list;
@@ -247,7 +255,16 @@ void add_conditions(const Result& result, Json& json) {
   }
 }
 
+std::string text_of(const Json& json) { return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n"; }
+
 }  // namespace
+
+std::string result_json_with_files(std::string_view text, const std::vector<ResultFile>& files, double follow_ms) {
+  Json json = Json::parse(text);
+  json.at("files") = file_list(files);
+  json.at("times")["follow_ms"] = ms(follow_ms);
+  return text_of(json);
+}
 
 std::string result_json_text(const Result& result) {
   Json json;
@@ -277,7 +294,7 @@ std::string result_json_text(const Result& result) {
   json["times"] = times(result);
   json["provenance"] = provenance(result);
   json["files"] = file_list(result.files);
-  return json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
+  return text_of(json);
 }
 
 }  // namespace fvd

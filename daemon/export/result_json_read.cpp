@@ -196,6 +196,7 @@ Result::Focus focus(const Node& node) {
     focus.extra_peaks.push_back({peak(further.at("peak")), um("min_um"), um("max_um"), um("mean_um"), um("median_um")});
   });
   focus.state_bytes_per_pixel = node.at("state_bytes_per_pixel").number();
+  if (node.has("texture_max_grey")) focus.texture_max_grey = node.at("texture_max_grey").integer<int>();
   return focus;
 }
 
@@ -258,6 +259,7 @@ PhaseTimes times(const Node& node) {
   PhaseTimes times{node.at("prepare_ms").number(), node.at("scan_ms").number(), node.at("finish_ms").number(),
                    node.at("write_ms").number()};
   if (node.has("evaluate_ms")) times.evaluate_ms = node.at("evaluate_ms").optional_number();
+  if (node.has("follow_ms")) times.follow_ms = node.at("follow_ms").optional_number();
   return times;
 }
 
@@ -271,7 +273,11 @@ ResultFile file(const Node& node) {
   ResultFile file;
   file.name = node.at("name").text();
   if (node.has("files")) file.files = node.at("files").integer<std::uint64_t>();
-  file.size_bytes = node.at("size_bytes").integer<std::uint64_t>();
+  // Results of 0.3.0 had neither state nor digest: their files were written before anybody knew of the result.
+  if (node.has("state")) file.state = node.at("state").named(file_state_from_name, "written, pending or not_made");
+  if (file.state == FileState::kWritten) file.size_bytes = node.at("size_bytes").integer<std::uint64_t>();
+  if (node.has("sha256")) file.sha256 = node.at("sha256").text();
+  if (node.has("reason")) file.reason = node.at("reason").text();
   return file;
 }
 

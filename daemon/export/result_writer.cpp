@@ -13,6 +13,7 @@
 #include "core/base/mutex.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/export/result_json.hpp"
+#include "daemon/export/sha256.hpp"
 #include "daemon/result/evaluate.hpp"
 
 namespace fvd {
@@ -31,36 +32,11 @@ struct Task {
   ExportInput input;
 };
 
-std::string with_method(std::string_view name, PeakMethod method) {
-  std::string text(name);
-  const auto place = text.find('*');
-  return place == std::string::npos ? text : text.replace(place, 1, peak_method_name(method));
-}
-
-std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ResultData& data,
-                           const std::shared_future<HeightSummary>& summary) {
+std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ExportInput& of_result) {
   std::vector<Task> tasks;
-  const auto add = [&](const Exporter& exporter, const HeightMap& map, PeakMethod peak) {
-    tasks.push_back({with_method(exporter.name, peak),
-                     exporter.cost,
-                     exporter.encode,
-                     exporter.stream,
-                     {data, map, peak, summary}});
-  };
   for (const Exporter& exporter : exporters) {
-    switch (exporter.need) {
-      case ExportNeed::kResult:
-        add(exporter, data.map, data.peak);
-        break;
-      case ExportNeed::kSmoothedMap:
-        if (data.smoothed) add(exporter, data.map, data.peak);
-        break;
-      case ExportNeed::kRepeatedScans:
-        if (data.repeated) add(exporter, data.map, data.peak);
-        break;
-      case ExportNeed::kEachExtraMap:
-        for (const auto& [method, map] : data.extra_maps) add(exporter, map, method);
-        break;
+    for (auto& [name, input] : export_files(exporter, of_result)) {
+      tasks.push_back({std::move(name), exporter.cost, exporter.encode, exporter.stream, std::move(input)});
     }
   }
   return tasks;
@@ -82,12 +58,12 @@ std::vector<ResultFile> listed(const std::vector<AtomicDirectory::File>& files) 
   for (const auto& file : files) {
     const auto slash = file.name.find('/');
     if (slash == std::string::npos) {
-      list.push_back({file.name, std::nullopt, file.size_bytes});
+      list.push_back({.name = file.name, .size_bytes = file.size_bytes});
       continue;
     }
     const std::string folder = file.name.substr(0, slash + 1);
     const auto [place, is_new] = folders.try_emplace(folder, list.size());
-    if (is_new) list.push_back({folder, 0, 0});
+    if (is_new) list.push_back({.name = folder, .files = 0});
     ResultFile& entry = list[place->second];
     ++*entry.files;
     entry.size_bytes += file.size_bytes;
@@ -98,16 +74,13 @@ std::vector<ResultFile> listed(const std::vector<AtomicDirectory::File>& files) 
 /// The directory, for exporters that run beside each other.
 class SharedDirectory {
  public:
-  explicit SharedDirectory(AtomicDirectory& directory) : directory_(directory) {}
+  /// kept: takes the bytes in place of their digest; null = the digest is wanted at once.
+  SharedDirectory(AtomicDirectory& directory, std::vector<WrittenBytes>* kept) : directory_(directory), kept_(kept) {}
 
   /// Makes the file of the task. Throws Error that begins with the file's name.
-  AtomicDirectory::File write(const Task& task) {
+  ResultFile write(const Task& task) {
     try {
-      if (task.stream != nullptr) return write_stream(task);
-      const std::string bytes = task.encode(task.input);
-      MutexLock lock(mutex_);
-      directory_.add_file(task.name, bytes);
-      return {task.name, bytes.size()};
+      return task.stream != nullptr ? write_stream(task) : write_bytes(task);
     } catch (const Error& error) {
       throw Error(error.code(), task.name + ": " + error.what());
     } catch (const std::exception& error) {
@@ -116,39 +89,70 @@ class SharedDirectory {
   }
 
  private:
+  ResultFile write_bytes(const Task& task) {
+    std::string bytes = task.encode(task.input);
+    ResultFile file{.name = task.name, .size_bytes = bytes.size()};
+    {
+      const MutexLock lock(mutex_);
+      directory_.add_file(task.name, bytes);
+      if (kept_ != nullptr) {
+        kept_->push_back({task.name, std::move(bytes)});
+        return file;
+      }
+    }
+    file.sha256 = sha256_of(bytes);  // while the disk is busy with them
+    return file;
+  }
+
   /// Another exporter encodes meanwhile, but adds its file afterwards.
-  AtomicDirectory::File write_stream(const Task& task) {
-    MutexLock lock(mutex_);
-    directory_.add_file(task.name, [&task](const ByteSink& sink) { task.stream(task.input, sink); });
-    return directory_.files().back();
+  ResultFile write_stream(const Task& task) {
+    Sha256 digest;
+    const MutexLock lock(mutex_);
+    directory_.add_file(task.name, [&](const ByteSink& sink) {
+      task.stream(task.input, [&](std::string_view bytes) {
+        digest.update(bytes);
+        sink(bytes);
+      });
+    });
+    return {.name = task.name, .size_bytes = directory_.files().back().size_bytes, .sha256 = digest.digits()};
   }
 
   Mutex mutex_;
   AtomicDirectory& directory_ FVD_GUARDED_BY(mutex_);
+  std::vector<WrittenBytes>* const kept_ FVD_PT_GUARDED_BY(mutex_);
 };
 
-}  // namespace
-
-Result write_result(AtomicDirectory& directory, const ResultData& data, std::span<const Exporter> exporters) {
+/// Writes the files of the exporters, then the result.json that lists them, and behind them as pending those of
+/// `following`.
+Result write_files(AtomicDirectory& directory, const ResultData& data, const DividedExporters& exporters,
+                   std::vector<WrittenBytes>* kept) {
   const auto start = std::chrono::steady_clock::now();
-  const std::shared_future<HeightSummary> summary = std::async(
-      std::launch::deferred, [&data] { return summarize_heights(data.map.height_m, data.map.sigma_m, data.map.mask); });
-  std::vector<AtomicDirectory::File> files = directory.files();
-  const std::vector<Task> tasks = tasks_of(exporters, data, summary);
+  const ExportInput input = export_input(data);
+  const std::vector<Task> tasks = tasks_of(exporters.first, input);
   const std::vector<std::size_t> order = order_of(tasks);
+  std::vector<ResultFile> files = listed(directory.files());
   const std::size_t before = files.size();
   files.resize(before + tasks.size());
-  SharedDirectory shared(directory);
+  SharedDirectory shared(directory, kept);
   const auto write = [&](int turn) {
     const std::size_t index = order[static_cast<std::size_t>(turn)];
     files[before + index] = shared.write(tasks[index]);
   };
   WorkerPool(kExportersAtOnce).run(static_cast<int>(order.size()), std::ref(write));
-  Result result = evaluate(data, summary.get());
-  result.files = listed(files);
+  for (const Task& task : tasks_of(exporters.following, input)) {
+    files.push_back({.name = task.name, .state = FileState::kPending});
+  }
+  Result result = evaluate(data, input.summary.get());
+  result.files = std::move(files);
   result.times.write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   directory.add_file("result.json", result_json_text(result));
   return result;
+}
+
+}  // namespace
+
+Result write_result(AtomicDirectory& directory, const ResultData& data, std::span<const Exporter> exporters) {
+  return write_files(directory, data, {{exporters.begin(), exporters.end()}, {}}, nullptr);
 }
 
 Result write_result(AtomicDirectory& directory, const ResultData& data) {
@@ -160,6 +164,17 @@ Result write_result(const std::filesystem::path& final_dir, const ResultData& da
   Result result = write_result(directory, data);
   directory.commit();
   return result;
+}
+
+bool FirstFiles::is_complete() const noexcept {
+  return written.empty() && std::none_of(result.files.begin(), result.files.end(),
+                                         [](const ResultFile& file) { return file.state == FileState::kPending; });
+}
+
+FirstFiles write_first_files(AtomicDirectory& directory, const ResultData& data) {
+  FirstFiles files;
+  files.result = write_files(directory, data, divided(chosen_exporters(data.exports)), &files.written);
+  return files;
 }
 
 }  // namespace fvd

@@ -48,8 +48,9 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
            }),
       ticks_("fvd-machine", kLongestStep),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir, config.objectives}),
+      following_(deps.store),
       runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, calibrations_,
-               deps.make_result,
+               following_, deps.make_result,
                deps.repeatability ? deps.repeatability
                                   : [this](const Recipe& recipe) { return studies_.newest_repeatability(recipe.id); }}),
       evaluator_({deps.store, board_, config.paths.state_dir / "results", memory_budget_bytes(config)}),
@@ -79,6 +80,7 @@ Engine::~Engine() { finish(); }
 void Engine::shut_down() {
   board_.update([](MachineRecord& machine) { machine.apply(MachineEvent::kHalt); });
   thread_.request_stop();
+  following_.request_stop();
   jobs_.stop_job();
   tasks_.task_stop().request_stop();
   study_runner_.request_stop();
@@ -90,6 +92,7 @@ void Engine::finish() {
   thread_.finish();
   study_runner_.finish();
   runner_.store_late_end();  // the last chance
+  following_.finish();
 }
 
 }  // namespace fvd

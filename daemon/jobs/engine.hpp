@@ -8,6 +8,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
+#include "daemon/jobs/following_files.hpp"
 #include "daemon/jobs/job_queue.hpp"
 #include "daemon/jobs/job_runner.hpp"
 #include "daemon/jobs/machine_board.hpp"
@@ -45,7 +46,10 @@ class Engine {
 
   /// Opens the devices, and takes jobs and commands once they are open; until then the machine is preoperational. To be
   /// called once.
-  void start() { thread_.start(); }
+  void start() {
+    following_.start();
+    thread_.start();
+  }
 
   [[nodiscard]] Services services() {
     return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_};
@@ -74,6 +78,7 @@ class Engine {
   WorkQueue work_;
   ThreadTicks ticks_;  // of thread_
   TaskRunner tasks_;
+  FollowingFiles following_;
   JobRunner runner_;
   ResultEvaluator evaluator_;
   JobQueue jobs_;

@@ -10,6 +10,7 @@
 #include "daemon/base/version.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/jobs/part_temperature.hpp"
+#include "daemon/pipeline/job_memory.hpp"
 #include "daemon/pipeline/reconstruct.hpp"
 
 namespace fvd {
@@ -74,7 +75,30 @@ void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
   if (const auto failure = deps_.hub.open()) {
     return end(job, {.error = failure->code, .message = failure->message, .failure = failure});
   }
-  end(job, measured(job, stop));
+  JobEnd ended = measured(job, stop);
+  end(job, ended);
+  JobResult& result = ended.result;
+  if (!result.files_pending) return;
+  deps_.following.add({job.status.job_id, result.directory, std::move(result.text), std::move(result.written)});
+}
+
+void JobRunner::wait_for_memory(const AcceptedJob& job, const std::stop_token& stop) {
+  const auto budget = static_cast<std::size_t>(deps_.config.compute.memory_budget_mib) << 20U;
+  const CameraSettings& camera = job.recipe.camera;
+  const DeviceFacts facts = deps_.hub.facts();
+  const std::size_t needed = job_memory(job.recipe, camera.width > 0 ? camera.width : facts.sensor_width,
+                                        camera.height > 0 ? camera.height : facts.sensor_height, deps_.pool.threads())
+                                 .total_bytes();
+  const std::size_t others = deps_.following.bytes();
+  if (others + needed + (deps_.pages ? deps_.pages->kept_bytes() : 0) <= budget) return;
+  if (deps_.pages) deps_.pages->release();
+  const std::size_t room = budget - std::min(budget, needed);
+  if (others <= room) return;
+  spdlog::info("job {} waits for files of results before it: they take {} MiB, it needs {} MiB of {} MiB",
+               job.status.job_id, others >> 20U, needed >> 20U, budget >> 20U);
+  if (!deps_.following.wait_for(room, stop)) {
+    throw Error(ErrorCode::kAborted, "stopped while it waited for files of results before it");
+  }
 }
 
 void JobRunner::refuse(const AcceptedJob& job) {
@@ -101,6 +125,7 @@ JobRunner::JobEnd JobRunner::measured(const AcceptedJob& job, const std::stop_to
 }
 
 JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_token& stop) {
+  wait_for_memory(job, stop);
   const Recipe recipe = with_learnt_width(job.recipe, deps_.store.curve_widths());
   ResultData acquired = described(job, recipe, deps_.config, deps_.board.read().objective);
   note_constants(recipe, deps_.calibrations, deps_.repeatability, acquired);
@@ -184,7 +209,7 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
   ended.error_message = end.message;
   // The row is durable before anybody can see the job's end; a database that fails must not hide how it ended.
   try {
-    deps_.store.finish(ended, end.result.directory, end.result.text);
+    deps_.store.finish(ended, end.result.directory, end.result.text, end.result.files_pending);
   } catch (const Error& failure) {
     spdlog::critical("job {}: its end is not stored yet, no job is taken before it is: {}", ended.job_id,
                      failure.what());

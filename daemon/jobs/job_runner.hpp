@@ -17,6 +17,7 @@
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
 #include "daemon/jobs/job_constants.hpp"
+#include "daemon/jobs/following_files.hpp"
 #include "daemon/jobs/machine_board.hpp"
 #include "daemon/jobs/result_pipeline.hpp"
 #include "daemon/pipeline/measurement.hpp"
@@ -46,6 +47,7 @@ class JobRunner {
     StageHistory& history;
     ThreadTicks& ticks;  ///< of the machine's thread
     const CalibrationBook& calibrations;
+    FollowingFiles& following;
     ResultPipeline make_result = store_result;
     RepeatabilityOf repeatability = {};  ///< empty = nobody keeps gauge studies
   };
@@ -73,6 +75,8 @@ class JobRunner {
   };
 
   [[nodiscard]] JobEnd measured(const AcceptedJob& job, const std::stop_token& stop);
+  /// Waits until the job fits into the memory beside the files of results before it.
+  void wait_for_memory(const AcceptedJob& job, const std::stop_token& stop);
   [[nodiscard]] JobResult acquire_and_store(const AcceptedJob& job, const std::stop_token& stop);
   [[nodiscard]] JobEnd failed(ErrorCode code, const std::string& message);
   [[nodiscard]] MeasurementObserver observer();

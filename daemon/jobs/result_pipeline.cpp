@@ -1,18 +1,21 @@
 #include "daemon/jobs/result_pipeline.hpp"
 
+#include <utility>
+
 #include "daemon/export/result_json.hpp"
-#include "daemon/export/result_writer.hpp"
 #include "daemon/result/evaluate.hpp"
 
 namespace fvd {
 
 JobResult store_result(AtomicDirectory& directory, const ResultData& acquired) {
-  const Result written = write_result(directory, acquired);
+  FirstFiles files = write_first_files(directory, acquired);
   directory.commit();
   JobResult result;
   result.directory = directory.final_dir().string();
-  result.text = result_json_text(written);
-  if (const auto shortage = shortfall(written)) {
+  result.text = result_json_text(files.result);
+  result.files_pending = !files.is_complete();
+  result.written = std::move(files.written);
+  if (const auto shortage = shortfall(files.result)) {
     result.error = shortage->code;
     result.message = shortage->message;
   }

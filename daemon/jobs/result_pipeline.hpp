@@ -5,17 +5,21 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
+#include "daemon/export/result_writer.hpp"
 #include "daemon/result/result_data.hpp"
 
 namespace fvd {
 
 struct JobResult {
-  std::string directory;           ///< with its files, durable
-  std::string text;                ///< of result.json
-  std::optional<ErrorCode> error;  ///< why the job failed though it has a result: too few points are valid
+  std::string directory;              ///< with the files that a verdict waits for, durable
+  std::string text;                   ///< of result.json
+  bool files_pending = false;         ///< the others follow, and the digests
+  std::vector<WrittenBytes> written;  ///< what the digests are made of
+  std::optional<ErrorCode> error;     ///< why the job failed though it has a result: too few points are valid
   std::string message;
 };
 
@@ -23,7 +27,7 @@ struct JobResult {
 /// kStorageFull, kStorageWrite; nothing of the directory is left then.
 using ResultPipeline = std::function<JobResult(AtomicDirectory& directory, const ResultData& acquired)>;
 
-/// Judges, writes the files, commits the directory.
+/// Judges, writes the files that a verdict waits for, commits the directory.
 [[nodiscard]] JobResult store_result(AtomicDirectory& directory, const ResultData& acquired);
 
 }  // namespace fvd

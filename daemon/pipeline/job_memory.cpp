@@ -16,8 +16,8 @@ namespace {
 
 /// A map beside the first: heights, errors, prominence, reasons, texture.
 constexpr std::size_t kMapBytesPerPixel = 3 * sizeof(float) + sizeof(MaskReasons) + sizeof(std::uint16_t);
-/// The preview's picture is drawn and encoded while the largest file of four bytes a point is made beside it.
-constexpr std::size_t kEncodingBytesPerPixel = 12;
+/// Heights, errors, reasons and image as files: their bytes are kept until the digests are made of them.
+constexpr std::size_t kEncodingBytesPerPixel = 2 * sizeof(float) + sizeof(MaskReasons) + sizeof(std::uint16_t);
 
 /// The measured surface as it was, with reasons, and in double precision, with its standard errors.
 constexpr std::size_t kMeasuredSurfaceBytesPerPixel =
@@ -89,7 +89,8 @@ JobMemory job_memory(const Recipe& recipe, int width, int height, int threads) {
     needed.frames_bytes += pixels * static_cast<std::size_t>(bytes_per_pixel(format)) *
                            static_cast<std::size_t>(StreamingFocusStack::kMaxBatch + FocusWorker::kHeldBack);
   }
-  needed.encoding_bytes = pixels * kEncodingBytesPerPixel;
+  needed.encoding_bytes = pixels * (kEncodingBytesPerPixel + recipe.extra_peaks.size() * sizeof(float));
+  if (recipe.smooth_px) needed.encoding_bytes += 2 * pixels * sizeof(float);
   needed.evaluation_bytes = evaluation_bytes(recipe.evaluation, pixels);
   return needed;
 }

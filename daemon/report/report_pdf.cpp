@@ -11,6 +11,7 @@
 #include "daemon/report/page_file.hpp"
 #include "daemon/report/profile_plot.hpp"
 #include "daemon/report/report_head.hpp"
+#include "daemon/report/section_title.hpp"
 #include "daemon/report/surface_digest.hpp"
 #include "daemon/report/value_table.hpp"
 #include "daemon/report/view_plot.hpp"
@@ -53,11 +54,6 @@ std::vector<NamedSection> sections_of(const Result& result) {
     if (const auto& section = found->second.cross_section) sections.push_back({name, *section});
   }
   return sections;
-}
-
-std::string section_title(const std::string& name, const CrossSection& section) {
-  const std::string width = fixed_text(section.band_width_um, section.band_width_um < 10.0 ? 1 : 0);
-  return name + (section.band_width_um > 0.0 ? ": mean over " + width + " µm" : std::string());
 }
 
 std::string paragraph_of(const ConditionLine& line) { return line.about + ":  " + line.text; }

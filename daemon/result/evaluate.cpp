@@ -51,6 +51,7 @@ Result::Focus focus_of(const ResultData& data) {
   focus.peak = data.peak;
   for (const auto& [method, map] : data.extra_maps) focus.extra_peaks.push_back(further_heights(method, map));
   focus.state_bytes_per_pixel = data.state_bytes_per_pixel;
+  focus.texture_max_grey = max_grey_level(data.map.texture_format);
   return focus;
 }
 

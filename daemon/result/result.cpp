@@ -14,6 +14,25 @@ double Result::valid_fraction() const noexcept {
   return points == 0 ? 0.0 : static_cast<double>(valid_points) / static_cast<double>(points);
 }
 
+std::string_view file_state_name(FileState state) noexcept {
+  switch (state) {
+    case FileState::kWritten:
+      return "written";
+    case FileState::kPending:
+      return "pending";
+    case FileState::kNotMade:
+      return "not_made";
+  }
+  return "not_made";
+}
+
+std::optional<FileState> file_state_from_name(std::string_view name) noexcept {
+  for (const FileState state : kAllFileStates) {
+    if (name == file_state_name(state)) return state;
+  }
+  return std::nullopt;
+}
+
 std::string_view drift_undone_name(DriftUndone undone) noexcept {
   switch (undone) {
     case DriftUndone::kNothing:

@@ -52,8 +52,9 @@ struct PhaseTimes {
   double prepare_ms = 0.0;                 ///< devices, homing, take-up
   double scan_ms = 0.0;                    ///< first move to last frame
   double finish_ms = 0.0;                  ///< last frame to height map
-  double write_ms = 0.0;                   ///< of the other files
+  double write_ms = 0.0;                   ///< of the files that the verdict waited for
   std::optional<double> evaluate_ms = {};  ///< of the measurements; absent where there are none
+  std::optional<double> follow_ms = {};    ///< of the files that followed; absent while they are pending, or none did
   bool operator==(const PhaseTimes&) const = default;
 };
 
@@ -93,11 +94,26 @@ struct FurtherHeights {
   bool operator==(const FurtherHeights&) const = default;
 };
 
+/// A verdict does not wait for all files of its result.
+enum class FileState {
+  kWritten,  ///< it is there, durable
+  kPending,  ///< it follows
+  kNotMade,  ///< it could not be made
+};
+inline constexpr std::array kAllFileStates{FileState::kWritten, FileState::kPending, FileState::kNotMade};
+
+/// "written", "pending", "not_made".
+[[nodiscard]] std::string_view file_state_name(FileState state) noexcept;
+[[nodiscard]] std::optional<FileState> file_state_from_name(std::string_view name) noexcept;
+
 /// A file of the result, or all files of one folder of it.
 struct ResultFile {
-  std::string name;                    ///< the name of a folder ends with '/'
-  std::optional<std::uint64_t> files;  ///< number of files in a folder
-  std::uint64_t size_bytes = 0;
+  std::string name;                         ///< the name of a folder ends with '/'
+  std::optional<std::uint64_t> files = {};  ///< number of files in a folder
+  std::uint64_t size_bytes = 0;             ///< of one that is written
+  FileState state = FileState::kWritten;
+  std::string sha256 = {};  ///< of its bytes as they were written; empty = not known yet, or a folder
+  std::string reason = {};  ///< why it could not be made
   bool operator==(const ResultFile&) const = default;
 };
 
@@ -138,6 +154,7 @@ struct Result {
     PeakMethod peak = PeakMethod::kParabola;
     std::vector<FurtherHeights> extra_peaks;
     double state_bytes_per_pixel = 0.0;
+    std::optional<int> texture_max_grey = {};  ///< the brightest level that texture.png can hold; absent = not known
   };
   /// Of the slices as they came, in pixels: right and down.
   struct Drift {

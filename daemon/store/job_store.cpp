@@ -25,7 +25,7 @@ constexpr std::array kAllJobStates{JobState::kProcessing, JobState::kCompleted, 
 #define FVD_JOB_COLUMNS                                                                                            \
   "job_id, client, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done, slices_planned, " \
   "frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale, frames_underrun, result_dir, "     \
-  "result_json, acquired, temperature_c"
+  "result_json, acquired, temperature_c, files_pending"
 
 JobState state_from_name(const std::string& name) {
   for (const JobState state : kAllJobStates) {
@@ -62,6 +62,7 @@ StoredJob read_row(const Statement& row) {
   job.result_json = text();
   status.acquired = integer() != 0;
   status.request.temperature_c = row.real(column++);
+  job.files_pending = integer() != 0;
   return job;
 }
 
@@ -245,7 +246,7 @@ void JobStore::Impl::store_end_locked(const StoredJob& end) {
             "UPDATE jobs SET state = ?, error = ?, error_message = ?, slices_done = ?, slices_planned = ?, "
             "frames_expected = ?, frames_ok = ?, frames_incomplete = ?, frames_missing = ?, frames_stale = ?, "
             "frames_underrun = ?, result_dir = ?, result_json = ?, acquired = ?, "
-            "ended_utc = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE job_id = ?")
+            "files_pending = ?, ended_utc = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE job_id = ?")
       .bind(job_state_name(ended.state))
       .bind(ended.error ? error_name(*ended.error) : std::string_view())
       .bind(ended.error_message)
@@ -260,6 +261,7 @@ void JobStore::Impl::store_end_locked(const StoredJob& end) {
       .bind(end.result_dir)
       .bind(end.result_json)
       .bind(std::int64_t{ended.acquired})
+      .bind(std::int64_t{end.files_pending})
       .bind(ended.job_id)
       .run();
   transaction.commit();
@@ -278,8 +280,9 @@ void JobStore::Impl::store_kept_ends_locked() {
   }
 }
 
-void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json) {
-  StoredJob end{ended, result_dir, result_json};
+void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json,
+                      bool files_pending) {
+  StoredJob end{ended, result_dir, result_json, files_pending};
   const MutexLock lock(impl_->mutex);
   bool was_running = true;  // also where the database cannot be asked
   try {
@@ -298,6 +301,32 @@ void JobStore::finish(const JobStatus& ended, const std::string& result_dir, con
     throw;
   }
   if (was_running) ++impl_->waiting;
+}
+
+void JobStore::note_files(const std::string& job_id, const std::string& result_json, bool files_pending) {
+  const MutexLock lock(impl_->mutex);
+  {
+    const MutexLock kept_lock(impl_->kept_mutex);
+    if (const auto kept = impl_->kept_ends.find(job_id); kept != impl_->kept_ends.end()) {
+      kept->second.result_json = result_json;  // stored with the end
+      kept->second.files_pending = files_pending;
+      return;
+    }
+  }
+  (void)job_in(impl_->database, {}, job_id);
+  Statement(impl_->database, "UPDATE jobs SET result_json = ?, files_pending = ? WHERE job_id = ?")
+      .bind(result_json)
+      .bind(std::int64_t{files_pending})
+      .bind(job_id)
+      .run();
+}
+
+std::vector<StoredJob> JobStore::with_pending_files() const {
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE files_pending = 1 ORDER BY number");
+  std::vector<StoredJob> jobs;
+  while (query.step()) jobs.push_back(read_row(query));
+  return jobs;
 }
 
 void JobStore::store_kept_ends() {

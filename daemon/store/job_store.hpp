@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/recipes/recipe_versions.hpp"
 #include "daemon/store/curve_width_table.hpp"
@@ -45,7 +46,13 @@ class JobStore {
   /// Makes the end of the job `ended.job_id` durable. ended.state is not kProcessing. Throws Error kUnknownJob;
   /// kDatabase and kStorageFull if the end is not on disk: it is kept in memory then and told with
   /// JobStatus::not_durable by every function here, until it could be stored.
-  void finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json);
+  void finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json,
+              bool files_pending = false);
+  /// The files of an ended job's result as they stand now: what differs from finish() is told in result_json. Throws
+  /// Error kUnknownJob, kDatabase, kStorageFull.
+  void note_files(const std::string& job_id, const std::string& result_json, bool files_pending);
+  /// The jobs whose results have files that are still to be made, the oldest first.
+  [[nodiscard]] std::vector<StoredJob> with_pending_files() const;
   /// Stores the ends that are kept in memory. Throws Error kDatabase, kStorageFull: they are still kept.
   void store_kept_ends();
 

@@ -174,6 +174,14 @@ CREATE TABLE evaluations (
 )");
 }
 
+/// Version 10: whether files of the result are still to be made.
+void keep_whether_files_are_pending(Database& database) {
+  database.execute(R"(
+ALTER TABLE jobs ADD COLUMN files_pending INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX jobs_with_pending_files ON jobs (number) WHERE files_pending = 1;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -184,6 +192,7 @@ constexpr std::array kSteps{
     MigrationStep{"objectives that were confirmed", keep_confirmed_objectives},
     MigrationStep{"temperatures of jobs", keep_temperatures_of_jobs},
     MigrationStep{"evaluations of results by other recipes", keep_evaluations},
+    MigrationStep{"whether files of a result are pending", keep_whether_files_are_pending},
 };
 
 void require_own_file(const Database& database, int version) {

@@ -50,6 +50,7 @@ TEST_F(AMicroscope, MeasuresTheChaptersSurface) {
   const json figures = figures_of(result_dir(1));
   expect_chapter_figures(figures);
   EXPECT_EQ(figures["frames_ok"], 21);
+  await_files(1);
   for (const char* file : {"height.tiff", "height_nearest.tiff", "height_parabola.tiff", "height.gsf", "mask.png",
                            "texture.png", "preview.png", "step_log.csv", "result.json"}) {
     EXPECT_GT(std::filesystem::file_size(result_dir(1) / file), 100U) << file;
@@ -153,6 +154,7 @@ TEST_F(AMicroscope, GivesBitForBitTheMapThatOfflineProcessingGives) {
       parse_recipe(test::read_text(std::filesystem::path(FVD_SOURCE_DIR) / "config/recipes/chapter-recorded.json"),
                    "chapter-recorded");
   (void)ctl::process_stack(offline, {});
+  await_files(1);
   for (const char* file : {"mask.png", "texture.png"}) {
     EXPECT_EQ(test::read_text(live / file), test::read_text(offline.out / file)) << file;
   }

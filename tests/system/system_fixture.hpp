@@ -2,6 +2,7 @@
 
 /// The daemon and the simulated microscope in one process, joined by nothing but sockets.
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -69,6 +70,18 @@ class AMicroscope : public testing::Test {
     const auto line = client.line(std::chrono::seconds(40));
     EXPECT_TRUE(line.has_value());
     return line ? nlohmann::json::parse(*line)["result"] : nlohmann::json();
+  }
+
+  /// Waits until all files of the job's result are made: no verdict waits for the pictures.
+  void await_files(std::int64_t seq) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (std::chrono::steady_clock::now() < deadline) {
+      const auto files = ask("result.get", {{"seq", seq}, {"format", "complete"}})["result"]["files"];
+      const auto is_pending = [](const nlohmann::json& file) { return file.value("state", "") == "pending"; };
+      if (std::none_of(files.begin(), files.end(), is_pending)) return;
+      std::this_thread::yield();
+    }
+    ADD_FAILURE() << "files stay pending";
   }
 
   /// Waits until the job has measured at least `slices` slices.

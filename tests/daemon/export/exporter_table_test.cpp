@@ -31,6 +31,7 @@ ResultData result_with_extra_map() {
   data.smoothed->height_m = Plane<float>(6, 3);
   data.smoothed->sigma_m = Plane<float>(6, 3);
   data.repeated = RepeatedScans{2, Plane<float>(6, 3), 0.25};
+  data.evaluation = test::sample_measurements();
   return data;
 }
 
@@ -38,6 +39,7 @@ ResultData result_with_extra_map() {
 std::string file_of(const Exporter& exporter) {
   std::string name(exporter.name);
   if (exporter.need == ExportNeed::kEachExtraMap) name.replace(name.find('*'), 1, "nearest");
+  if (exporter.need == ExportNeed::kEachSection) name.replace(name.find('*'), 1, "step");
   return name;
 }
 
@@ -51,8 +53,8 @@ TEST(ExporterTable, HasOneNameARow) {
   std::set<std::string_view> names;
   for (const Exporter& exporter : exporter_table()) {
     EXPECT_TRUE(names.insert(exporter.name).second) << exporter.name;
-    EXPECT_EQ(exporter.need == ExportNeed::kEachExtraMap, exporter.name.find('*') != std::string_view::npos)
-        << exporter.name;
+    const bool many = exporter.need == ExportNeed::kEachExtraMap || exporter.need == ExportNeed::kEachSection;
+    EXPECT_EQ(many, exporter.name.find('*') != std::string_view::npos) << exporter.name;
   }
 }
 
@@ -80,22 +82,47 @@ TEST(ExporterTable, GivesTheRowsThatARecipeNames) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "few" / "height.tiff"));
 }
 
+std::vector<std::string> first_of(const std::vector<std::string>& names) {
+  std::vector<std::string> first;
+  for (const Exporter& exporter : divided(chosen_exporters(names)).first) first.emplace_back(exporter.name);
+  return first;
+}
+
+TEST(ExporterTable, LetsAFileFollowWhereAllThatItIsMadeOfIsWrittenFirst) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(first_of({"height.tiff", "height.x3p", "preview.png"}), (Names{"height.tiff"}));
+  EXPECT_EQ(first_of({"height.x3p", "height.sdf", "report.pdf"}), (Names{"height.x3p"}))
+      << "one that holds the heights comes first where there is no height.tiff";
+  EXPECT_EQ(first_of({"height.gsf", "sigma.gsf", "sigma.png"}), (Names{"height.gsf", "sigma.gsf"}));
+  EXPECT_EQ(first_of({"preview.png"}), (Names{"preview.png"})) << "nothing would hold the heights";
+  EXPECT_EQ(first_of({"height.tiff", "holes.png", "height.ply"}), (Names{"height.tiff", "height.ply", "holes.png"}))
+      << "neither mask nor image would be there";
+  EXPECT_EQ(divided(chosen_exporters(std::nullopt)).following.size(), 5U)
+      << "height.gsf, preview.png, texture_view.png, profile_*.png and edge.png";
+}
+
+TEST(ExporterTable, KnowsOfEveryRowThatFollowsWhatItReads) {
+  for (const Exporter& exporter : exporter_table()) {
+    const bool follows = exporter.time == ExportTime::kFollows;
+    EXPECT_EQ(exporter.reads != 0, follows) << exporter.name;
+    const bool of_memory = exporter.need == ExportNeed::kSmoothedMap || exporter.need == ExportNeed::kEachExtraMap;
+    EXPECT_FALSE(follows && of_memory) << exporter.name;
+  }
+}
+
 TEST(ExporterTable, GivesTheBytesThatTheDirectoryHolds) {
   const ScratchDir scratch;
   const ResultData data = result_with_extra_map();
   write_with(scratch / "job", exporter_table());
-  std::promise<HeightSummary> summary;
-  summary.set_value(test::summary_of(data.map));
-  const std::shared_future<HeightSummary> shared(summary.get_future());
+  const ExportInput of_result = export_input(data);
   std::vector<std::string> names;
   for (const Exporter& exporter : exporter_table()) {
-    const bool extra = exporter.need == ExportNeed::kEachExtraMap;
-    const ExportInput input{data, extra ? data.extra_maps[0].second : data.map,
-                            extra ? PeakMethod::kNearest : data.peak, shared};
-    names.push_back(file_of(exporter));
-    const std::string written = test::read_text(scratch / ("job/" + names.back()));
-    EXPECT_FALSE(written.empty()) << exporter.name;
-    EXPECT_TRUE(written == bytes_of(exporter, input)) << exporter.name;
+    for (const ExportFile& file : export_files(exporter, of_result)) {
+      names.push_back(file.name);
+      const std::string written = test::read_text(scratch / ("job/" + file.name));
+      EXPECT_FALSE(written.empty()) << exporter.name;
+      EXPECT_TRUE(written == bytes_of(exporter, file.input)) << exporter.name;
+    }
   }
   std::vector<std::string> listed;
   const auto json = nlohmann::json::parse(test::read_text(scratch / "job/result.json"));

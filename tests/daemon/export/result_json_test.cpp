@@ -78,7 +78,11 @@ Result full_result() {
   result.provenance = {"1.2.3", true,
                        std::chrono::system_clock::time_point(std::chrono::milliseconds(1'700'000'000'123)),
                        "camera and stage"};
-  result.files = {{"slices/", 22, 1000}, {"height.tiff", std::nullopt, 77}};
+  result.times.follow_ms = 5.5;
+  result.files = {{"slices/", 22, 1000},
+                  {"height.tiff", std::nullopt, 77, FileState::kWritten, "00ff"},
+                  {"preview.png", std::nullopt, 0, FileState::kPending},
+                  {"report.pdf", std::nullopt, 0, FileState::kNotMade, "", "there is no font"}};
   return result;
 }
 
@@ -133,6 +137,25 @@ TEST(ResultJson, OfBeforeCalibrationsKnowsNone) {
   EXPECT_FALSE(read.temperature);
   EXPECT_FALSE(read.calibration);
   EXPECT_TRUE(read.repeatability.empty());
+}
+
+TEST(ResultJson, KeepsEveryOtherByteWhereTheListOfFilesIsChanged) {
+  Result result = full_result();
+  result.times.follow_ms.reset();
+  const std::string before = result_json_text(result);
+  result.times.follow_ms = 7.125;
+  result.files = {{"a.png", std::nullopt, 12, FileState::kWritten, "ab"}};
+  EXPECT_EQ(result_json_with_files(before, result.files, 7.125), result_json_text(result));
+}
+
+TEST(ResultJson, ReadsFilesOfResultsThatKnewNeitherStateNorDigest) {
+  json old = json::parse(result_json_text(full_result()));
+  old["files"] = json::array({{{"name", "height.tiff"}, {"size_bytes", 77}}});
+  const Result read = read_result_json(old.dump());
+  EXPECT_EQ(read.files, (std::vector<ResultFile>{{"height.tiff", std::nullopt, 77}}));
+
+  old["files"][0]["state"] = "perhaps";
+  test::expect_error(ErrorCode::kBadInput, {"/files/0/state", "pending"}, [&] { (void)read_result_json(old.dump()); });
 }
 
 TEST(ResultJson, IsTheSameTextAgainWhereNothingIsKnown) {

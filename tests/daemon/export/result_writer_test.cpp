@@ -1,6 +1,11 @@
 #include "daemon/export/result_writer.hpp"
 
+#include <array>
+#include <cstdio>
 #include <limits>
+#include <map>
+#include <memory>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,8 +38,9 @@ TEST(ResultWriter, WritesEveryFileAndNothingElse) {
   for (const auto& entry : std::filesystem::directory_iterator(scratch / "job")) {
     names.insert(entry.path().filename().string());
   }
-  EXPECT_THAT(names, testing::ElementsAre("height.gsf", "height.tiff", "height_nearest.tiff", "mask.png", "preview.png",
-                                          "result.json", "sigma.tiff", "step_log.csv", "texture.png"));
+  EXPECT_THAT(names,
+              testing::ElementsAre("height.gsf", "height.tiff", "height_nearest.tiff", "mask.png", "preview.png",
+                                   "result.json", "sigma.tiff", "step_log.csv", "texture.png", "texture_view.png"));
 }
 
 TEST(ResultWriter, ListsTheFilesWithTheirTrueSizes) {
@@ -46,13 +52,67 @@ TEST(ResultWriter, ListsTheFilesWithTheirTrueSizes) {
   directory.commit();
 
   const json result = json::parse(test::read_text(scratch / "job/result.json"));
-  ASSERT_EQ(result["files"].size(), 8U);
+  ASSERT_EQ(result["files"].size(), 9U);
   EXPECT_EQ(result["files"][0], json({{"name", "slices/"}, {"files", 2}, {"size_bytes", 8}}));
   for (const auto& file : result["files"]) {
     if (file["name"] == "slices/") continue;
     EXPECT_EQ(file["size_bytes"], std::filesystem::file_size(scratch / "job" / file["name"].get<std::string>()));
   }
   EXPECT_GT(result["times"]["write_ms"].get<double>(), 0.0);
+}
+
+/// By another program: the digest of the file as it stands.
+std::string sha256sum(const std::filesystem::path& file) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("sha256sum '" + file.string() + "'").c_str(), "r"), pclose);
+  std::array<char, 65> digits{};
+  return pipe && fgets(digits.data(), digits.size(), pipe.get()) != nullptr ? digits.data() : "";
+}
+
+TEST(ResultWriter, TellsTheDigestOfEveryFileAsItStands) {
+  const ScratchDir scratch;
+  ResultData data = test::sample_result();
+  data.exports = {{"tiff", "mask.png", "x3p", "gsf"}};  // some in memory, some in pieces
+  AtomicDirectory directory(scratch / "job");
+  directory.add_file("slices/slice_0.pgm", "abc");
+  write_result(directory, data);
+  directory.commit();
+
+  const Result result = read_result_json(test::read_text(scratch / "job/result.json"));
+  ASSERT_EQ(result.files.size(), 7U);
+  EXPECT_EQ(result.files[0].sha256, "") << "a folder has none";
+  for (std::size_t i = 1; i < result.files.size(); ++i) {
+    EXPECT_EQ(result.files[i].state, FileState::kWritten);
+    EXPECT_EQ(result.files[i].sha256, sha256sum(scratch / ("job/" + result.files[i].name))) << result.files[i].name;
+  }
+}
+
+TEST(ResultWriter, WritesFirstWhatAVerdictWaitsForAndListsTheRestAsPending) {
+  const ScratchDir scratch;
+  ResultData data = test::sample_result();
+  data.exports = {{"tiff", "mask.png", "texture.png", "step_log.csv", "x3p", "preview.png", "report.pdf"}};
+  AtomicDirectory directory(scratch / "job");
+  const FirstFiles files = write_first_files(directory, data);
+  directory.commit();
+
+  EXPECT_FALSE(files.is_complete());
+  const json result = json::parse(test::read_text(scratch / "job/result.json"));
+  std::map<std::string, std::string> states;
+  for (const auto& file : result["files"]) states[file["name"]] = file["state"];
+  EXPECT_EQ(states, (std::map<std::string, std::string>{{"height.tiff", "written"},
+                                                        {"sigma.tiff", "written"},
+                                                        {"mask.png", "written"},
+                                                        {"texture.png", "written"},
+                                                        {"step_log.csv", "written"},
+                                                        {"height.x3p", "pending"},
+                                                        {"preview.png", "pending"},
+                                                        {"report.pdf", "pending"}}));
+  for (const auto& [name, state] : states) {
+    EXPECT_EQ(std::filesystem::exists(scratch / ("job/" + name)), state == "written") << name;
+  }
+  ASSERT_EQ(files.written.size(), 5U);
+  for (const WrittenBytes& written : files.written) {
+    EXPECT_TRUE(written.bytes == test::read_text(scratch / ("job/" + written.name))) << written.name;
+  }
 }
 
 TEST(ResultWriter, LeavesNothingWhenTheTargetExists) {

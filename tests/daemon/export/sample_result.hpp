@@ -79,4 +79,28 @@ inline ResultData sample_result() {
   return data;
 }
 
+/// A step with a cross section, and a cutting edge of three sections, the middle one not measured, with a notch.
+inline Evaluation sample_measurements() {
+  Evaluation evaluation;
+  evaluation.order = {"step", "edge"};
+  EvaluatedMeasurement step;
+  step.kind = "step_height";
+  step.main_value = "height_um";
+  step.values["height_um"].value = 49.98;
+  step.values["height_um"].unit = "um";
+  step.cross_section = CrossSection{0.0, 6.0, 12.0, 6.0, 4.0, {{"A", 2.0, 4.0}}};
+  evaluation.measurements["step"] = step;
+  EvaluatedMeasurement edge;
+  edge.kind = "cutting_edge";
+  edge.main_value = "radius_um";
+  edge.values["radius_um"].value = 10.0;
+  edge.values["radius_um"].unit = "um";
+  edge.values["notches"].value = 1.0;
+  edge.details =
+      R"({"sections":[{"along_um":0,"radius_um":10},{"along_um":10,"unmeasured":"hole"},{"along_um":20,"radius_um":11}],)"
+      R"("chipping":{"notches":[{"along_um":18,"depth_um":4,"width_um":3}]}})";
+  evaluation.measurements["edge"] = edge;
+  return evaluation;
+}
+
 }  // namespace fvd::test

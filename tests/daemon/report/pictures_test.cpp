@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/report/hole_reasons.hpp"
+#include "daemon/report/measurement_pictures.hpp"
 #include "daemon/report/surface_digest.hpp"
 #include "daemon/report/surface_pictures.hpp"
 #include "tests/daemon/report/sample_report.hpp"
@@ -39,6 +40,48 @@ TEST(SurfacePictures, HaveTheProportionsOfTheField) {
   EXPECT_EQ(of_wide.width, 2U * 640U);
   EXPECT_EQ(of_high.width, 2U * 300U) << "the least, for the title";
   EXPECT_EQ(of_high.height - of_wide.height, 2U * (520U - 130U));
+}
+
+TEST(MeasurementPictures, ShowWhatWasNotMeasuredAndEveryNotch) {
+  const Surface surface = test::groove_surface();
+  const PictureSurface picture = picture_surface(surface);
+  Evaluation evaluation;
+  evaluation.order = {"edge"};
+  EvaluatedMeasurement& edge = evaluation.measurements["edge"];
+  edge.kind = "cutting_edge";
+  edge.main_value = "radius_um";
+  edge.values["radius_um"] = test::value_of(10.0, "um", 0.2);
+  edge.details = R"({"sections":[{"along_um":0,"radius_um":10},{"along_um":10,"radius_um":11}]})";
+  const std::string clean = edge_png(picture, evaluation);
+  EXPECT_TRUE(is_cutting_edge(edge));
+  EXPECT_TRUE(clean == edge_png(picture, evaluation)) << "the same bytes";
+
+  edge.details = R"({"sections":[{"along_um":0,"radius_um":10},{"along_um":10,"unmeasured":"hole"}]})";
+  EXPECT_FALSE(clean == edge_png(picture, evaluation));
+  edge.details = R"({"sections":[{"along_um":0,"radius_um":10},{"along_um":10,"radius_um":11}],
+      "chipping":{"notches":[{"along_um":4,"depth_um":3,"width_um":2}]}})";
+  EXPECT_FALSE(clean == edge_png(picture, evaluation));
+  for (const char* nothing : {"", "[]", R"({"sections":7})", R"({"sections":[]})", R"({"sections":[{"x_um":1}]})"}) {
+    edge.details = nothing;
+    EXPECT_FALSE(is_cutting_edge(edge)) << nothing;
+  }
+}
+
+TEST(MeasurementPictures, ShowACrossSectionUnderItsNameAndTheImageWhereThereIsOne) {
+  const Surface surface = test::groove_surface();
+  const PictureSurface picture = picture_surface(surface);
+  const Evaluation evaluation = test::sample_evaluation();
+  const EvaluatedMeasurement& step = evaluation.measurements.at("step");
+  EXPECT_FALSE(profile_png(picture, "step", step) == profile_png(picture, "other", step));
+
+  Plane<std::uint16_t> grey(surface.width(), surface.height(), 100);
+  PictureTexture texture;
+  const std::string none = texture_view_png(picture, texture);
+  texture.grey = grey.view();
+  EXPECT_FALSE(none == texture_view_png(picture, texture));
+  const std::string dark = texture_view_png(picture, texture);
+  texture.max_grey = 4095;
+  EXPECT_FALSE(dark == texture_view_png(picture, texture)) << "the same level is darker where more fit";
 }
 
 TEST(SurfacePictures, AreTheSameBytesForTheSameSurface) {
