@@ -187,7 +187,7 @@ std::vector<json> candidates(const json& property) {
     }
   }
   if (property.contains("enum")) values.insert(values.end(), property["enum"].begin(), property["enum"].end());
-  if (property.contains("items")) {
+  if (property.contains("items") && property["items"].contains("enum")) {
     const json& names = property["items"]["enum"];
     values.push_back(names);
     values.push_back(json::array({names[0], names[0]}));

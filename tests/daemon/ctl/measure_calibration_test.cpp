@@ -22,8 +22,10 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr const char* kMean = R"({"format": 2, "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 5}},
+  "reconstruct": {"lateral": {"pixel_pitch_x_um": 2, "pixel_pitch_y_um": 4}},
   "evaluation": {"measurements": {"t": {"kind": "areal", "parameters": ["Sz"]}}}})";
 constexpr const char* kFlattened = R"({"format": 2, "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 5}},
+  "reconstruct": {"lateral": {"pixel_pitch_x_um": 2, "pixel_pitch_y_um": 4}},
   "evaluation": {"surfaces": {"s": {"steps": [{"op": "flatness_reference"}]}},
     "measurements": {"t": {"kind": "areal", "surface": "s", "parameters": ["Sz"], "limits": {"Sz_um": {"upper": 900}}}}}})";
 

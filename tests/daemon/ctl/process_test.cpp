@@ -291,8 +291,8 @@ TEST(Process, RefusesWhatItWouldOnlyFindOutLater) {
   EXPECT_THAT(unnamed.err, HasSubstr("--out is empty"));
   EXPECT_THAT(scratch.entries(), testing::ElementsAre("in"));
   const test::Outcome unsmooth = with({"--out", scratch / "out", "--smooth", "nan"});
-  EXPECT_EQ(unsmooth.code, kExitBadData);
-  EXPECT_THAT(unsmooth.err, ::testing::StartsWith("fvdctl: smoothing over nan px")) << "before the first one is read";
+  EXPECT_EQ(unsmooth.code, kExitUsage);
+  EXPECT_THAT(unsmooth.err, ::testing::StartsWith("--smooth: 'nan' is no number")) << "before the first one is read";
   fs::create_symlink("nothing", scratch / "link");
   const test::Outcome link = with({"--out", scratch / "link"});
   EXPECT_EQ(link.code, kExitIo);

@@ -242,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "height_*.tiff stands for maps that the recipe does not ask for, so no file is made; expected "
                   "methods at /reconstruct/focus/extra_peaks"},
         BadRecipe{with("", R"(, "keep": {"slices": "yes"})"), "/keep/slices", "true or false"},
-        BadRecipe{with("", R"(, "report": {})"), "/report", "unknown key"},
+        BadRecipe{with("", R"(, "report": {"language": "de"})"), "/report/language", "en"},
         BadRecipe{with("", R"(, "evaluation": {"regons": {}})"), "/evaluation/regons", "unknown key"},
         BadRecipe{with("", R"(, "evaluation": {"measurements": {"s": {"kind": "step_height"}}})"),
                   "/reconstruct/lateral/pixel_pitch_y_um", "an evaluation needs the distance of the pixels"},
