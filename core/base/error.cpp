@@ -1,92 +1,72 @@
 #include "core/base/error.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace fvd {
 
+namespace {
+
+struct NamedCode {
+  ErrorCode code;
+  std::string_view name;
+};
+
+using enum ErrorCode;
+constexpr std::array kNames{
+    NamedCode{kInternal, "internal"},
+    NamedCode{kBadInput, "bad_input"},
+    NamedCode{kBadConfig, "bad_config"},
+    NamedCode{kBadRecipe, "recipe_invalid"},
+    NamedCode{kUnknownRecipe, "unknown_recipe"},
+    NamedCode{kUnknownJob, "unknown_job"},
+    NamedCode{kNotReady, "not_ready"},
+    NamedCode{kBusy, "busy"},
+    NamedCode{kSeqConflict, "seq_conflict"},
+    NamedCode{kSeqStale, "seq_stale"},
+    NamedCode{kJobFailed, "job_failed"},
+    NamedCode{kTimeout, "timeout"},
+    NamedCode{kAborted, "aborted"},
+    NamedCode{kInterrupted, "interrupted"},
+    NamedCode{kShuttingDown, "shutting_down"},
+    NamedCode{kCameraDisconnected, "camera_disconnected"},
+    NamedCode{kCameraFramesLost, "camera_frames_lost"},
+    NamedCode{kCameraTimeout, "camera_timeout"},
+    NamedCode{kCameraSettings, "camera_settings"},
+    NamedCode{kStageDisconnected, "stage_disconnected"},
+    NamedCode{kStageLimit, "stage_limit"},
+    NamedCode{kStageNotHomed, "stage_not_homed"},
+    NamedCode{kStagePosition, "stage_position"},
+    NamedCode{kStageAlarm, "stage_alarm"},
+    NamedCode{kBadSlice, "bad_slice"},
+    NamedCode{kSliceLost, "slice_lost"},
+    NamedCode{kFocusRange, "focus_range_insufficient"},
+    NamedCode{kTooFewValid, "too_few_valid_points"},
+    NamedCode{kMemoryBudget, "memory_budget"},
+    NamedCode{kStorageFull, "storage_full"},
+    NamedCode{kStorageWrite, "storage_write_failed"},
+    NamedCode{kDatabase, "db_failed"},
+    NamedCode{kRecipeConflict, "recipe_conflict"},
+    NamedCode{kSurfaceFile, "surface_file"},
+    NamedCode{kRegionOutside, "region_outside"},
+    NamedCode{kCalibrationMissing, "calibration_missing"},
+    NamedCode{kObjectiveMismatch, "objective_mismatch"},
+    NamedCode{kStudyRefused, "study_refused"},
+};
+static_assert(kNames.size() == static_cast<std::size_t>(kLastErrorCode) + 1);
+
+}  // namespace
+
 std::string_view error_name(ErrorCode code) noexcept {
-  switch (code) {
-    case ErrorCode::kInternal:
-      return "internal";
-    case ErrorCode::kBadInput:
-      return "bad_input";
-    case ErrorCode::kBadConfig:
-      return "bad_config";
-    case ErrorCode::kBadRecipe:
-      return "recipe_invalid";
-    case ErrorCode::kUnknownRecipe:
-      return "unknown_recipe";
-    case ErrorCode::kUnknownJob:
-      return "unknown_job";
-    case ErrorCode::kNotReady:
-      return "not_ready";
-    case ErrorCode::kBusy:
-      return "busy";
-    case ErrorCode::kSeqConflict:
-      return "seq_conflict";
-    case ErrorCode::kSeqStale:
-      return "seq_stale";
-    case ErrorCode::kJobFailed:
-      return "job_failed";
-    case ErrorCode::kTimeout:
-      return "timeout";
-    case ErrorCode::kAborted:
-      return "aborted";
-    case ErrorCode::kInterrupted:
-      return "interrupted";
-    case ErrorCode::kShuttingDown:
-      return "shutting_down";
-    case ErrorCode::kCameraDisconnected:
-      return "camera_disconnected";
-    case ErrorCode::kCameraFramesLost:
-      return "camera_frames_lost";
-    case ErrorCode::kCameraTimeout:
-      return "camera_timeout";
-    case ErrorCode::kCameraSettings:
-      return "camera_settings";
-    case ErrorCode::kStageDisconnected:
-      return "stage_disconnected";
-    case ErrorCode::kStageLimit:
-      return "stage_limit";
-    case ErrorCode::kStageNotHomed:
-      return "stage_not_homed";
-    case ErrorCode::kStagePosition:
-      return "stage_position";
-    case ErrorCode::kStageAlarm:
-      return "stage_alarm";
-    case ErrorCode::kBadSlice:
-      return "bad_slice";
-    case ErrorCode::kSliceLost:
-      return "slice_lost";
-    case ErrorCode::kFocusRange:
-      return "focus_range_insufficient";
-    case ErrorCode::kTooFewValid:
-      return "too_few_valid_points";
-    case ErrorCode::kMemoryBudget:
-      return "memory_budget";
-    case ErrorCode::kStorageFull:
-      return "storage_full";
-    case ErrorCode::kStorageWrite:
-      return "storage_write_failed";
-    case ErrorCode::kDatabase:
-      return "db_failed";
-    case ErrorCode::kRecipeConflict:
-      return "recipe_conflict";
-    case ErrorCode::kSurfaceFile:
-      return "surface_file";
-    case ErrorCode::kRegionOutside:
-      return "region_outside";
-    case ErrorCode::kCalibrationMissing:
-      return "calibration_missing";
-    case ErrorCode::kObjectiveMismatch:
-      return "objective_mismatch";
-    case ErrorCode::kStudyRefused:
-      return "study_refused";
+  for (const NamedCode& known : kNames) {
+    if (known.code == code) return known.name;
   }
   return "internal";
 }
 
 ErrorCode error_from_name(std::string_view name) noexcept {
-  for (int code = 0; code <= static_cast<int>(kLastErrorCode); ++code) {
-    if (error_name(static_cast<ErrorCode>(code)) == name) return static_cast<ErrorCode>(code);
+  for (const NamedCode& known : kNames) {
+    if (known.name == name) return known.code;
   }
   return ErrorCode::kInternal;
 }

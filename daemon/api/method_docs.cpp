@@ -154,7 +154,8 @@ void write_errors(std::ostream& out) {
     bool retry;
     std::string_view meaning;
   };
-  std::map<int, Row> errors{{kNotAllowed, {kNotAllowedName, false, "this caller may not do that: ask who looks after the instrument"}}};
+  std::map<int, Row> errors{
+      {kNotAllowed, {kNotAllowedName, false, "this caller may not do that: ask who looks after the instrument"}}};
   for (int i = 0; i <= static_cast<int>(kLastErrorCode); ++i) {
     const auto code = static_cast<ErrorCode>(i);
     const RpcError wire = rpc_error(code);

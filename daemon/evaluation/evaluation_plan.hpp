@@ -133,7 +133,7 @@ struct EvaluationPlan {
   std::map<std::string, PlannedRegion> regions;
   std::map<std::string, PlannedMeasurement> measurements;
   PlannedDecision decision;
-  std::optional<double> expansion_per_k;  ///< of the part's material; absent = not known
+  std::optional<double> expansion_per_k;                           ///< of the part's material; absent = not known
   std::vector<std::string> order;                                  ///< of the measurements, as the document has them
   std::map<std::string, std::shared_ptr<const RegionMask>> masks;  ///< by file name; not of the document
 

@@ -51,9 +51,7 @@ class Engine {
     thread_.start();
   }
 
-  [[nodiscard]] Services services() {
-    return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_};
-  }
+  [[nodiscard]] Services services() { return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_}; }
 
   /// The instrument's constants, in <state_dir>/calibration. context: any thread.
   [[nodiscard]] CalibrationBook& calibrations() { return calibrations_; }

@@ -61,7 +61,7 @@ std::size_t evaluation_bytes(const EvaluationPlan& plan, std::size_t pixels) {
   std::size_t working = kMeasurementBytesPerPixel + weight_map_bytes(plan);
   if (has_step(plan, "filter")) working = std::max(working, kFilterBytesPerPixel);
   if (has_autocorrelation(plan)) working = std::max(working, kMeasurementBytesPerPixel + kAutocorrelationBytesPerPixel);
-  bytes += working + plan.masks.size();  // a byte a point each
+  bytes += working + plan.masks.size();                                            // a byte a point each
   if (has_step(plan, "flatness_reference")) bytes += 2 * kReferenceBytesPerPixel;  // as kept, and divided by alpha_z
   if (has_step(plan, "mask_reasons")) bytes += sizeof(MaskReasons) * (1 + plan.surfaces.size());
   return bytes * pixels;

@@ -83,7 +83,8 @@ Part part_with_step() {
 
 template <typename T>
 T given(StepOutcome<T> outcome) {
-  if (const auto* refusal = std::get_if<StepRefusal>(&outcome)) ADD_FAILURE() << step_refusal_name(refusal->code) << ": " << refusal->text;
+  if (const auto* refusal = std::get_if<StepRefusal>(&outcome))
+    ADD_FAILURE() << step_refusal_name(refusal->code) << ": " << refusal->text;
   return std::get<T>(std::move(outcome));
 }
 
