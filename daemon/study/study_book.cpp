@@ -113,13 +113,16 @@ std::vector<BrokenStudy> StudyBook::broken() const {
   return all;
 }
 
-std::map<std::string, Repeatability> StudyBook::newest_repeatability(const std::string& recipe_id) const {
+std::map<std::string, Repeatability> StudyBook::newest_repeatability(const std::string& recipe_id,
+                                                                     const std::string& objective,
+                                                                     bool simulated) const {
   std::map<std::string, Repeatability> newest;
   if (recipe_id.empty()) return newest;  // of jobs with different recipes
   const MutexLock lock(mutex_);
   for (auto at = studies_.rbegin(); at != studies_.rend(); ++at) {
     const Study& study = at->second;
     if (study.recipe_id != recipe_id || !study.kind.starts_with("gauge.")) continue;
+    if (study.objective != objective || study.simulated != simulated) continue;
     try {
       const auto found = repeatability_of(study);
       if (found) newest.emplace(found->name, Repeatability{found->sd, found->dof, study.id});
@@ -128,10 +131,6 @@ std::map<std::string, Repeatability> StudyBook::newest_repeatability(const std::
     }
   }
   return newest;
-}
-
-std::map<std::string, Repeatability> newest_repeatability(const StudyBook& book, const std::string& recipe_id) {
-  return book.newest_repeatability(recipe_id);
 }
 
 }  // namespace fvd

@@ -40,8 +40,12 @@ class StudyBook {
   [[nodiscard]] std::vector<Study> list() const;
   [[nodiscard]] std::vector<BrokenStudy> broken() const;
 
-  /// By "measurement.value": of each value of this recipe the newest gauge study's figure.
-  [[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const std::string& recipe_id) const;
+  /// By "measurement.value": of each value of this recipe the newest gauge study's figure, of jobs that were measured
+  /// with this objective ("" = none is named), by a simulator or not: what a simulator scatters says nothing of an
+  /// instrument.
+  [[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const std::string& recipe_id,
+                                                                          const std::string& objective,
+                                                                          bool simulated) const;
 
   [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const { return folder_ / id; }
 
@@ -52,9 +56,5 @@ class StudyBook {
   std::map<int, BrokenStudy> broken_ FVD_GUARDED_BY(mutex_);
   int last_ FVD_GUARDED_BY(mutex_) = 0;
 };
-
-/// The same as StudyBook::newest_repeatability(), for those who are given the book.
-[[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const StudyBook& book,
-                                                                        const std::string& recipe_id);
 
 }  // namespace fvd

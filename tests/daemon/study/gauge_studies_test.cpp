@@ -124,9 +124,9 @@ TEST_F(AGauge, IsJudgedByBothStudies) {
 }
 
 TEST_F(AGauge, TellsEvaluationsItsRepeatability) {
-  EXPECT_TRUE(newest_repeatability(*studies_, "part").empty());
+  EXPECT_TRUE(studies_->newest_repeatability("part", "", true).empty());
   (void)make("gauge.type1", fifty_scans());
-  const auto first = newest_repeatability(*studies_, "part");
+  const auto first = studies_->newest_repeatability("part", "", true);
   ASSERT_TRUE(first.contains("step.height_um"));
   EXPECT_NEAR(first.at("step.height_um").sd, 0.1010153, 1e-7);
   EXPECT_EQ(first.at("step.height_um").dof, 49.0);
@@ -134,13 +134,21 @@ TEST_F(AGauge, TellsEvaluationsItsRepeatability) {
   (void)make("gauge.rr", crossed_scans());
   open_desk();
 
-  const auto newest = newest_repeatability(*studies_, "part");
+  const auto newest = studies_->newest_repeatability("part", "", true);
   EXPECT_EQ(newest.size(), 1U);
   EXPECT_EQ(newest.at("step.height_um").study, "study-0002");
   EXPECT_NEAR(newest.at("step.height_um").sd, 0.1224745, 1e-7);
   EXPECT_EQ(newest.at("step.height_um").dof, 8.0) << "6 of the trials and 2 of the pooled interaction";
-  EXPECT_TRUE(newest_repeatability(*studies_, "another").empty());
-  EXPECT_TRUE(newest_repeatability(*studies_, "").empty());
+  EXPECT_TRUE(studies_->newest_repeatability("another", "", true).empty());
+  EXPECT_TRUE(studies_->newest_repeatability("", "", true).empty());
+}
+
+TEST_F(AGauge, TellsNothingOfAnotherObjectiveOrOfAnInstrumentThatIsNoSimulator) {
+  (void)make("gauge.type1", fifty_scans());
+
+  EXPECT_FALSE(studies_->newest_repeatability("part", "", true).empty());
+  EXPECT_TRUE(studies_->newest_repeatability("part", "50x", true).empty());
+  EXPECT_TRUE(studies_->newest_repeatability("part", "", false).empty());
 }
 
 TEST_F(AGauge, EvaluatesSurfacesAnewWithARecipe) {
