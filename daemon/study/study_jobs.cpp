@@ -135,6 +135,7 @@ const Evaluation& StudyJobs::evaluation_of(const std::string& id, const std::str
   ResultSurface read = read_result_surface(found.folder);
   EvaluationContext context = read_evaluation_context(found.folder, read.result);
   note_window(read.result.focus, read.surface);
+  keep_repeatability_of(*recipe_, found.result, context);
   context.calibration = found.result.calibration;
   if (corrected == Corrected::kUndone && context.calibration) context.calibration->z.reset();
   return found.evaluation.emplace(evaluate_surface(read.surface, recipe_->evaluation, context, nullptr));
