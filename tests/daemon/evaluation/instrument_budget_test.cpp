@@ -5,6 +5,8 @@
 #include <memory>
 #include <numbers>
 
+#include <nlohmann/json.hpp>
+
 #include "daemon/evaluation/value_names.hpp"
 #include "tests/daemon/evaluation/made_surfaces.hpp"
 
@@ -160,6 +162,38 @@ TEST(TheBudgetOfAProfile, IsThatOfATexture) {
   EXPECT_NEAR(relative(value_in(evaluation, "p", "RSm_um"), "lateral"), 0.003, 1e-9);
   EXPECT_NEAR(relative(value_in(evaluation, "p", "Rdq"), "lateral"), 0.003, 1e-9);
   EXPECT_THAT(evaluation.measurements.at("p").not_evaluated, Not(Contains("lateral")));
+}
+
+double noise_floor_in(const Evaluation& evaluation) {
+  return nlohmann::json::parse(evaluation.measurements.at("t").details)["noise_floor_Sq_um"].get<double>();
+}
+
+TEST(TheNoiseFloor, IsWhatScansShowedNotWhatStandardErrorsTell) {
+  const std::string plan = R"({"measurements": {"t": {"kind": "areal", "parameters": ["Sq"],
+                                                      "limits": {"Sq_um": {"lower": 0.1}}}}})";
+  EvaluationContext context = whole();
+  const Evaluation told = evaluated(waves(), plan, context);
+  context.calibration->z->alpha_z = 1.25;
+  context.calibration->noise = NoiseConstants{2.0, {}};
+
+  const Evaluation seen = evaluated(waves(), plan, context);
+
+  EXPECT_NEAR(noise_floor_in(told), 0.2, 1e-6);
+  EXPECT_EQ(value_in(told, "t", "Sq_um").verdict, Verdict::kPass);
+  EXPECT_NEAR(noise_floor_in(seen), 2.0 / 1.25, 1e-12);  // above half of Sq, 2.5 / 1.25
+  EXPECT_EQ(value_in(seen, "t", "Sq_um").verdict, Verdict::kUncertain);
+}
+
+TEST(TheNoiseFloor, FallsBehindAFilterAsTheStandardErrorsDo) {
+  const std::string plan = R"({"surfaces": {"s": {"steps": [{"op": "filter", "side": "S", "nesting_um": 20}]}},
+    "measurements": {"t": {"kind": "areal", "surface": "s", "parameters": ["Sq"]}}})";
+  EvaluationContext context = known_slices();
+  const double told_um = noise_floor_in(evaluated(waves(), plan, context));
+  context.calibration = Calibration{};
+  context.calibration->noise = NoiseConstants{0.3, {}};
+
+  EXPECT_LT(told_um, 0.19);
+  EXPECT_NEAR(noise_floor_in(evaluated(waves(), plan, context)), 0.3 / 0.2 * told_um, 1e-4);
 }
 
 TEST(TheLateralEntry, CountsAPitchThatWasNotCorrected) {
