@@ -1,29 +1,17 @@
 #include "daemon/jobs/job_constants.hpp"
 
-#include <algorithm>
-
 #include "core/base/error.hpp"
+#include "daemon/pipeline/evaluation_input.hpp"
 #include "daemon/surface_files/reference_map.hpp"
 
 namespace fvd {
-
-namespace {
-
-bool asks_for_reference(const EvaluationPlan& plan) {
-  const auto asks = [](const PlannedOperation& step) { return step.op == "flatness_reference"; };
-  return std::any_of(plan.surfaces.begin(), plan.surfaces.end(), [&asks](const auto& surface) {
-    return std::any_of(surface.second.steps.begin(), surface.second.steps.end(), asks);
-  });
-}
-
-}  // namespace
 
 void note_constants(const Recipe& recipe, const CalibrationBook& calibrations, const RepeatabilityOf& repeatability,
                     ResultData& result) {
   result.calibration = calibrations.current(result.objective.empty() ? recipe.objective : result.objective);
   const bool has_map =
       result.calibration && result.calibration->flatness && !result.calibration->flatness->reference.empty();
-  if (has_map && asks_for_reference(recipe.evaluation)) {
+  if (has_map && asks_for_reference_map(recipe.evaluation)) {
     try {
       result.flatness_reference = read_reference_map(calibrations.folder(), result.calibration->flatness->reference);
     } catch (const Error& failure) {

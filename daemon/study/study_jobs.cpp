@@ -10,6 +10,7 @@
 #include "daemon/evaluation/surface_chain.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/pipeline/evaluation_input.hpp"
+#include "daemon/pipeline/job_memory.hpp"
 #include "daemon/study/study_draft.hpp"
 #include "daemon/surface_files/result_folder.hpp"
 
@@ -132,11 +133,14 @@ const Evaluation& StudyJobs::evaluation_of(const std::string& id, const std::str
   if (found.evaluation) return *found.evaluation;
   if (!recipe_) recipe_ = sources_.recipe(recipe);
   if (recipe_->evaluation.empty()) refuse("recipe " + recipe + " has no measurements");
+  const Result::Focus& focus = found.result.focus;
+  require_evaluation_memory(*recipe_, focus.width_px, focus.height_px, sources_.memory_budget_bytes);
   ResultSurface read = read_result_surface(found.folder);
   EvaluationContext context = read_evaluation_context(found.folder, read.result);
   note_window(read.result.focus, read.surface);
   keep_repeatability_of(*recipe_, found.result, context);
   context.calibration = found.result.calibration;
+  read_asked_reference_map(recipe_->evaluation, sources_.calibration_dir, context);
   if (corrected == Corrected::kUndone && context.calibration) context.calibration->z.reset();
   return found.evaluation.emplace(evaluate_surface(read.surface, recipe_->evaluation, context, nullptr));
 }
