@@ -94,7 +94,9 @@ bool knows_temperature(const MeasurementInput& input) {
 void add_instrument(const MeasurementInput& input, const std::string& key, ValueInput& value) {
   if (!value.value || value.exact) return;
   Budget& budget = value.budget;
-  if (const Repeatability* found = repeatability_of(input, key)) {
+  const Repeatability* const found = repeatability_of(input, key);
+  // Values that never differed, as counts in disguise, would alone pass for values without error.
+  if (found != nullptr && (found->sd > 0.0 || !budget.entries.empty())) {
     if (budget.entries.empty()) value.u_method = "repeated";
     add_repeatability(*found, budget);
   } else {

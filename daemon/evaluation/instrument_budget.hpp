@@ -16,7 +16,8 @@ namespace fvd {
 ///
 /// repeatability, type A: sqrt(max(0, sd^2 - sum of the other entries of type A)^2)) with the study's dof: what
 /// scatters
-///   from scan to scan and noise does not explain. Own definition.
+///   from scan to scan and noise does not explain. A scatter of 0 is no uncertainty where nothing else is known. Own
+///   definition.
 /// alpha_z: |p_z v| u(alpha_z) / alpha_z. Not of cutting edges, where flanks of unknown angle mix x and z.
 /// l_z, of steps and levels: l_z / sqrt 3, rectangular.
 /// flatness, of steps and levels: z_FLT / (2 sqrt 3), as each place may lie anywhere within z_FLT; where the reference

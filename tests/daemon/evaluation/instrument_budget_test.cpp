@@ -242,6 +242,19 @@ TEST(Repeatability, AddsNothingWhereTheNoiseExplainsItAll) {
   EXPECT_FALSE(height.dof);
 }
 
+TEST(Repeatability, OfValuesThatNeverDifferedIsNoUncertaintyByItself) {
+  EvaluationContext context = known_slices();
+  context.repeatability["step.width_um"] = {0.0, 24.0, "study-9"};
+
+  const Evaluation evaluation = evaluated(
+      level_groove(),
+      R"({"measurements": {"step": {"kind": "step_height", "edges_um": [105, 195], "limits": {"width_um": {"lower": 80}}}}})",
+      context);
+
+  EXPECT_FALSE(value_in(evaluation, "step", "width_um").u);
+  EXPECT_EQ(value_in(evaluation, "step", "width_um").verdict, Verdict::kUncertain);
+}
+
 TEST(Repeatability, OfAnotherMeasurementOrValueIsNotTaken) {
   EvaluationContext context = known_slices();
   context.repeatability["other.height_um"] = {1.0, 24.0, "study-9"};
