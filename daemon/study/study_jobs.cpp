@@ -36,6 +36,17 @@ std::string names_of(const auto& map) {
   return names.empty() ? "none" : names;
 }
 
+/// What does not scatter from scan to scan: the constants, the temperature, the flat's form. Slices' z do.
+double u_common_of(const EvaluatedValue& value, Corrected corrected) {
+  double squares = 0.0;
+  for (const UncertaintyLine& line : value.budget) {
+    const bool sought = corrected == Corrected::kUndone && (line.source == "alpha_z" || line.source == "l_z");
+    if (line.type == "A" || line.source == "slice_z" || sought) continue;
+    squares += line.u * line.u;
+  }
+  return std::sqrt(squares);
+}
+
 /// Without what the constants bring: they are what is sought.
 std::optional<double> u_of(const EvaluatedValue& value, Corrected corrected) {
   if (!value.u || corrected == Corrected::kAsMeasured || value.budget.empty()) return value.u;
@@ -164,11 +175,12 @@ JobValue StudyJobs::value(const std::string& id, const EvaluatedChoice& what, co
   if (!found.value || !std::isfinite(*found.value)) {
     refuse("job " + id + ": " + name + " has no number" + (found.reason.empty() ? "" : ": " + found.reason));
   }
-  JobValue taken{name, found.unit, *found.value, u_of(found, corrected)};
+  JobValue taken{name, found.unit, *found.value, u_of(found, corrected), u_common_of(found, corrected)};
   if (corrected == Corrected::kUndone && recipe.empty()) {
     const double factor = undoing_factor(result(id), evaluation.calibration, found.unit);
     taken.value *= factor;
     if (taken.u) *taken.u *= factor;
+    taken.u_common *= factor;
   }
   return taken;
 }

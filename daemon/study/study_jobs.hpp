@@ -40,6 +40,7 @@ struct JobValue {
   std::string unit;
   double value = 0.0;
   std::optional<double> u;  ///< standard uncertainty; with kUndone without those of the constants
+  double u_common = 0.0;    ///< the part of u that further scans of the same place have too
 };
 
 /// The jobs of one study; files are read when they are asked for. context: one thread; sources outlive it.

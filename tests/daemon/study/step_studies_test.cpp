@@ -76,6 +76,25 @@ TEST_F(AStepStudy, TakesScansOfOneArtefactAsOne) {
   EXPECT_TRUE(warns(study, "one_step"));
 }
 
+TEST_F(AStepStudy, DoesNotAverageWhatAllScansShare) {
+  StepRequest request;
+  for (int i = 0; i < 4; ++i) {
+    ResultData data = job_data("c" + std::to_string(i));
+    data.evaluation = test::evaluation_of(50.0, 0.05);
+    data.evaluation->measurements["step"].values["height_um"].budget = {
+        {.source = "noise", .type = "A", .u = 0.02},
+        {.source = "slice_z", .type = "B", .u = 0.02},
+        {.source = "flatness", .type = "B", .u = std::sqrt(0.0017)},
+        {.source = "alpha_z", .type = "B", .u = 9.0}};
+    know(data);
+    request.steps.push_back(step_of(data.job_id, 50.0, 0.0));
+  }
+
+  const Study study = make("calibrate.z", request);
+
+  EXPECT_NEAR(study.find("alpha_z")->u.value(), std::sqrt(0.0008 / 4.0 + 0.0017) / 50.0, 1e-9);
+}
+
 TEST_F(AStepStudy, AddsWhatTheCertificatesShare) {
   StepRequest request = three_steps(1.0);
   const double u_alone = make("calibrate.z", request).find("alpha_z")->u.value();
