@@ -22,7 +22,7 @@ struct BrokenStudy {
   std::string reason;
 };
 
-/// context: every function thread-safe; blocks for files but for what only reads.
+/// context: every function thread-safe; keep() blocks for files, those that only read never wait for it.
 class StudyBook {
  public:
   /// Reads <folder>/*/study.json; no such folder = no studies yet. What a killed process left is cleared away. One that
@@ -50,7 +50,10 @@ class StudyBook {
   [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const { return folder_ / id; }
 
  private:
+  [[nodiscard]] int next_number() const;
+
   const std::filesystem::path folder_;
+  Mutex keeping_;  ///< held while a folder is written; before mutex_
   mutable Mutex mutex_;
   std::map<int, Study> studies_ FVD_GUARDED_BY(mutex_);
   std::map<int, BrokenStudy> broken_ FVD_GUARDED_BY(mutex_);

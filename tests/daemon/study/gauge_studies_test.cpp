@@ -207,6 +207,30 @@ TEST_F(AGauge, EvaluatesSurfacesAnewWithTheReferenceMapThatTheyName) {
   FVD_EXPECT_ERROR(kMemoryBudget, make("gauge.type1", request));
 }
 
+TEST_F(AGauge, IsReadWhileTheNextOneIsKept) {
+  const Study first = make("gauge.type1", fifty_scans());
+
+  (void)studies_->keep(StudyDraft{}, [this, &first](const Study&) {
+    EXPECT_EQ(studies_->list(), std::vector<Study>{first});  // a job that begins meanwhile looks for its repeatability
+    return std::string("report");
+  });
+
+  EXPECT_EQ(studies_->list().size(), 2U);
+}
+
+TEST_F(AGauge, IsThereAfterARestartHoweverManyJobsItHas) {
+  StudyDraft draft;
+  draft.study.kind = "gauge.rr";
+  for (int i = 0; i < 9000; ++i)
+    draft.study.values.push_back({std::string(60, 'j') + std::to_string(i), "step.height_um", 50.0, {}, {}, {}});
+  const Study kept = studies_->keep(std::move(draft), [](const Study&) { return std::string("report"); });
+  ASSERT_GT(std::filesystem::file_size(studies_->folder_of(kept.id) / "study.json"), std::uintmax_t{1} << 20U);
+
+  open_desk();
+
+  EXPECT_EQ(studies_->get(kept.id), kept);
+}
+
 TEST_F(AGauge, GivesTheSameReportForTheSameStudy) {
   const Study study = make("gauge.type1", fifty_scans());
   const std::string pdf = test::read_text(studies_->folder_of(study.id) / "report.pdf");
