@@ -6,9 +6,25 @@
 
 namespace fvd {
 
+namespace {
+
+/// As a whole: a version without some of its constants would be another one by the same name.
+void drop_those_of_a_simulator(ResultData& result) {
+  if (result.simulated || !result.calibration) return;
+  Calibration rest = *result.calibration;
+  if (!drop_simulated(rest)) return;
+  result.warnings.push_back(
+      {"calibration_simulated", "constants of the calibration " + rest.id +
+                                    " were found with a simulator: it is not used; calibrate this instrument"});
+  result.calibration.reset();
+}
+
+}  // namespace
+
 void note_constants(const Recipe& recipe, const CalibrationBook& calibrations, const RepeatabilityOf& repeatability,
                     ResultData& result) {
   result.calibration = calibrations.current(result.objective.empty() ? recipe.objective : result.objective);
+  drop_those_of_a_simulator(result);
   const bool has_map =
       result.calibration && result.calibration->flatness && !result.calibration->flatness->reference.empty();
   if (has_map && asks_for_reference_map(recipe.evaluation)) {

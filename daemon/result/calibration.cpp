@@ -17,6 +17,7 @@ void describe(ConstantsOrigin& origin, Fields& fields) {
   fields.text("certificate", origin.certificate, kMaxText_bytes, "number of the artefact's certificate");
   fields.text("accepted", origin.accepted, kMaxText_bytes, "when, UTC");
   fields.text("renew_by", origin.renew_by, kMaxText_bytes, "the last day that they are trusted on; empty = no end");
+  fields.boolean("simulated", origin.simulated, "found with a simulator: not used by an instrument");
 }
 
 void describe(ZConstants& z, Fields& fields) {
@@ -88,6 +89,21 @@ void describe(Calibration& calibration, Fields& fields) {
   part(fields, "noise", calibration.noise, "from scan to scan");
   part(fields, "lateral", calibration.lateral, "in the image");
   part(fields, "texture", calibration.texture, "of texture values");
+}
+
+bool drop_simulated(Calibration& calibration) {
+  bool dropped = false;
+  const auto drop = [&dropped](auto& constants) {
+    if (!constants || !constants->origin.simulated) return;
+    constants.reset();
+    dropped = true;
+  };
+  drop(calibration.z);
+  drop(calibration.flatness);
+  drop(calibration.noise);
+  drop(calibration.lateral);
+  drop(calibration.texture);
+  return dropped;
 }
 
 std::string calendar_day(std::chrono::system_clock::time_point time) {

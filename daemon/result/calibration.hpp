@@ -18,6 +18,7 @@ struct ConstantsOrigin {
   std::string certificate;  ///< number of the artefact's certificate; empty = none
   std::string accepted;     ///< UTC, "2026-11-29T20:15:00Z"
   std::string renew_by;     ///< the last day that they are trusted on, "2027-11-29"; empty = no end
+  bool simulated = false;   ///< found with a simulator: they say nothing of an instrument
   bool operator==(const ConstantsOrigin&) const = default;
 };
 
@@ -84,6 +85,9 @@ struct Calibration {
 
 /// Written and read back by config/field_writer.hpp and field_reader.hpp.
 void describe(Calibration& calibration, Fields& fields);
+
+/// Takes out the parts that were found with a simulator; returns whether there were any.
+bool drop_simulated(Calibration& calibration);
 
 /// The day in UTC, "2026-11-29".
 [[nodiscard]] std::string calendar_day(std::chrono::system_clock::time_point time);

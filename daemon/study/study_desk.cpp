@@ -179,9 +179,11 @@ AcceptedConstants StudyDesk::accept(const AcceptRequest& request, const std::str
   origin.person = request.person;
   origin.certificate = request.certificate;
   origin.renew_by = request.renew_by;
+  origin.simulated = study.simulated;
   return {calibrations_.add(study.objective,
                             [&](Calibration& next) {
                               origin.accepted = next.created;
+                              if (!simulated_) (void)drop_simulated(next);
                               return take_over(study, studies_.folder_of(study.id), origin, next);
                             }),
           false};

@@ -209,6 +209,24 @@ TEST_F(AStepStudy, KeepsConstantsOfASimulatorFromTheInstrument) {
   FVD_EXPECT_ERROR_SAYING(kStudyRefused, desk_->accept(acceptance(study.id), kToday), HasSubstr("simulated"));
 }
 
+TEST_F(AStepStudy, OfTheInstrumentReplacesConstantsOfASimulator) {
+  (void)desk_->accept(acceptance(make("calibrate.z", three_steps(1.004)).id), kToday);
+  ASSERT_TRUE(calibrations_->current("")->z->origin.simulated);
+  open_desk(false);
+  NoiseRequest request;
+  for (int i = 0; i < 2; ++i) {
+    ResultData data = surface_data("n" + std::to_string(i), [i](int x, int y) { return (x * 7 + y * 3) % (11 + i); });
+    data.simulated = false;
+    keep(data);
+    request.jobs.push_back(data.job_id);
+  }
+
+  const Calibration next = desk_->accept(acceptance(make("calibrate.noise", request).id), kToday).calibration;
+
+  EXPECT_FALSE(next.noise->origin.simulated);
+  EXPECT_FALSE(next.z);
+}
+
 TEST_F(AStepStudy, KeepsTheNumberOfAStudyThatCannotBeRead) {
   const Study study = make("calibrate.z", three_steps(1.004));
   test::write_text(studies_->folder_of(study.id) / "study.json", "{\"format\": 1");
