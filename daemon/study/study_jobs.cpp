@@ -40,7 +40,8 @@ std::string names_of(const auto& map) {
 double u_common_of(const EvaluatedValue& value, Corrected corrected) {
   double squares = 0.0;
   for (const UncertaintyLine& line : value.budget) {
-    const bool sought = corrected == Corrected::kUndone && (line.source == "alpha_z" || line.source == "l_z");
+    const bool sought =
+        corrected == Corrected::kUndone && (line.source == "alpha_z" || line.source == "l_z" || line.source == "lead");
     if (line.type == "A" || line.source == "slice_z" || sought) continue;
     squares += line.u * line.u;
   }
@@ -52,7 +53,7 @@ std::optional<double> u_of(const EvaluatedValue& value, Corrected corrected) {
   if (!value.u || corrected == Corrected::kAsMeasured || value.budget.empty()) return value.u;
   double squares = 0.0;
   for (const UncertaintyLine& line : value.budget) {
-    if (line.source == "alpha_z" || line.source == "l_z") continue;
+    if (line.source == "alpha_z" || line.source == "l_z" || line.source == "lead") continue;
     squares += line.u * line.u;
   }
   return std::sqrt(squares);

@@ -70,7 +70,7 @@ TEST(TheBudgetOfAStep, HasTheConstantsOfTheAxisAndTheFlat) {
   for (const UncertaintyLine& line : height.budget) squares += line.u * line.u;
   EXPECT_NEAR(height.u.value(), std::sqrt(squares), 1e-12);
   EXPECT_GT(height.u.value(), 0.1);
-  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, ::testing::ElementsAre("repeatability"));
+  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, ::testing::ElementsAre("lead", "repeatability"));
 }
 
 TEST(TheBudgetOfAStep, CountsTheUncertaintyOfTheAmplificationRelativeToIt) {
@@ -96,6 +96,23 @@ TEST(TheBudgetOfAStep, HasTheErrorOfTheReferenceInPlaceOfTheFlatness) {
                 context);
 
   EXPECT_DOUBLE_EQ(u_of(value_in(evaluation, "step", "height_um"), "flatness"), 0.004);
+}
+
+TEST(TheBudgetOfAStep, HasTheScrewsPeriodicErrorWhereItIsKnown) {
+  EvaluationContext context = whole();
+  context.calibration->z->lead_amplitude_um = 0.3;
+  context.calibration->z->lead_um = 500.0;
+
+  const Evaluation evaluation = evaluated(level_groove(), kGroove, context);
+
+  double squares = 0.0;  // over all phases
+  for (int i = 0; i < 1000; ++i) {
+    const double phase = 2.0 * std::numbers::pi * i / 1000.0;
+    const double error_um = 0.3 * (std::sin(phase + 2.0 * std::numbers::pi * 50.0 / 500.0) - std::sin(phase));
+    squares += error_um * error_um / 1000.0;
+  }
+  EXPECT_NEAR(u_of(value_in(evaluation, "step", "height_um"), "lead"), std::sqrt(squares), 1e-6);
+  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, Not(Contains("lead")));
 }
 
 TEST(TheBudgetOfAStep, IsTheSameForRegionsAndLevels) {
@@ -283,7 +300,7 @@ TEST(TheConstantsOfTheInstrument, AreAllUnknownWithoutACalibration) {
   context.temperature_c = 26.0;
 
   EXPECT_THAT(evaluated(level_groove(), kGroove, context).measurements.at("step").not_evaluated,
-              ::testing::ElementsAre("alpha_z", "flatness", "l_z", "repeatability"));
+              ::testing::ElementsAre("alpha_z", "flatness", "l_z", "lead", "repeatability"));
   EXPECT_THAT(evaluated(waves(), kTexture, context).measurements.at("t").not_evaluated,
               IsSupersetOf({"alpha_z", "flatness", "l_z", "lateral", "repeatability", "reproducibility"}));
 }
