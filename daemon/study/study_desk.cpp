@@ -153,9 +153,9 @@ StudyDraft StudyDesk::draft(const StudyRequest& request, StudyJobs& jobs) const 
   return std::visit(Overloaded{OfStudies{studies_}, OfJobs{jobs, purpose}}, request.input);
 }
 
-Study StudyDesk::make(const StudyRequest& request, std::stop_token stop) {
+Study StudyDesk::make(const StudyRequest& request, std::stop_token stop, std::function<void()> alive) {
   const MutexLock lock(making_);
-  StudyJobs jobs(sources_, std::move(stop));
+  StudyJobs jobs(sources_, std::move(stop), std::move(alive));
   StudyDraft made = draft(request, jobs);
   made.study.kind = request.kind;
   made.study.person = request.person;

@@ -71,9 +71,14 @@ double undoing_factor(const Result& result, const std::string& calibration, cons
 
 }  // namespace
 
+void StudyJobs::go_on() const {
+  if (stop_.stop_requested()) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
+  if (alive_) alive_();
+}
+
 StudyJobs::Job& StudyJobs::job(const std::string& id) {
   if (const auto found = jobs_.find(id); found != jobs_.end()) return found->second;
-  if (stop_.stop_requested()) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
+  go_on();
   const StoredJob stored = sources_.job(id);
   if (stored.result_dir.empty() || stored.result_json.empty()) {
     refuse("job " + id + " has no result: it " +
@@ -126,7 +131,7 @@ std::vector<metrology::HeightField> StudyJobs::fields(const std::vector<std::str
   check_memory(jobs);
   std::vector<metrology::HeightField> fields;
   for (const std::string& id : jobs) {
-    if (stop_.stop_requested()) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
+    go_on();
     fields.push_back(field(id, s_nesting_um));
     if (!same_shape(fields.front(), fields.back())) {
       refuse("job " + id + " has " + shape_text(fields.back()) + ", job " + jobs.front() + " has " +
@@ -143,6 +148,7 @@ const Evaluation& StudyJobs::evaluation_of(const std::string& id, const std::str
     refuse("job " + id + " evaluated nothing: give a recipe that has measurements");
   }
   if (found.evaluation) return *found.evaluation;
+  go_on();
   if (!recipe_) recipe_ = sources_.recipe(recipe);
   if (recipe_->evaluation.empty()) refuse("recipe " + recipe + " has no measurements");
   const Result::Focus& focus = found.result.focus;
