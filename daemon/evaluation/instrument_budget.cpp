@@ -58,6 +58,8 @@ double relative_lateral(const LateralConstants& constants, const metrology::Heig
   return std::hypot(u, away / kRectangular);
 }
 
+/// One step of known height has no residual, which is not to say that the axis is straight.
+bool knows_linearity(const ZConstants& z) { return z.linearity_um > 0.0; }
 bool knows_lead(const ZConstants& z) { return z.lead_amplitude_um > 0.0 && z.lead_um > 0.0; }
 
 /// Steps lie between two places: what the axis and the flat do from place to place.
@@ -65,7 +67,7 @@ void add_places(const MeasurementInput& input, double size, Budget& budget) {
   const Calibration& calibration = *input.context.calibration;
   if (calibration.z) {
     const ZConstants& z = *calibration.z;
-    add("l_z", z.linearity_um / kRectangular, budget);
+    if (knows_linearity(z)) add("l_z", z.linearity_um / kRectangular, budget);
     const double turns = size * z.alpha_z / z.lead_um;
     if (knows_lead(z)) add("lead", std::sqrt(2.0) * z.lead_amplitude_um * std::abs(std::sin(kPi * turns)), budget);
   }
@@ -127,7 +129,7 @@ std::vector<std::string> instrument_not_evaluated(const MeasurementInput& input)
   const bool has_z = calibration && calibration->z;
   std::vector<std::string> sources;
   if (!has_z || edge) sources.emplace_back("alpha_z");
-  if (!has_z || !step) sources.emplace_back("l_z");
+  if (!has_z || !step || !knows_linearity(*calibration->z)) sources.emplace_back("l_z");
   if (!has_z || !step || !knows_lead(*calibration->z)) sources.emplace_back("lead");
   const bool has_flatness = step ? calibration && calibration->flatness : input.surface.reference_subtracted && !edge;
   if (!has_flatness) sources.emplace_back("flatness");

@@ -19,7 +19,7 @@ namespace fvd {
 ///   from scan to scan and noise does not explain. A scatter of 0 is no uncertainty where nothing else is known. Own
 ///   definition.
 /// alpha_z: |p_z v| u(alpha_z) / alpha_z. Not of cutting edges, where flanks of unknown angle mix x and z.
-/// l_z, of steps and levels: l_z / sqrt 3, rectangular.
+/// l_z, of steps and levels: l_z / sqrt 3, rectangular; 0 is not known, as from one step.
 /// lead, of steps and levels, where the screw's periodic error of amplitude A and period L is known, its phase at the
 ///   part not: sqrt 2 A |sin(pi h / L)|, the quadratic mean over all phases of the difference of two places h apart.
 ///   Own definition.

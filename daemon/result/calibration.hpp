@@ -26,7 +26,7 @@ struct ConstantsOrigin {
 struct ZConstants {
   double alpha_z = 1.0;            ///< measured height over true height: heights are divided by it; 0.5..2
   double u_alpha_z = 0.0;          ///< standard uncertainty
-  double linearity_um = 0.0;       ///< l_z: the largest residual, absolute
+  double linearity_um = 0.0;       ///< l_z: the largest residual, absolute; 0 = not known, as from one step
   double lead_amplitude_um = 0.0;  ///< of the screw's periodic error, 0 = not known
   double lead_um = 0.0;            ///< its period
   ConstantsOrigin origin;

@@ -176,7 +176,7 @@ StudyDraft step_study(const StepRequest& request, Purpose purpose, StudyJobs& jo
     ZConstants constants;
     constants.alpha_z = z.alpha_z;
     constants.u_alpha_z = z.u_alpha_z;
-    constants.linearity_um = z.linearity_um;
+    constants.linearity_um = steps.size() > 1 ? z.linearity_um : 0.0;
     proposal.z = constants;
     draft.study.proposal = proposal;
   }

@@ -98,6 +98,16 @@ TEST(TheBudgetOfAStep, HasTheErrorOfTheReferenceInPlaceOfTheFlatness) {
   EXPECT_DOUBLE_EQ(u_of(value_in(evaluation, "step", "height_um"), "flatness"), 0.004);
 }
 
+TEST(TheBudgetOfAStep, DoesNotTakeAnUnknownLinearityForAStraightAxis) {
+  EvaluationContext context = whole();
+  context.calibration->z->linearity_um = 0.0;
+
+  const Evaluation evaluation = evaluated(level_groove(), kGroove, context);
+
+  EXPECT_TRUE(std::isnan(u_of(value_in(evaluation, "step", "height_um"), "l_z")));
+  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, Contains("l_z"));
+}
+
 TEST(TheBudgetOfAStep, HasTheScrewsPeriodicErrorWhereItIsKnown) {
   EvaluationContext context = whole();
   context.calibration->z->lead_amplitude_um = 0.3;

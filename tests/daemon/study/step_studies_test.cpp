@@ -74,6 +74,7 @@ TEST_F(AStepStudy, TakesScansOfOneArtefactAsOne) {
   EXPECT_EQ(figure(study, "artefacts"), 1.0);
   EXPECT_EQ(figure(study, "scans"), 4.0);
   EXPECT_TRUE(warns(study, "one_step"));
+  EXPECT_EQ(study.proposal->z->linearity_um, 0.0) << "not known";
 }
 
 TEST_F(AStepStudy, DoesNotAverageWhatAllScansShare) {
