@@ -53,9 +53,6 @@ int finish(const Desk& desk, RpcClient& client, const std::string& method, Json 
 }
 
 int run_maps(const Desk& desk, const std::string& method) {
-  constexpr int kMostMaps = 20;
-  // Before the stage moves for nothing.
-  if (desk.a.scans > kMostMaps) throw UsageError("--scans: a study of maps takes 20 scans at most");
   RpcClient client = desk.connect();
   Json params{{"jobs", jobs_of(desk, client)}};
   put(params, "s_nesting_um", desk.a.s_nesting_um);

@@ -37,7 +37,7 @@ std::string missing_calibration(const PlannedOperation& step, const EvaluationCo
            "recipe";
   }
   return "the reference map " + calibration.flatness->reference + " of the calibration " + calibration.id +
-         " is not at hand; fvdctl measure is told its folder by --calibration";
+         " is not at hand: say its folder with --calibration";
 }
 
 metrology::OperationReport lateral_operation(const EvaluationContext& context, Plane<MaskReasons>* reasons,

@@ -11,7 +11,6 @@
 #include "core/runtime/thread_ticks.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/result_json.hpp"
-#include "daemon/pipeline/evaluation_input.hpp"
 #include "daemon/pipeline/evaluation_record.hpp"
 #include "daemon/pipeline/job_memory.hpp"
 
@@ -135,8 +134,7 @@ std::string ResultEvaluator::evaluated(const Order& order) const {
   row.recipe = order.recipe.id;
   row.recipe_sha256 = order.recipe.sha256;
   AtomicDirectory directory(deps_.results_dir / row.id);
-  StoredSurface source = read_stored_surface(order.source.result_dir);
-  read_asked_reference_map(order.recipe.evaluation, deps_.calibration_dir, source.context);
+  const StoredSurface source = read_stored_surface(order.source.result_dir);
   const EvaluationRecord record = write_evaluation_record(
       directory, source, order.recipe, {row.id, kVersion, std::chrono::system_clock::now()}, nullptr);
   directory.commit();

@@ -12,7 +12,6 @@
 #include "core/focus/lateral_period.hpp"
 #include "core/focus/window_kernel.hpp"
 #include "core/metrology/uncertainty/budget.hpp"
-#include "daemon/surface_files/reference_map.hpp"
 
 namespace fvd {
 
@@ -155,21 +154,6 @@ EvaluationContext read_evaluation_context(const std::filesystem::path& folder, c
   context.samples =
       samples_of(StepLogReader(log).slices(), result.focus.settings.bin_slices, result.encoder_resolution_um);
   return context;
-}
-
-bool asks_for_reference_map(const EvaluationPlan& plan) {
-  const auto asks = [](const PlannedOperation& step) { return step.op == "flatness_reference"; };
-  return std::any_of(plan.surfaces.begin(), plan.surfaces.end(), [&asks](const auto& surface) {
-    return std::any_of(surface.second.steps.begin(), surface.second.steps.end(), asks);
-  });
-}
-
-void read_asked_reference_map(const EvaluationPlan& plan, const std::filesystem::path& folder,
-                              EvaluationContext& context) {
-  const auto& calibration = context.calibration;
-  const bool has_map = calibration && calibration->flatness && !calibration->flatness->reference.empty();
-  if (!has_map || !asks_for_reference_map(plan)) return;
-  context.flatness_reference = read_reference_map(folder, calibration->flatness->reference);
 }
 
 void keep_repeatability_of(const Recipe& recipe, const Result& result, EvaluationContext& context) {

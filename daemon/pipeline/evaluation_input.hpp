@@ -28,14 +28,6 @@ void note_window(const Result::Focus& focus, Surface& surface);
 /// none.
 [[nodiscard]] EvaluationContext read_evaluation_context(const std::filesystem::path& folder, const Result& result);
 
-/// Whether the reference map of the calibration is needed.
-[[nodiscard]] bool asks_for_reference_map(const EvaluationPlan& plan);
-
-/// Reads the reference map that the context's calibration names from the calibration's folder, where the plan asks for
-/// it. Throws Error kSurfaceFile.
-void read_asked_reference_map(const EvaluationPlan& plan, const std::filesystem::path& folder,
-                              EvaluationContext& context);
-
 /// Before a result is evaluated by this recipe: gauge studies tell of the recipe that they were made with, so that an
 /// equal name in another one means nothing. Takes the repeatability away unless id or text are those of the result's.
 void keep_repeatability_of(const Recipe& recipe, const Result& result, EvaluationContext& context);

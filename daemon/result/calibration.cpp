@@ -91,19 +91,21 @@ void describe(Calibration& calibration, Fields& fields) {
   part(fields, "texture", calibration.texture, "of texture values");
 }
 
-bool drop_simulated(Calibration& calibration) {
-  bool dropped = false;
-  const auto drop = [&dropped](auto& constants) {
-    if (!constants || !constants->origin.simulated) return;
-    constants.reset();
-    dropped = true;
+bool has_simulated(const Calibration& calibration) {
+  Calibration rest = calibration;
+  drop_simulated(rest);
+  return rest != calibration;
+}
+
+void drop_simulated(Calibration& calibration) {
+  const auto drop = [](auto& constants) {
+    if (constants && constants->origin.simulated) constants.reset();
   };
   drop(calibration.z);
   drop(calibration.flatness);
   drop(calibration.noise);
   drop(calibration.lateral);
   drop(calibration.texture);
-  return dropped;
 }
 
 std::string calendar_day(std::chrono::system_clock::time_point time) {

@@ -86,8 +86,10 @@ struct Calibration {
 /// Written and read back by config/field_writer.hpp and field_reader.hpp.
 void describe(Calibration& calibration, Fields& fields);
 
-/// Takes out the parts that were found with a simulator; returns whether there were any.
-bool drop_simulated(Calibration& calibration);
+/// Whether a part of it was found with a simulator.
+[[nodiscard]] bool has_simulated(const Calibration& calibration);
+/// Takes such parts out.
+void drop_simulated(Calibration& calibration);
 
 /// The day in UTC, "2026-11-29".
 [[nodiscard]] std::string calendar_day(std::chrono::system_clock::time_point time);

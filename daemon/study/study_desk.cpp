@@ -183,7 +183,7 @@ AcceptedConstants StudyDesk::accept(const AcceptRequest& request, const std::str
   return {calibrations_.add(study.objective,
                             [&](Calibration& next) {
                               origin.accepted = next.created;
-                              if (!simulated_) (void)drop_simulated(next);
+                              if (!simulated_) drop_simulated(next);
                               return take_over(study, studies_.folder_of(study.id), origin, next);
                             }),
           false};

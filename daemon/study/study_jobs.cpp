@@ -158,7 +158,6 @@ const Evaluation& StudyJobs::evaluation_of(const std::string& id, const std::str
   note_window(read.result.focus, read.surface);
   keep_repeatability_of(*recipe_, found.result, context);
   context.calibration = found.result.calibration;
-  read_asked_reference_map(recipe_->evaluation, sources_.calibration_dir, context);
   if (corrected == Corrected::kUndone && context.calibration) context.calibration->z.reset();
   return found.evaluation.emplace(evaluate_surface(read.surface, recipe_->evaluation, context, nullptr));
 }

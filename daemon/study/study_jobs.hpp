@@ -3,7 +3,6 @@
 /// What jobs left behind, as studies take it.
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -26,7 +25,6 @@ struct StudySources {
   std::function<StoredJob(const std::string& job_id)> job;  ///< throws Error kUnknownJob
   std::function<Recipe(const std::string& id)> recipe;      ///< throws Error kUnknownRecipe, kBadRecipe
   std::size_t memory_budget_bytes = std::size_t{1} << 30U;
-  std::filesystem::path calibration_dir = {};  ///< with the reference maps that results name
 };
 
 /// How a job's value is taken.

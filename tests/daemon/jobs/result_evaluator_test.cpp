@@ -7,7 +7,6 @@
 
 #include "config/field_writer.hpp"
 #include "daemon/evaluation/evaluate_surface.hpp"
-#include "daemon/export/gsf.hpp"
 #include "daemon/pipeline/stored_surface.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 #include "tests/daemon/jobs/engine_bench.hpp"
@@ -83,28 +82,6 @@ TEST_F(AStoredResult, HasTheValuesOfTheSameEvaluationOfItsFolder) {
   const Evaluation same = evaluate_surface(stored.surface, recipe.evaluation, stored.context, nullptr);
   const json record = json::parse(results().stored(reply["id"].get<std::string>()).result_json);
   EXPECT_EQ(record["evaluation"], json_of(same));
-}
-
-TEST_F(AStoredResult, IsEvaluatedWithTheReferenceMapThatItNames) {
-  test::write_text(folder_.path() / "flat.json", R"({"format": 2,
-    "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 5}},
-    "reconstruct": {"lateral": {"pixel_pitch_x_um": 1, "pixel_pitch_y_um": 1}},
-    "evaluation": {"surfaces": {"s": {"steps": [{"op": "flatness_reference"}]}},
-                   "measurements": {"texture": {"kind": "areal", "surface": "s", "parameters": ["Sa"]}}}})");
-  (void)engine_->calibrations().add("", [](Calibration& next) {
-    next.flatness = FlatnessConstants{0.1, 0.01, next.id + "-flatness.gsf", {}};
-    return std::vector<CalibrationFile>{
-        {next.flatness->reference, encode_gsf(Plane<float>(16, 16), {"flat", 1.0, 1.0, {}})}};
-  });
-  const std::string job = jobs().start({2, "a", "part"}).job.job_id;
-  ASSERT_TRUE(await_end_of(2));
-
-  const DeviceTask::Outcome outcome = outcome_of(job, "flat");
-
-  ASSERT_EQ(outcome.error, std::nullopt) << outcome.message;
-  const std::string record = results().stored(job + "-e1").result_json;
-  EXPECT_THAT(record, HasSubstr("cal-0001"));
-  EXPECT_THAT(record, ::testing::Not(HasSubstr("not at hand")));
 }
 
 TEST_F(AStoredResult, StaysAsItWasHoweverOftenItIsEvaluated) {

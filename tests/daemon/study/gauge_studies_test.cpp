@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "daemon/export/gsf.hpp"
 #include "tests/daemon/study/study_bench.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -166,48 +165,19 @@ TEST_F(AGauge, EvaluatesSurfacesAnewWithARecipe) {
   request.tolerance = 2.0;
   request.recipe = "mean";
 
-  const Study study = make("gauge.type1", request);
+  int pieces = 0;
+  const Study study = desk_->make({"gauge.type1", "anna", request}, {}, [&pieces] { ++pieces; });
 
+  EXPECT_EQ(pieces, 6) << "each job is read and evaluated: hundreds of them take longer than one may";
   EXPECT_NEAR(figure(study, "mean"), 1.25, 1e-6);
   EXPECT_NEAR(figure(study, "sd"), 0.25, 1e-6);
   EXPECT_EQ(study.recipe_id, "mean");
   EXPECT_EQ(study.recipe_sha256, recipe_sha256(recipes_["mean"]));
-  request.recipe = "nowhere";
-  FVD_EXPECT_ERROR(kUnknownRecipe, make("gauge.type1", request));
-}
-
-TEST_F(AGauge, EvaluatesSurfacesAnewWithTheReferenceMapThatTheyName) {
-  recipes_["flat"] = R"({"format": 2, "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 5}},
-    "reconstruct": {"lateral": {"pixel_pitch_x_um": 1, "pixel_pitch_y_um": 1}},
-    "evaluation": {"surfaces": {"s": {"steps": [{"op": "flatness_reference"}]}},
-      "measurements": {"all": {"kind": "areal", "surface": "s", "parameters": ["Sz"]}}}})";
-  const Calibration constants = calibrations_->add("", [](Calibration& next) {
-    Plane<float> map(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; x += 5) map.at(x, y) = 1e-6F;
-    }
-    next.flatness = FlatnessConstants{1.0, 0.01, next.id + "-flatness.gsf", {}};
-    return std::vector<CalibrationFile>{{next.flatness->reference, encode_gsf(map, {"flat", 1.0, 1.0, {}})}};
-  });
-  Type1Request request;
-  for (int i = 0; i < 2; ++i) {
-    request.jobs.push_back("s" + std::to_string(i));
-    ResultData data = surface_data(
-        request.jobs.back(), [i](int x, int y) { return (x % 5 == 0 ? 1.0 : 0.0) + (y % 4 == 0 ? 0.5 + i : 0.0); });
-    data.calibration = constants;
-    keep(data);
-  }
-  request.what = {"all", "Sz_um"};
-  request.reference = 1.0;
-  request.tolerance = 2.0;
-  request.recipe = "flat";
-
-  int pieces = 0;
-  const Study study = desk_->make({"gauge.type1", "", request}, {}, [&pieces] { ++pieces; });
-  EXPECT_NEAR(figure(study, "mean"), 1.0, 1e-6);
-  EXPECT_EQ(pieces, 4) << "each job is read and evaluated: hundreds of them take longer than one may";
   open_desk(true, 1U << 10U);
   FVD_EXPECT_ERROR(kMemoryBudget, make("gauge.type1", request));
+  open_desk();
+  request.recipe = "nowhere";
+  FVD_EXPECT_ERROR(kUnknownRecipe, make("gauge.type1", request));
 }
 
 TEST_F(AGauge, IsReadWhileTheNextOneIsKept) {

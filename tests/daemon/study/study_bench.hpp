@@ -138,7 +138,7 @@ class AStudyDesk : public testing::Test {
                                  if (found == recipes_.end()) throw Error(ErrorCode::kUnknownRecipe, "no recipe " + id);
                                  return parse_recipe(found->second, id);
                                },
-                               memory_bytes, scratch_ / "calibration"};
+                               memory_bytes};
     desk_.emplace(sources, *studies_, *calibrations_, simulated);
   }
   void SetUp() override { open_desk(); }
