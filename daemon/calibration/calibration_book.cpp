@@ -103,7 +103,7 @@ std::string checked_text(std::vector<Calibration> versions) {
               "these constants cannot be kept: " + problems.front().pointer + ": " + problems.front().message);
 }
 
-/// In place of the old file as a whole: a power cut leaves the one or the other.
+/// In place of the old file as a whole: a power cut leaves the one or the other. The folder is still to be flushed.
 void replace_file(const fs::path& folder, const std::string& text) {
   const fs::path next = folder / (std::string(kFileName) + ".new");
   std::error_code error;
@@ -113,7 +113,6 @@ void replace_file(const fs::path& folder, const std::string& text) {
   if (error) {
     throw Error(ErrorCode::kStorageWrite, "cannot replace " + (folder / kFileName).string() + ": " + error.message());
   }
-  sync_directory(folder);
 }
 
 }  // namespace
@@ -148,26 +147,34 @@ std::vector<Calibration> CalibrationBook::versions() const {
 
 Calibration CalibrationBook::add(const std::string& objective,
                                  const std::function<std::vector<CalibrationFile>(Calibration& next)>& change) {
-  MutexLock lock(mutex_);
-  Calibration next = newest(objective).value_or(Calibration{});
-  next.id = id_of(versions_.size() + 1);
+  const MutexLock adding(adding_);
+  std::vector<Calibration> all = versions();
+  Calibration next = current(objective).value_or(Calibration{});
+  next.id = id_of(all.size() + 1);
   next.objective = objective;
   next.created = iso8601_utc(std::chrono::system_clock::now());
   const std::vector<CalibrationFile> files = change(next);
-  std::vector<Calibration> all = versions_;
   all.push_back(next);
   const std::string text = checked_text(all);
   std::error_code error;
-  fs::create_directories(folder_, error);
+  const bool is_new = fs::create_directories(folder_, error);
   if (error) throw Error(ErrorCode::kStorageWrite, "cannot make " + folder_.string() + ": " + error.message());
+  if (is_new) sync_directory(fs::absolute(folder_).parent_path());
   for (const CalibrationFile& file : files) {
     assert(file.name.starts_with(next.id) && file.name.find('/') == std::string::npos);
     fs::remove(folder_ / file.name, error);  // of a version that never came to be
     write_new_file(folder_ / file.name, file.bytes);
   }
   replace_file(folder_, text);
-  versions_ = std::move(all);
+  // From here on the file has the version: its number must not be given again, whatever comes of the flush.
+  keep(next);
+  sync_directory(folder_);
   return next;
+}
+
+void CalibrationBook::keep(const Calibration& next) {
+  const MutexLock lock(mutex_);
+  versions_.push_back(next);
 }
 
 }  // namespace fvd

@@ -19,7 +19,7 @@ struct CalibrationFile {
   std::string bytes;
 };
 
-/// context: every function thread-safe; blocks for files.
+/// context: every function thread-safe; add() blocks for files, those that only read never wait for it.
 class CalibrationBook {
  public:
   /// Reads <folder>/calibration.json; no such file = no versions yet. Throws Error kBadInput with the place of what is
@@ -34,7 +34,8 @@ class CalibrationBook {
   /// A new version: the objective's newest with `change` done to it, under a new id and with the time it is made. The
   /// id is known to `change`, which returns the files that it names and does not call the book. Durable at the return:
   /// files first, then calibration.json, replaced as a whole. Throws Error kStorageFull, kStorageWrite, and kBadInput
-  /// where a constant is out of its range; nothing has changed then.
+  /// where a constant is out of its range; nothing has changed then, but where the last flush failed: the version is
+  /// there then, though a power cut may take it away.
   Calibration add(const std::string& objective,
                   const std::function<std::vector<CalibrationFile>(Calibration& next)>& change);
 
@@ -42,8 +43,10 @@ class CalibrationBook {
 
  private:
   [[nodiscard]] std::optional<Calibration> newest(const std::string& objective) const FVD_REQUIRES(mutex_);
+  void keep(const Calibration& next);
 
   std::filesystem::path folder_;
+  Mutex adding_;  ///< held while files are written; before mutex_
   mutable Mutex mutex_;
   std::vector<Calibration> versions_ FVD_GUARDED_BY(mutex_);
 };

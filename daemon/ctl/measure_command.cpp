@@ -24,6 +24,7 @@
 #include "daemon/ctl/readable_range.hpp"
 #include "daemon/evaluation/evaluate_surface.hpp"
 #include "daemon/export/atomic_directory.hpp"
+#include "daemon/pipeline/evaluation_input.hpp"
 #include "daemon/pipeline/stored_surface.hpp"
 #include "daemon/recipes/recipe_masks.hpp"
 #include "daemon/surface_files/reference_map.hpp"
@@ -139,6 +140,7 @@ int run_measure(const MeasureArguments& arguments, const Terminal& terminal) {
   const std::optional<Recipe> recipe = read_measured_recipe(arguments.recipe, terminal);
   if (!recipe) return kExitConfig;
   StoredSurface input = read_input(arguments, terminal);
+  keep_repeatability_of(*recipe, input.result, input.context);
   if (arguments.noise_um) set_noise(*arguments.noise_um, input.surface);
   WorkerPool pool(0);
   const Evaluation evaluation = evaluate_surface(input.surface, recipe->evaluation, input.context, &pool);

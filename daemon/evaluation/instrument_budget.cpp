@@ -14,6 +14,7 @@ using metrology::BudgetEntry;
 using metrology::UncertaintyType;
 
 constexpr double kReference_c = 20.0;  ///< ISO 1:2022
+constexpr double kPi = 3.14159265358979323846;
 const double kRectangular = std::sqrt(3.0);
 
 bool is_step(const PlannedMeasurement& planned) {
@@ -57,10 +58,19 @@ double relative_lateral(const LateralConstants& constants, const metrology::Heig
   return std::hypot(u, away / kRectangular);
 }
 
+/// One step of known height has no residual, which is not to say that the axis is straight.
+bool knows_linearity(const ZConstants& z) { return z.linearity_um > 0.0; }
+bool knows_lead(const ZConstants& z) { return z.lead_amplitude_um > 0.0 && z.lead_um > 0.0; }
+
 /// Steps lie between two places: what the axis and the flat do from place to place.
-void add_places(const MeasurementInput& input, Budget& budget) {
+void add_places(const MeasurementInput& input, double size, Budget& budget) {
   const Calibration& calibration = *input.context.calibration;
-  if (calibration.z) add("l_z", calibration.z->linearity_um / kRectangular, budget);
+  if (calibration.z) {
+    const ZConstants& z = *calibration.z;
+    if (knows_linearity(z)) add("l_z", z.linearity_um / kRectangular, budget);
+    const double turns = size * z.alpha_z / z.lead_um;
+    if (knows_lead(z)) add("lead", std::sqrt(2.0) * z.lead_amplitude_um * std::abs(std::sin(kPi * turns)), budget);
+  }
   if (!calibration.flatness) return;
   const FlatnessConstants& flatness = *calibration.flatness;
   add("flatness",
@@ -76,7 +86,7 @@ void add_constants(const MeasurementInput& input, const ValuePowers& powers, dou
     add("alpha_z", std::abs(powers.z) * size * relative, budget);
   }
   const bool is_height = powers == ValuePowers{1.0, 0.0};
-  if (is_step(input.planned) && is_height) add_places(input, budget);
+  if (is_step(input.planned) && is_height) add_places(input, size, budget);
   if (calibration.lateral && powers.xy != 0.0) {
     add("lateral", std::abs(powers.xy) * size * relative_lateral(*calibration.lateral, input.surface.field), budget);
   }
@@ -94,7 +104,9 @@ bool knows_temperature(const MeasurementInput& input) {
 void add_instrument(const MeasurementInput& input, const std::string& key, ValueInput& value) {
   if (!value.value || value.exact) return;
   Budget& budget = value.budget;
-  if (const Repeatability* found = repeatability_of(input, key)) {
+  const Repeatability* const found = repeatability_of(input, key);
+  // Values that never differed, as counts in disguise, would alone pass for values without error.
+  if (found != nullptr && (found->sd > 0.0 || !budget.entries.empty())) {
     if (budget.entries.empty()) value.u_method = "repeated";
     add_repeatability(*found, budget);
   } else {
@@ -117,7 +129,8 @@ std::vector<std::string> instrument_not_evaluated(const MeasurementInput& input)
   const bool has_z = calibration && calibration->z;
   std::vector<std::string> sources;
   if (!has_z || edge) sources.emplace_back("alpha_z");
-  if (!has_z || !step) sources.emplace_back("l_z");
+  if (!has_z || !step || !knows_linearity(*calibration->z)) sources.emplace_back("l_z");
+  if (!has_z || !step || !knows_lead(*calibration->z)) sources.emplace_back("lead");
   const bool has_flatness = step ? calibration && calibration->flatness : input.surface.reference_subtracted && !edge;
   if (!has_flatness) sources.emplace_back("flatness");
   if (!step && !(calibration && calibration->lateral)) sources.emplace_back("lateral");

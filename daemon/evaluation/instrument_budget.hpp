@@ -16,9 +16,13 @@ namespace fvd {
 ///
 /// repeatability, type A: sqrt(max(0, sd^2 - sum of the other entries of type A)^2)) with the study's dof: what
 /// scatters
-///   from scan to scan and noise does not explain. Own definition.
+///   from scan to scan and noise does not explain. A scatter of 0 is no uncertainty where nothing else is known. Own
+///   definition.
 /// alpha_z: |p_z v| u(alpha_z) / alpha_z. Not of cutting edges, where flanks of unknown angle mix x and z.
-/// l_z, of steps and levels: l_z / sqrt 3, rectangular.
+/// l_z, of steps and levels: l_z / sqrt 3, rectangular; 0 is not known, as from one step.
+/// lead, of steps and levels, where the screw's periodic error of amplitude A and period L is known, its phase at the
+///   part not: sqrt 2 A |sin(pi h / L)|, the quadratic mean over all phases of the difference of two places h apart.
+///   Own definition.
 /// flatness, of steps and levels: z_FLT / (2 sqrt 3), as each place may lie anywhere within z_FLT; where the reference
 ///   map was subtracted, its u_reference_um.
 /// lateral: |p_xy v| r, where r^2 = larger (u(pitch) / pitch)^2 of both directions + d^2 / 3, and d is by how much the

@@ -116,7 +116,7 @@ EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
     made.reason_code = evaluation_code::kRegionOutside;
     return made;
   }
-  const NoiseFloor floor = noise_floor(field, region);
+  const NoiseFloor floor = noise_floor(input, region);
   metrology::ArealSettings settings;
   settings.noise_floor_um = floor.sq_um;
   std::vector<ArealParameter> parameters = parameters_of(input.planned);

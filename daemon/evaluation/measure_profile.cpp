@@ -176,7 +176,7 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   metrology::ProfileSettings settings;
   settings.nesting_um = input.planned.nesting_um;
   settings.sections = input.planned.sections;
-  const NoiseFloor floor = noise_floor(field, band_region(field, line));
+  const NoiseFloor floor = noise_floor(input, band_region(field, line));
   settings.noise_floor_um = floor.sq_um;
   std::vector<ProfileParameter> with_squares = parameters;
   std::transform(parameters.begin(), parameters.end(), std::back_inserter(with_squares), root_mean_square_of);

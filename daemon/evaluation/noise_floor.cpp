@@ -12,14 +12,9 @@ using nlohmann::ordered_json;
 
 constexpr double kAboveFloor = 2.0;
 
-}  // namespace
-
-ordered_json number_or_null(std::optional<double> value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-NoiseFloor noise_floor(const metrology::HeightField& field, const metrology::Region& region) {
-  if (!field.has_sigma()) return {};
+/// Of the standard errors; nothing where they are not known.
+std::optional<double> quadratic_mean_sigma(const metrology::HeightField& field, const metrology::Region& region) {
+  if (!field.has_sigma()) return std::nullopt;
   double squares = 0.0;
   double points = 0.0;
   for (int row = 0; row < field.height(); ++row) {
@@ -30,8 +25,31 @@ NoiseFloor noise_floor(const metrology::HeightField& field, const metrology::Reg
       points += 1.0;
     }
   }
-  if (points == 0.0) return {};
-  return {std::sqrt(squares / points)};
+  if (points == 0.0) return std::nullopt;
+  return std::sqrt(squares / points);
+}
+
+/// What filters left of the noise; 1 where nobody knows.
+double left_by_filters(const MeasurementInput& input) {
+  if (!input.surface.s_nesting_um && !input.surface.l_nesting_um) return 1.0;
+  const auto before = quadratic_mean_sigma(input.measured.field, {});
+  const auto after = quadratic_mean_sigma(input.surface.field, {});
+  if (!before || !after || !(*before > 0.0)) return 1.0;
+  return std::min(1.0, *after / *before);
+}
+
+}  // namespace
+
+ordered_json number_or_null(std::optional<double> value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+NoiseFloor noise_floor(const MeasurementInput& input, const metrology::Region& region) {
+  const auto& calibration = input.context.calibration;
+  const bool known = calibration && calibration->noise && calibration->noise->noise_um > 0.0;
+  if (!known) return {quadratic_mean_sigma(input.surface.field, region), false};
+  // Two scans gave it as the axis has heights, which the surface's are not any more.
+  return {calibration->noise->noise_um / input.measured.z_scale * left_by_filters(input), true};
 }
 
 bool is_below_noise(std::optional<double> sq_um, const NoiseFloor& floor) noexcept {
@@ -43,6 +61,7 @@ ordered_json texture_conditions(const MeasurementInput& input, const NoiseFloor&
   const double s_um = std::max(input.surface.s_nesting_um.value_or(0.0), input.lateral_period_um);
   const double window_um = input.measured.field.kernel.width_px() * field.pitch_x_um;
   return {{"noise_floor_Sq_um", number_or_null(floor.sq_um)},
+          {"noise_floor_from", floor.of_calibration ? "calibration" : "sigma"},
           {"window_um", knows_window(input.measured.field) ? ordered_json(window_um) : ordered_json(nullptr)},
           {"S_um", number_or_null(input.surface.s_nesting_um)},
           {"L_um", number_or_null(input.surface.l_nesting_um)},

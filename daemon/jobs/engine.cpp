@@ -52,7 +52,13 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
       runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, calibrations_,
                following_, deps.make_result,
                deps.repeatability ? deps.repeatability
-                                  : [this](const Recipe& recipe) { return studies_.newest_repeatability(recipe.id); }}),
+                                  : [this, simulated = config.camera.simulated || config.stage.simulated](
+                                        const Recipe& recipe) {
+                                      const MachineRecord machine = board_.read();
+                                      return studies_.newest_repeatability(
+                                          recipe.id, machine.objective,
+                                          simulated || (machine.devices && machine.devices->simulated));
+                                    }}),
       evaluator_({deps.store, board_, config.paths.state_dir / "results", memory_budget_bytes(config)}),
       jobs_({deps.store,
              board_,

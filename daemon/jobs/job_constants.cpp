@@ -21,6 +21,13 @@ bool asks_for_reference(const EvaluationPlan& plan) {
 void note_constants(const Recipe& recipe, const CalibrationBook& calibrations, const RepeatabilityOf& repeatability,
                     ResultData& result) {
   result.calibration = calibrations.current(result.objective.empty() ? recipe.objective : result.objective);
+  // As a whole: a version without some of its constants would be another one by the same name.
+  if (!result.simulated && result.calibration && has_simulated(*result.calibration)) {
+    result.warnings.push_back({"calibration_simulated", "constants of the calibration " + result.calibration->id +
+                                                            " were found with a simulator: it is not used; calibrate "
+                                                            "this instrument"});
+    result.calibration.reset();
+  }
   const bool has_map =
       result.calibration && result.calibration->flatness && !result.calibration->flatness->reference.empty();
   if (has_map && asks_for_reference(recipe.evaluation)) {

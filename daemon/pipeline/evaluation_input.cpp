@@ -156,4 +156,9 @@ EvaluationContext read_evaluation_context(const std::filesystem::path& folder, c
   return context;
 }
 
+void keep_repeatability_of(const Recipe& recipe, const Result& result, EvaluationContext& context) {
+  const bool same_text = !recipe.sha256.empty() && recipe.sha256 == result.recipe.sha256;
+  if (recipe.id != result.recipe.id && !same_text) context.repeatability.clear();
+}
+
 }  // namespace fvd

@@ -6,6 +6,7 @@
 
 #include "core/surface/surface.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
+#include "daemon/recipes/recipe.hpp"
 #include "daemon/result/result.hpp"
 #include "daemon/result/result_data.hpp"
 
@@ -26,5 +27,9 @@ void note_window(const Result::Focus& focus, Surface& surface);
 /// the calibration is not read: see daemon/surface_files/reference_map.hpp. Throws Error kBadInput where the log is
 /// none.
 [[nodiscard]] EvaluationContext read_evaluation_context(const std::filesystem::path& folder, const Result& result);
+
+/// Before a result is evaluated by this recipe: gauge studies tell of the recipe that they were made with, so that an
+/// equal name in another one means nothing. Takes the repeatability away unless id or text are those of the result's.
+void keep_repeatability_of(const Recipe& recipe, const Result& result, EvaluationContext& context);
 
 }  // namespace fvd

@@ -8,6 +8,7 @@
 #include "daemon/evaluation/evaluate_surface.hpp"
 #include "daemon/export/json_values.hpp"
 #include "daemon/export/result_json.hpp"
+#include "daemon/pipeline/evaluation_input.hpp"
 #include "daemon/report/report_pdf.hpp"
 #include "daemon/report/surface_digest.hpp"
 #include "daemon/result/evaluate.hpp"
@@ -34,7 +35,10 @@ Result evaluated(const StoredSurface& source, const Recipe& recipe, const Evalua
   result.job.id = head.id;
   result.recipe = {recipe.id, recipe.sha256};
   result.provenance.software_version = head.software_version;
-  result.evaluation = evaluate_surface(source.surface, recipe.evaluation, source.context, pool);
+  EvaluationContext context = source.context;
+  keep_repeatability_of(recipe, source.result, context);
+  result.repeatability = context.repeatability;
+  result.evaluation = evaluate_surface(source.surface, recipe.evaluation, context, pool);
   result.verdict = verdict_of(result);
   result.times.evaluate_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

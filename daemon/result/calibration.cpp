@@ -17,6 +17,7 @@ void describe(ConstantsOrigin& origin, Fields& fields) {
   fields.text("certificate", origin.certificate, kMaxText_bytes, "number of the artefact's certificate");
   fields.text("accepted", origin.accepted, kMaxText_bytes, "when, UTC");
   fields.text("renew_by", origin.renew_by, kMaxText_bytes, "the last day that they are trusted on; empty = no end");
+  fields.boolean("simulated", origin.simulated, "found with a simulator: not used by an instrument");
 }
 
 void describe(ZConstants& z, Fields& fields) {
@@ -88,6 +89,23 @@ void describe(Calibration& calibration, Fields& fields) {
   part(fields, "noise", calibration.noise, "from scan to scan");
   part(fields, "lateral", calibration.lateral, "in the image");
   part(fields, "texture", calibration.texture, "of texture values");
+}
+
+bool has_simulated(const Calibration& calibration) {
+  Calibration rest = calibration;
+  drop_simulated(rest);
+  return rest != calibration;
+}
+
+void drop_simulated(Calibration& calibration) {
+  const auto drop = [](auto& constants) {
+    if (constants && constants->origin.simulated) constants.reset();
+  };
+  drop(calibration.z);
+  drop(calibration.flatness);
+  drop(calibration.noise);
+  drop(calibration.lateral);
+  drop(calibration.texture);
 }
 
 std::string calendar_day(std::chrono::system_clock::time_point time) {

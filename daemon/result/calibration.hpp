@@ -18,6 +18,7 @@ struct ConstantsOrigin {
   std::string certificate;  ///< number of the artefact's certificate; empty = none
   std::string accepted;     ///< UTC, "2026-11-29T20:15:00Z"
   std::string renew_by;     ///< the last day that they are trusted on, "2027-11-29"; empty = no end
+  bool simulated = false;   ///< found with a simulator: they say nothing of an instrument
   bool operator==(const ConstantsOrigin&) const = default;
 };
 
@@ -25,7 +26,7 @@ struct ConstantsOrigin {
 struct ZConstants {
   double alpha_z = 1.0;            ///< measured height over true height: heights are divided by it; 0.5..2
   double u_alpha_z = 0.0;          ///< standard uncertainty
-  double linearity_um = 0.0;       ///< l_z: the largest residual, absolute
+  double linearity_um = 0.0;       ///< l_z: the largest residual, absolute; 0 = not known, as from one step
   double lead_amplitude_um = 0.0;  ///< of the screw's periodic error, 0 = not known
   double lead_um = 0.0;            ///< its period
   ConstantsOrigin origin;
@@ -84,6 +85,11 @@ struct Calibration {
 
 /// Written and read back by config/field_writer.hpp and field_reader.hpp.
 void describe(Calibration& calibration, Fields& fields);
+
+/// Whether a part of it was found with a simulator.
+[[nodiscard]] bool has_simulated(const Calibration& calibration);
+/// Takes such parts out.
+void drop_simulated(Calibration& calibration);
 
 /// The day in UTC, "2026-11-29".
 [[nodiscard]] std::string calendar_day(std::chrono::system_clock::time_point time);

@@ -43,17 +43,20 @@ std::vector<Artefact> artefacts_of(const StepRequest& request, Corrected correct
   return artefacts;
 }
 
-/// The larger of what the budgets predict of the mean and of what its scans show.
+/// The larger of what the budgets predict of the mean and of what its scans show, and what all scans share.
 double u_of_mean(const Artefact& artefact, double mean) {
   const auto n = static_cast<double>(artefact.values.size());
   double predicted = 0.0;
+  double common = 0.0;
   double squares = 0.0;
   for (const JobValue& value : artefact.values) {
-    predicted += value.u.value_or(0.0) * value.u.value_or(0.0);
+    const double u_um = value.u.value_or(0.0);
+    predicted += std::max(0.0, u_um * u_um - value.u_common * value.u_common);
+    common = std::max(common, value.u_common);
     squares += (value.value - mean) * (value.value - mean);
   }
   const double observed = artefact.values.size() < 2 ? 0.0 : squares / (n - 1.0);
-  return std::sqrt(std::max(predicted / n, observed) / n);
+  return std::hypot(std::sqrt(std::max(predicted / n, observed) / n), common);
 }
 
 KnownStep known_step(const Artefact& artefact) {
@@ -173,7 +176,7 @@ StudyDraft step_study(const StepRequest& request, Purpose purpose, StudyJobs& jo
     ZConstants constants;
     constants.alpha_z = z.alpha_z;
     constants.u_alpha_z = z.u_alpha_z;
-    constants.linearity_um = z.linearity_um;
+    constants.linearity_um = steps.size() > 1 ? z.linearity_um : 0.0;
     proposal.z = constants;
     draft.study.proposal = proposal;
   }

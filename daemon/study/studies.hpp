@@ -24,7 +24,8 @@ enum class Purpose { kVerify, kCalibrate };
 [[nodiscard]] StudyDraft flatness_study(const FlatnessRequest& request, Purpose purpose, StudyJobs& jobs);
 
 /// alpha_z and l_z. Scans of steps with equal reference and uncertainty are of one artefact: their mean counts once,
-/// with the larger of its predicted and its observed standard uncertainty. To verify, values are as the constants in
+/// with the larger of its predicted and its observed standard uncertainty; what their budgets share (flatness,
+/// temperature) does not average. To verify, values are as the constants in
 /// force corrected them; to calibrate, as the axis gave them.
 [[nodiscard]] StudyDraft step_study(const StepRequest& request, Purpose purpose, StudyJobs& jobs);
 

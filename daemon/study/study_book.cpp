@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
-#include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
+#include "daemon/export/durable_file.hpp"
 #include "daemon/export/json_values.hpp"
 #include "daemon/study/studies.hpp"
 
@@ -25,6 +27,17 @@ std::string id_of(int number) {
   char text[32];
   std::snprintf(text, sizeof text, "study-%04d", number);
   return text;
+}
+
+/// Of any length: a study of thousands of jobs is longer than a configuration may be.
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in.is_open() || in.bad() || !fs::is_regular_file(file)) {
+    throw Error(ErrorCode::kBadInput, "cannot read " + file.string() + ": is it a file?");
+  }
+  return text.str();
 }
 
 /// Of a folder's name; nothing for what is none of ours.
@@ -51,7 +64,7 @@ StudyBook::StudyBook(fs::path folder) : folder_(std::move(folder)) {
     last_ = std::max(last_, *number);
     const fs::path file = entry.path() / "study.json";
     try {
-      Study study = read_study_json(read_text_file(file), file.string());
+      Study study = read_study_json(text_of(file), file.string());
       if (study.id != id_of(*number)) throw Error(ErrorCode::kBadInput, file.string() + ": /id: is " + study.id);
       studies_.emplace(*number, std::move(study));
     } catch (const Error& error) {
@@ -62,12 +75,14 @@ StudyBook::StudyBook(fs::path folder) : folder_(std::move(folder)) {
 }
 
 Study StudyBook::keep(StudyDraft draft, const std::function<std::string(const Study&)>& report) {
-  const MutexLock lock(mutex_);
+  const MutexLock keeping(keeping_);
+  const int number = next_number();
   std::error_code error;
-  fs::create_directories(folder_, error);
+  const bool is_new = fs::create_directories(folder_, error);
   if (error) throw Error(ErrorCode::kStorageWrite, "cannot make " + folder_.string() + ": " + error.message());
+  if (is_new) sync_directory(fs::absolute(folder_).parent_path());
   Study study = std::move(draft.study);
-  study.id = id_of(last_ + 1);
+  study.id = id_of(number);
   study.time = iso8601_utc(std::chrono::system_clock::now());
   study.files.clear();
   for (const StudyFile& file : draft.files) study.files.push_back(file.name);
@@ -83,8 +98,15 @@ Study StudyBook::keep(StudyDraft draft, const std::function<std::string(const St
   directory.add_file("report.pdf", report(study));
   directory.add_file("study.json", text);
   directory.commit();
-  studies_.emplace(++last_, study);
+  const MutexLock lock(mutex_);
+  last_ = number;
+  studies_.emplace(number, study);
   return study;
+}
+
+int StudyBook::next_number() const {
+  const MutexLock lock(mutex_);
+  return last_ + 1;
 }
 
 Study StudyBook::get(const std::string& id) const {
@@ -113,13 +135,16 @@ std::vector<BrokenStudy> StudyBook::broken() const {
   return all;
 }
 
-std::map<std::string, Repeatability> StudyBook::newest_repeatability(const std::string& recipe_id) const {
+std::map<std::string, Repeatability> StudyBook::newest_repeatability(const std::string& recipe_id,
+                                                                     const std::string& objective,
+                                                                     bool simulated) const {
   std::map<std::string, Repeatability> newest;
   if (recipe_id.empty()) return newest;  // of jobs with different recipes
   const MutexLock lock(mutex_);
   for (auto at = studies_.rbegin(); at != studies_.rend(); ++at) {
     const Study& study = at->second;
     if (study.recipe_id != recipe_id || !study.kind.starts_with("gauge.")) continue;
+    if (study.objective != objective || study.simulated != simulated) continue;
     try {
       const auto found = repeatability_of(study);
       if (found) newest.emplace(found->name, Repeatability{found->sd, found->dof, study.id});
@@ -128,10 +153,6 @@ std::map<std::string, Repeatability> StudyBook::newest_repeatability(const std::
     }
   }
   return newest;
-}
-
-std::map<std::string, Repeatability> newest_repeatability(const StudyBook& book, const std::string& recipe_id) {
-  return book.newest_repeatability(recipe_id);
 }
 
 }  // namespace fvd

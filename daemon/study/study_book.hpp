@@ -22,7 +22,7 @@ struct BrokenStudy {
   std::string reason;
 };
 
-/// context: every function thread-safe; blocks for files but for what only reads.
+/// context: every function thread-safe; keep() blocks for files, those that only read never wait for it.
 class StudyBook {
  public:
   /// Reads <folder>/*/study.json; no such folder = no studies yet. What a killed process left is cleared away. One that
@@ -40,21 +40,24 @@ class StudyBook {
   [[nodiscard]] std::vector<Study> list() const;
   [[nodiscard]] std::vector<BrokenStudy> broken() const;
 
-  /// By "measurement.value": of each value of this recipe the newest gauge study's figure.
-  [[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const std::string& recipe_id) const;
+  /// By "measurement.value": of each value of this recipe the newest gauge study's figure, of jobs that were measured
+  /// with this objective ("" = none is named), by a simulator or not: what a simulator scatters says nothing of an
+  /// instrument.
+  [[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const std::string& recipe_id,
+                                                                          const std::string& objective,
+                                                                          bool simulated) const;
 
   [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const { return folder_ / id; }
 
  private:
+  [[nodiscard]] int next_number() const;
+
   const std::filesystem::path folder_;
+  Mutex keeping_;  ///< held while a folder is written; before mutex_
   mutable Mutex mutex_;
   std::map<int, Study> studies_ FVD_GUARDED_BY(mutex_);
   std::map<int, BrokenStudy> broken_ FVD_GUARDED_BY(mutex_);
   int last_ FVD_GUARDED_BY(mutex_) = 0;
 };
-
-/// The same as StudyBook::newest_repeatability(), for those who are given the book.
-[[nodiscard]] std::map<std::string, Repeatability> newest_repeatability(const StudyBook& book,
-                                                                        const std::string& recipe_id);
 
 }  // namespace fvd

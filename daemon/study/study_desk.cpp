@@ -153,9 +153,9 @@ StudyDraft StudyDesk::draft(const StudyRequest& request, StudyJobs& jobs) const 
   return std::visit(Overloaded{OfStudies{studies_}, OfJobs{jobs, purpose}}, request.input);
 }
 
-Study StudyDesk::make(const StudyRequest& request, std::stop_token stop) {
+Study StudyDesk::make(const StudyRequest& request, std::stop_token stop, std::function<void()> alive) {
   const MutexLock lock(making_);
-  StudyJobs jobs(sources_, std::move(stop));
+  StudyJobs jobs(sources_, std::move(stop), std::move(alive));
   StudyDraft made = draft(request, jobs);
   made.study.kind = request.kind;
   made.study.person = request.person;
@@ -179,9 +179,11 @@ AcceptedConstants StudyDesk::accept(const AcceptRequest& request, const std::str
   origin.person = request.person;
   origin.certificate = request.certificate;
   origin.renew_by = request.renew_by;
+  origin.simulated = study.simulated;
   return {calibrations_.add(study.objective,
                             [&](Calibration& next) {
                               origin.accepted = next.created;
+                              if (!simulated_) drop_simulated(next);
                               return take_over(study, studies_.folder_of(study.id), origin, next);
                             }),
           false};

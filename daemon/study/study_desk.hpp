@@ -2,6 +2,7 @@
 
 /// Makes studies of jobs, keeps them, and makes the constants that they propose valid.
 
+#include <functional>
 #include <stop_token>
 #include <string>
 
@@ -27,7 +28,8 @@ class StudyDesk {
   /// Moves nothing. Returns the study as it is kept. Throws Error kStudyRefused with one sentence, kUnknownJob,
   /// kUnknownRecipe, kBadRecipe, kCalibrationMissing, kRegionOutside, kSurfaceFile, kMemoryBudget, kBadInput,
   /// kStorageFull, kStorageWrite, kShuttingDown; nothing is kept then.
-  Study make(const StudyRequest& request, std::stop_token stop);
+  /// alive: see StudyJobs.
+  Study make(const StudyRequest& request, std::stop_token stop, std::function<void()> alive = {});
 
   /// A new version of the constants from what the study proposes. Accepting a study again returns the version that was
   /// made of it. today: "2026-11-29". Throws Error kStudyRefused for studies that propose nothing, that have refusals,

@@ -10,6 +10,7 @@
 #include "daemon/evaluation/surface_chain.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/pipeline/evaluation_input.hpp"
+#include "daemon/pipeline/job_memory.hpp"
 #include "daemon/study/study_draft.hpp"
 #include "daemon/surface_files/result_folder.hpp"
 
@@ -35,12 +36,24 @@ std::string names_of(const auto& map) {
   return names.empty() ? "none" : names;
 }
 
+/// What does not scatter from scan to scan: the constants, the temperature, the flat's form. Slices' z do.
+double u_common_of(const EvaluatedValue& value, Corrected corrected) {
+  double squares = 0.0;
+  for (const UncertaintyLine& line : value.budget) {
+    const bool sought =
+        corrected == Corrected::kUndone && (line.source == "alpha_z" || line.source == "l_z" || line.source == "lead");
+    if (line.type == "A" || line.source == "slice_z" || sought) continue;
+    squares += line.u * line.u;
+  }
+  return std::sqrt(squares);
+}
+
 /// Without what the constants bring: they are what is sought.
 std::optional<double> u_of(const EvaluatedValue& value, Corrected corrected) {
   if (!value.u || corrected == Corrected::kAsMeasured || value.budget.empty()) return value.u;
   double squares = 0.0;
   for (const UncertaintyLine& line : value.budget) {
-    if (line.source == "alpha_z" || line.source == "l_z") continue;
+    if (line.source == "alpha_z" || line.source == "l_z" || line.source == "lead") continue;
     squares += line.u * line.u;
   }
   return std::sqrt(squares);
@@ -58,9 +71,14 @@ double undoing_factor(const Result& result, const std::string& calibration, cons
 
 }  // namespace
 
+void StudyJobs::go_on() const {
+  if (stop_.stop_requested()) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
+  if (alive_) alive_();
+}
+
 StudyJobs::Job& StudyJobs::job(const std::string& id) {
   if (const auto found = jobs_.find(id); found != jobs_.end()) return found->second;
-  if (stop_.stop_requested()) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
+  go_on();
   const StoredJob stored = sources_.job(id);
   if (stored.result_dir.empty() || stored.result_json.empty()) {
     refuse("job " + id + " has no result: it " +
@@ -113,7 +131,7 @@ std::vector<metrology::HeightField> StudyJobs::fields(const std::vector<std::str
   check_memory(jobs);
   std::vector<metrology::HeightField> fields;
   for (const std::string& id : jobs) {
-    if (stop_.stop_requested()) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
+    go_on();
     fields.push_back(field(id, s_nesting_um));
     if (!same_shape(fields.front(), fields.back())) {
       refuse("job " + id + " has " + shape_text(fields.back()) + ", job " + jobs.front() + " has " +
@@ -130,11 +148,15 @@ const Evaluation& StudyJobs::evaluation_of(const std::string& id, const std::str
     refuse("job " + id + " evaluated nothing: give a recipe that has measurements");
   }
   if (found.evaluation) return *found.evaluation;
+  go_on();
   if (!recipe_) recipe_ = sources_.recipe(recipe);
   if (recipe_->evaluation.empty()) refuse("recipe " + recipe + " has no measurements");
+  const Result::Focus& focus = found.result.focus;
+  require_evaluation_memory(*recipe_, focus.width_px, focus.height_px, sources_.memory_budget_bytes);
   ResultSurface read = read_result_surface(found.folder);
   EvaluationContext context = read_evaluation_context(found.folder, read.result);
   note_window(read.result.focus, read.surface);
+  keep_repeatability_of(*recipe_, found.result, context);
   context.calibration = found.result.calibration;
   if (corrected == Corrected::kUndone && context.calibration) context.calibration->z.reset();
   return found.evaluation.emplace(evaluate_surface(read.surface, recipe_->evaluation, context, nullptr));
@@ -159,11 +181,12 @@ JobValue StudyJobs::value(const std::string& id, const EvaluatedChoice& what, co
   if (!found.value || !std::isfinite(*found.value)) {
     refuse("job " + id + ": " + name + " has no number" + (found.reason.empty() ? "" : ": " + found.reason));
   }
-  JobValue taken{name, found.unit, *found.value, u_of(found, corrected)};
+  JobValue taken{name, found.unit, *found.value, u_of(found, corrected), u_common_of(found, corrected)};
   if (corrected == Corrected::kUndone && recipe.empty()) {
     const double factor = undoing_factor(result(id), evaluation.calibration, found.unit);
     taken.value *= factor;
     if (taken.u) *taken.u *= factor;
+    taken.u_common *= factor;
   }
   return taken;
 }

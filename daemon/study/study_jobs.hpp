@@ -38,12 +38,15 @@ struct JobValue {
   std::string unit;
   double value = 0.0;
   std::optional<double> u;  ///< standard uncertainty; with kUndone without those of the constants
+  double u_common = 0.0;    ///< the part of u that further scans of the same place have too
 };
 
 /// The jobs of one study; files are read when they are asked for. context: one thread; sources outlive it.
 class StudyJobs {
  public:
-  StudyJobs(const StudySources& sources, std::stop_token stop) : sources_(sources), stop_(std::move(stop)) {}
+  /// alive: called before each piece of work, the longest of which is one job's evaluation; may be empty.
+  StudyJobs(const StudySources& sources, std::stop_token stop, std::function<void()> alive = {})
+      : sources_(sources), stop_(std::move(stop)), alive_(std::move(alive)) {}
 
   /// What result.json tells. Throws Error kUnknownJob; kStudyRefused where there is no result; kShuttingDown.
   [[nodiscard]] const Result& result(const std::string& job);
@@ -75,12 +78,15 @@ class StudyJobs {
     Result result;
     std::optional<Evaluation> evaluation;  ///< made anew with a recipe
   };
+  /// Throws Error kShuttingDown.
+  void go_on() const;
   [[nodiscard]] Job& job(const std::string& id);
   [[nodiscard]] const Evaluation& evaluation_of(const std::string& id, const std::string& recipe, Corrected corrected);
   void check_memory(const std::vector<std::string>& jobs);
 
   const StudySources& sources_;
   std::stop_token stop_;
+  std::function<void()> alive_;
   std::map<std::string, Job> jobs_;
   std::optional<Recipe> recipe_;
 };

@@ -154,12 +154,15 @@ std::optional<double> median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-void check(const StarSettings& settings) {
+void check(const HeightField& field, const StarSettings& settings) {
   const auto refuse = [](const char* text) { throw Error(ErrorCode::kBadInput, text); };
   if (settings.pairs && (*settings.pairs < 4 || *settings.pairs > 180)) refuse("a star has 4 to 180 pairs of sectors");
   if (settings.directions < 4 || settings.directions > 36) refuse("a star is seen in 4 to 36 directions");
-  const bool finite = !settings.centre || (std::isfinite(settings.centre->x) && std::isfinite(settings.centre->y));
-  if (!finite) refuse("the centre of a star is a finite place");
+  // Rings are counted from the centre: one that is far off would need memory for all between.
+  const auto within = [](double place_um, double end_um) { return place_um >= 0.0 && place_um <= end_um; };
+  const bool inside = !settings.centre || (within(settings.centre->x, field.width() * field.pitch_x_um) &&
+                                           within(settings.centre->y, field.height() * field.pitch_y_um));
+  if (!inside) refuse("the centre of a star is a place in the field");
   if (settings.height_um && !(*settings.height_um > 0.0 && std::isfinite(*settings.height_um))) {
     refuse("the height of a star is above 0");
   }
@@ -179,7 +182,7 @@ StarDirection direction_of(const std::vector<Ring>& rings, const StarLayout& sta
 
 StudyOutcome<StarResolution> siemens_star(const HeightField& field, const StarSettings& settings,
                                           const Region& region) {
-  check(settings);
+  check(field, settings);
   const StudyOutcome<TwoLevels> levels_or = two_levels(field, region, Between::kAny);  // a fine star is mostly edges
   if (const auto* refusal = std::get_if<StudyRefusal>(&levels_or)) return *refusal;
   const TwoLevels& levels = std::get<TwoLevels>(levels_or);

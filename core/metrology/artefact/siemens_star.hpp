@@ -14,7 +14,7 @@ namespace fvd::metrology {
 
 struct StarSettings {
   std::optional<int> pairs{};         ///< of a raised sector and one that is not, 4 to 180; absent: found
-  std::optional<PointUm> centre{};    ///< absent: found
+  std::optional<PointUm> centre{};    ///< in the field; absent: found
   std::optional<double> height_um{};  ///< true height of the raised ones; absent: as measured near the star's rim
   int directions = 8;                 ///< 4 to 36; the first is centred on 0 degrees
 };

@@ -64,6 +64,19 @@ TEST(CalibrationBook, TakesOverWhatANewVersionDoesNotChange) {
   EXPECT_EQ(book.current("10x"), second);
 }
 
+TEST(CalibrationBook, IsReadWhileTheFilesOfAVersionAreWritten) {
+  const ScratchDir folder;
+  CalibrationBook book(folder.path());
+  const Calibration first = add_z(book, "", 1.01);
+
+  (void)book.add("", [&](Calibration&) {
+    EXPECT_EQ(book.current(""), first);  // a job that begins meanwhile
+    return std::vector<CalibrationFile>();
+  });
+
+  EXPECT_EQ(book.versions().size(), 2U);
+}
+
 TEST(CalibrationBook, KeepsOldVersionsAsTheyWere) {
   const ScratchDir folder;
   CalibrationBook book(folder.path());

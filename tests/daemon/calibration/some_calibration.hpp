@@ -7,7 +7,7 @@
 namespace fvd::test {
 
 inline ConstantsOrigin origin_of(const std::string& name) {
-  return {"study-" + name, "Ada of " + name, "PTB-" + name, "2026-11-29T20:15:00Z", "2027-11-29"};
+  return {"study-" + name, "Ada of " + name, "PTB-" + name, "2026-11-29T20:15:00Z", "2027-11-29", true};
 }
 
 inline Calibration whole_calibration() {

@@ -83,7 +83,7 @@ TEST(AnEvaluation, OfAGrooveHasItsDepthWithBudgetAndVerdict) {
   EXPECT_EQ(height.verdict, Verdict::kPass);
   EXPECT_EQ(step.verdict, Verdict::kPass);
   EXPECT_EQ(evaluation.verdict, Verdict::kPass);
-  EXPECT_THAT(step.not_evaluated, ElementsAre("alpha_z", "flatness", "l_z", "repeatability", "temperature"));
+  EXPECT_THAT(step.not_evaluated, ElementsAre("alpha_z", "flatness", "l_z", "lead", "repeatability", "temperature"));
   EXPECT_EQ(step.id, "step");
   ASSERT_TRUE(step.cross_section.has_value());
   EXPECT_EQ(step.cross_section->regions.size(), 3U);

@@ -5,6 +5,8 @@
 #include <memory>
 #include <numbers>
 
+#include <nlohmann/json.hpp>
+
 #include "daemon/evaluation/value_names.hpp"
 #include "tests/daemon/evaluation/made_surfaces.hpp"
 
@@ -68,7 +70,7 @@ TEST(TheBudgetOfAStep, HasTheConstantsOfTheAxisAndTheFlat) {
   for (const UncertaintyLine& line : height.budget) squares += line.u * line.u;
   EXPECT_NEAR(height.u.value(), std::sqrt(squares), 1e-12);
   EXPECT_GT(height.u.value(), 0.1);
-  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, ::testing::ElementsAre("repeatability"));
+  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, ::testing::ElementsAre("lead", "repeatability"));
 }
 
 TEST(TheBudgetOfAStep, CountsTheUncertaintyOfTheAmplificationRelativeToIt) {
@@ -94,6 +96,33 @@ TEST(TheBudgetOfAStep, HasTheErrorOfTheReferenceInPlaceOfTheFlatness) {
                 context);
 
   EXPECT_DOUBLE_EQ(u_of(value_in(evaluation, "step", "height_um"), "flatness"), 0.004);
+}
+
+TEST(TheBudgetOfAStep, DoesNotTakeAnUnknownLinearityForAStraightAxis) {
+  EvaluationContext context = whole();
+  context.calibration->z->linearity_um = 0.0;
+
+  const Evaluation evaluation = evaluated(level_groove(), kGroove, context);
+
+  EXPECT_TRUE(std::isnan(u_of(value_in(evaluation, "step", "height_um"), "l_z")));
+  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, Contains("l_z"));
+}
+
+TEST(TheBudgetOfAStep, HasTheScrewsPeriodicErrorWhereItIsKnown) {
+  EvaluationContext context = whole();
+  context.calibration->z->lead_amplitude_um = 0.3;
+  context.calibration->z->lead_um = 500.0;
+
+  const Evaluation evaluation = evaluated(level_groove(), kGroove, context);
+
+  double squares = 0.0;  // over all phases
+  for (int i = 0; i < 1000; ++i) {
+    const double phase = 2.0 * std::numbers::pi * i / 1000.0;
+    const double error_um = 0.3 * (std::sin(phase + 2.0 * std::numbers::pi * 50.0 / 500.0) - std::sin(phase));
+    squares += error_um * error_um / 1000.0;
+  }
+  EXPECT_NEAR(u_of(value_in(evaluation, "step", "height_um"), "lead"), std::sqrt(squares), 1e-6);
+  EXPECT_THAT(evaluation.measurements.at("step").not_evaluated, Not(Contains("lead")));
 }
 
 TEST(TheBudgetOfAStep, IsTheSameForRegionsAndLevels) {
@@ -162,6 +191,38 @@ TEST(TheBudgetOfAProfile, IsThatOfATexture) {
   EXPECT_THAT(evaluation.measurements.at("p").not_evaluated, Not(Contains("lateral")));
 }
 
+double noise_floor_in(const Evaluation& evaluation) {
+  return nlohmann::json::parse(evaluation.measurements.at("t").details)["noise_floor_Sq_um"].get<double>();
+}
+
+TEST(TheNoiseFloor, IsWhatScansShowedNotWhatStandardErrorsTell) {
+  const std::string plan = R"({"measurements": {"t": {"kind": "areal", "parameters": ["Sq"],
+                                                      "limits": {"Sq_um": {"lower": 0.1}}}}})";
+  EvaluationContext context = whole();
+  const Evaluation told = evaluated(waves(), plan, context);
+  context.calibration->z->alpha_z = 1.25;
+  context.calibration->noise = NoiseConstants{2.0, {}};
+
+  const Evaluation seen = evaluated(waves(), plan, context);
+
+  EXPECT_NEAR(noise_floor_in(told), 0.2, 1e-6);
+  EXPECT_EQ(value_in(told, "t", "Sq_um").verdict, Verdict::kPass);
+  EXPECT_NEAR(noise_floor_in(seen), 2.0 / 1.25, 1e-12);  // above half of Sq, 2.5 / 1.25
+  EXPECT_EQ(value_in(seen, "t", "Sq_um").verdict, Verdict::kUncertain);
+}
+
+TEST(TheNoiseFloor, FallsBehindAFilterAsTheStandardErrorsDo) {
+  const std::string plan = R"({"surfaces": {"s": {"steps": [{"op": "filter", "side": "S", "nesting_um": 20}]}},
+    "measurements": {"t": {"kind": "areal", "surface": "s", "parameters": ["Sq"]}}})";
+  EvaluationContext context = known_slices();
+  const double told_um = noise_floor_in(evaluated(waves(), plan, context));
+  context.calibration = Calibration{};
+  context.calibration->noise = NoiseConstants{0.3, {}};
+
+  EXPECT_LT(told_um, 0.19);
+  EXPECT_NEAR(noise_floor_in(evaluated(waves(), plan, context)), 0.3 / 0.2 * told_um, 1e-4);
+}
+
 TEST(TheLateralEntry, CountsAPitchThatWasNotCorrected) {
   EvaluationContext context = whole();
   context.calibration->lateral->pitch_x_um = 1.01;  // the surface has 1.0
@@ -208,6 +269,19 @@ TEST(Repeatability, AddsNothingWhereTheNoiseExplainsItAll) {
   EXPECT_FALSE(height.dof);
 }
 
+TEST(Repeatability, OfValuesThatNeverDifferedIsNoUncertaintyByItself) {
+  EvaluationContext context = known_slices();
+  context.repeatability["step.width_um"] = {0.0, 24.0, "study-9"};
+
+  const Evaluation evaluation = evaluated(
+      level_groove(),
+      R"({"measurements": {"step": {"kind": "step_height", "edges_um": [105, 195], "limits": {"width_um": {"lower": 80}}}}})",
+      context);
+
+  EXPECT_FALSE(value_in(evaluation, "step", "width_um").u);
+  EXPECT_EQ(value_in(evaluation, "step", "width_um").verdict, Verdict::kUncertain);
+}
+
 TEST(Repeatability, OfAnotherMeasurementOrValueIsNotTaken) {
   EvaluationContext context = known_slices();
   context.repeatability["other.height_um"] = {1.0, 24.0, "study-9"};
@@ -236,7 +310,7 @@ TEST(TheConstantsOfTheInstrument, AreAllUnknownWithoutACalibration) {
   context.temperature_c = 26.0;
 
   EXPECT_THAT(evaluated(level_groove(), kGroove, context).measurements.at("step").not_evaluated,
-              ::testing::ElementsAre("alpha_z", "flatness", "l_z", "repeatability"));
+              ::testing::ElementsAre("alpha_z", "flatness", "l_z", "lead", "repeatability"));
   EXPECT_THAT(evaluated(waves(), kTexture, context).measurements.at("t").not_evaluated,
               IsSupersetOf({"alpha_z", "flatness", "l_z", "lateral", "repeatability", "reproducibility"}));
 }

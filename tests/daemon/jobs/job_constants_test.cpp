@@ -77,6 +77,27 @@ TEST(JobConstants, HaveTheReferenceMapWhereTheRecipeAsksForIt) {
   EXPECT_THAT(without.warnings[0].text, HasSubstr("cal-0001-flatness.gsf"));
 }
 
+TEST(JobConstants, OfASimulatorAreNotThoseOfAnInstrument) {
+  const ScratchDir folder;
+  CalibrationBook book(folder.path());
+  book.add("", [](Calibration& next) {
+    next.noise = NoiseConstants{0.05, {}};
+    next.noise->origin.simulated = true;
+    return std::vector<CalibrationFile>();
+  });
+  ResultData of_instrument;
+  ResultData of_simulator;
+  of_simulator.simulated = true;
+
+  note_constants({}, CalibrationBook(folder.path()), {}, of_instrument);
+  note_constants({}, CalibrationBook(folder.path()), {}, of_simulator);
+
+  EXPECT_FALSE(of_instrument.calibration);
+  ASSERT_THAT(of_instrument.warnings, SizeIs(1));
+  EXPECT_EQ(of_instrument.warnings[0].code, "calibration_simulated");
+  EXPECT_TRUE(of_simulator.calibration);
+}
+
 TEST(JobConstants, HaveTheRepeatabilityOfTheRecipe) {
   const ScratchDir folder;
   const CalibrationBook book(folder.path());

@@ -103,6 +103,20 @@ TEST_F(ARecord, TellsItsSourceItsRecipeAndItsFiles) {
   EXPECT_EQ(test::read_text(folder_ / "J7/result.json"), before);
 }
 
+TEST_F(ARecord, TakesNoRepeatabilityOfAnotherRecipe) {
+  ResultData data = acquired();
+  data.recipe_id = "texture";
+  data.repeatability["texture.Sz_um"] = {5.0, 24.0, "study-0009"};
+  write_result(folder_ / "J7", data);
+
+  const json own = json::parse(write("J7-e1", parse_recipe(recipe_text("400"), "texture")).json);
+  const json other = json::parse(write("J7-e2", parse_recipe(recipe_text("400"), "another")).json);
+
+  const auto sources = [](const json& record) { return record["evaluation"]["measurements"]["texture"].dump(); };
+  EXPECT_THAT(sources(own), ::testing::HasSubstr("\"source\":\"repeatability\""));
+  EXPECT_THAT(sources(other), ::testing::Not(::testing::HasSubstr("\"source\":\"repeatability\"")));
+}
+
 TEST_F(ARecord, HasNoReportWhereTheRecipeDoesWithout) {
   write_result(folder_ / "J7", acquired());
 

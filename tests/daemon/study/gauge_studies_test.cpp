@@ -124,9 +124,9 @@ TEST_F(AGauge, IsJudgedByBothStudies) {
 }
 
 TEST_F(AGauge, TellsEvaluationsItsRepeatability) {
-  EXPECT_TRUE(newest_repeatability(*studies_, "part").empty());
+  EXPECT_TRUE(studies_->newest_repeatability("part", "", true).empty());
   (void)make("gauge.type1", fifty_scans());
-  const auto first = newest_repeatability(*studies_, "part");
+  const auto first = studies_->newest_repeatability("part", "", true);
   ASSERT_TRUE(first.contains("step.height_um"));
   EXPECT_NEAR(first.at("step.height_um").sd, 0.1010153, 1e-7);
   EXPECT_EQ(first.at("step.height_um").dof, 49.0);
@@ -134,13 +134,21 @@ TEST_F(AGauge, TellsEvaluationsItsRepeatability) {
   (void)make("gauge.rr", crossed_scans());
   open_desk();
 
-  const auto newest = newest_repeatability(*studies_, "part");
+  const auto newest = studies_->newest_repeatability("part", "", true);
   EXPECT_EQ(newest.size(), 1U);
   EXPECT_EQ(newest.at("step.height_um").study, "study-0002");
   EXPECT_NEAR(newest.at("step.height_um").sd, 0.1224745, 1e-7);
   EXPECT_EQ(newest.at("step.height_um").dof, 8.0) << "6 of the trials and 2 of the pooled interaction";
-  EXPECT_TRUE(newest_repeatability(*studies_, "another").empty());
-  EXPECT_TRUE(newest_repeatability(*studies_, "").empty());
+  EXPECT_TRUE(studies_->newest_repeatability("another", "", true).empty());
+  EXPECT_TRUE(studies_->newest_repeatability("", "", true).empty());
+}
+
+TEST_F(AGauge, TellsNothingOfAnotherObjectiveOrOfAnInstrumentThatIsNoSimulator) {
+  (void)make("gauge.type1", fifty_scans());
+
+  EXPECT_FALSE(studies_->newest_repeatability("part", "", true).empty());
+  EXPECT_TRUE(studies_->newest_repeatability("part", "50x", true).empty());
+  EXPECT_TRUE(studies_->newest_repeatability("part", "", false).empty());
 }
 
 TEST_F(AGauge, EvaluatesSurfacesAnewWithARecipe) {
@@ -157,14 +165,43 @@ TEST_F(AGauge, EvaluatesSurfacesAnewWithARecipe) {
   request.tolerance = 2.0;
   request.recipe = "mean";
 
-  const Study study = make("gauge.type1", request);
+  int pieces = 0;
+  const Study study = desk_->make({"gauge.type1", "anna", request}, {}, [&pieces] { ++pieces; });
 
+  EXPECT_EQ(pieces, 6) << "each job is read and evaluated: hundreds of them take longer than one may";
   EXPECT_NEAR(figure(study, "mean"), 1.25, 1e-6);
   EXPECT_NEAR(figure(study, "sd"), 0.25, 1e-6);
   EXPECT_EQ(study.recipe_id, "mean");
   EXPECT_EQ(study.recipe_sha256, recipe_sha256(recipes_["mean"]));
+  open_desk(true, 1U << 10U);
+  FVD_EXPECT_ERROR(kMemoryBudget, make("gauge.type1", request));
+  open_desk();
   request.recipe = "nowhere";
   FVD_EXPECT_ERROR(kUnknownRecipe, make("gauge.type1", request));
+}
+
+TEST_F(AGauge, IsReadWhileTheNextOneIsKept) {
+  const Study first = make("gauge.type1", fifty_scans());
+
+  (void)studies_->keep(StudyDraft{}, [this, &first](const Study&) {
+    EXPECT_EQ(studies_->list(), std::vector<Study>{first});  // a job that begins meanwhile looks for its repeatability
+    return std::string("report");
+  });
+
+  EXPECT_EQ(studies_->list().size(), 2U);
+}
+
+TEST_F(AGauge, IsThereAfterARestartHoweverManyJobsItHas) {
+  StudyDraft draft;
+  draft.study.kind = "gauge.rr";
+  for (int i = 0; i < 9000; ++i)
+    draft.study.values.push_back({std::string(60, 'j') + std::to_string(i), "step.height_um", 50.0, {}, {}, {}});
+  const Study kept = studies_->keep(std::move(draft), [](const Study&) { return std::string("report"); });
+  ASSERT_GT(std::filesystem::file_size(studies_->folder_of(kept.id) / "study.json"), std::uintmax_t{1} << 20U);
+
+  open_desk();
+
+  EXPECT_EQ(studies_->get(kept.id), kept);
 }
 
 TEST_F(AGauge, GivesTheSameReportForTheSameStudy) {

@@ -74,6 +74,26 @@ TEST_F(AStepStudy, TakesScansOfOneArtefactAsOne) {
   EXPECT_EQ(figure(study, "artefacts"), 1.0);
   EXPECT_EQ(figure(study, "scans"), 4.0);
   EXPECT_TRUE(warns(study, "one_step"));
+  EXPECT_EQ(study.proposal->z->linearity_um, 0.0) << "not known";
+}
+
+TEST_F(AStepStudy, DoesNotAverageWhatAllScansShare) {
+  StepRequest request;
+  for (int i = 0; i < 4; ++i) {
+    ResultData data = job_data("c" + std::to_string(i));
+    data.evaluation = test::evaluation_of(50.0, 0.05);
+    data.evaluation->measurements["step"].values["height_um"].budget = {
+        {.source = "noise", .type = "A", .u = 0.02},
+        {.source = "slice_z", .type = "B", .u = 0.02},
+        {.source = "flatness", .type = "B", .u = std::sqrt(0.0017)},
+        {.source = "alpha_z", .type = "B", .u = 9.0}};
+    know(data);
+    request.steps.push_back(step_of(data.job_id, 50.0, 0.0));
+  }
+
+  const Study study = make("calibrate.z", request);
+
+  EXPECT_NEAR(study.find("alpha_z")->u.value(), std::sqrt(0.0008 / 4.0 + 0.0017) / 50.0, 1e-9);
 }
 
 TEST_F(AStepStudy, AddsWhatTheCertificatesShare) {
@@ -188,6 +208,24 @@ TEST_F(AStepStudy, KeepsConstantsOfASimulatorFromTheInstrument) {
   open_desk(false);
 
   FVD_EXPECT_ERROR_SAYING(kStudyRefused, desk_->accept(acceptance(study.id), kToday), HasSubstr("simulated"));
+}
+
+TEST_F(AStepStudy, OfTheInstrumentReplacesConstantsOfASimulator) {
+  (void)desk_->accept(acceptance(make("calibrate.z", three_steps(1.004)).id), kToday);
+  ASSERT_TRUE(calibrations_->current("")->z->origin.simulated);
+  open_desk(false);
+  NoiseRequest request;
+  for (int i = 0; i < 2; ++i) {
+    ResultData data = surface_data("n" + std::to_string(i), [i](int x, int y) { return (x * 7 + y * 3) % (11 + i); });
+    data.simulated = false;
+    keep(data);
+    request.jobs.push_back(data.job_id);
+  }
+
+  const Calibration next = desk_->accept(acceptance(make("calibrate.noise", request).id), kToday).calibration;
+
+  EXPECT_FALSE(next.noise->origin.simulated);
+  EXPECT_FALSE(next.z);
 }
 
 TEST_F(AStepStudy, KeepsTheNumberOfAStudyThatCannotBeRead) {

@@ -191,7 +191,8 @@ TEST(SiemensStar, NeedsSettingsInTheirRange) {
   const HeightField field{Plane<double>(50, 50), {}, 1.0, 1.0, {}};
   for (const StarSettings& settings :
        {StarSettings{.pairs = 3}, StarSettings{.pairs = 181}, StarSettings{.height_um = 0.0},
-        StarSettings{.centre = PointUm{NAN, 0.0}}, StarSettings{.directions = 3}, StarSettings{.directions = 37}}) {
+        StarSettings{.centre = PointUm{NAN, 0.0}}, StarSettings{.centre = PointUm{1e12, 0.0}},
+        StarSettings{.directions = 3}, StarSettings{.directions = 37}}) {
     EXPECT_THROW(static_cast<void>(siemens_star(field, settings)), Error);
   }
 }
