@@ -154,10 +154,12 @@ AutofocusResult autofocus(Camera& camera, Axis& stage, Clock& clock, const Autof
   }
   std::vector<FocusSample> fine;
   const Micrometers middle{result.curve[best].z_um};
-  searcher.scan(middle - plan.step, middle + plan.step, plan.step * kFineStepShare, fine);
+  // Where the stage stood is not quite where it was sent, and the range is where it may go.
+  searcher.scan(std::max(middle - plan.step, plan.from), std::min(middle + plan.step, plan.to),
+                plan.step * kFineStepShare, fine);
   const std::size_t top = std::clamp<std::size_t>(sharpest(fine), 1, fine.size() - 2);
   result.focus = fine[top].focus;
-  result.z_um = vertex_um(fine[top - 1], fine[top], fine[top + 1]);
+  result.z_um = std::clamp(vertex_um(fine[top - 1], fine[top], fine[top + 1]), plan.from.value, plan.to.value);
   result.curve.insert(result.curve.end(), fine.begin(), fine.end());
   std::sort(result.curve.begin(), result.curve.end(), [](auto& a, auto& b) { return a.z_um < b.z_um; });
   searcher.arrive(Micrometers{result.z_um});

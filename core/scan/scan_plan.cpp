@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/base/error.hpp"
+#include "core/scan/approach.hpp"
 
 namespace fvd {
 
@@ -54,7 +55,7 @@ void check_continuous(const ScanPlan& plan, const CameraSettings& settings, cons
 
 void check_plan(const ScanPlan& plan, const StageInfo& stage) {
   const bool moving = plan.mode == ScanMode::kContinuous;
-  const Micrometers before = moving ? run_up(plan, stage) : stage.take_up;
+  const Micrometers before = moving ? run_up(plan, stage) : approach(plan, stage);
   const Micrometers lowest = plan.start - before;
   const Micrometers highest = moving ? plan.last() + (plan.downwards ? before : run_out(plan, stage)) : plan.last();
   if (lowest >= stage.min && highest <= stage.max) return;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/scan/approach.hpp"
 #include "core/scan/slice_capture.hpp"
 
 namespace fvd {
@@ -91,7 +92,7 @@ std::optional<CapturedFrame> ScanRunner::capture_by_line(const ScanPlan& plan, M
     if (attempt == plan.frame_retries) return std::nullopt;
     // Only another arrival makes another edge.
     SettleCriterion wide = plan.settle;
-    const Micrometers away = std::max(deps_.stage.info().take_up, plan.step);
+    const Micrometers away = approach(plan, deps_.stage.info());
     wide.window = std::max(plan.settle.window, away * 0.5);
     deps_.stage.move_to(target - away, wide, stop);
     move = deps_.stage.move_to(target, plan.settle, stop);

@@ -94,11 +94,11 @@ void Engine::shut_down() {
 
 void Engine::finish() {
   shut_down();
-  evaluator_.finish();
   thread_.finish();
-  study_runner_.finish();
-  runner_.store_late_end();  // the last chance
+  runner_.store_late_end();  // the last chance, before what may take long
   following_.finish();
+  evaluator_.finish();
+  study_runner_.finish();
 }
 
 }  // namespace fvd

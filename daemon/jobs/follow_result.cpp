@@ -123,6 +123,9 @@ class Follower {
     const auto start = std::chrono::steady_clock::now();
     if (!fs::is_directory(task_.folder)) {
       give_up("the folder of the result is not there any more");
+      for (ResultFile& file : result_.files) {  // or somebody would look for them at every start
+        if (needs_digest(file)) not_made(file, "it was written, but the folder of the result is not there any more");
+      }
       return finished(start);
     }
     add_digests();

@@ -38,7 +38,9 @@ ObjectiveBook::ObjectiveBook(const std::vector<ObjectiveConfig>& objectives, Obj
   if (objectives_.empty()) return;
   const auto confirmed = known().confirmed;
   if (!confirmed) {
-    spdlog::warn("no objective is confirmed: recipes that name one are refused until 'fvdctl objective confirm NAME'");
+    spdlog::warn(
+        "no objective is confirmed: recipes that name one are refused, and no objective's soft limits hold, until "
+        "'fvdctl objective confirm NAME'");
     return;
   }
   board_.update([&confirmed](MachineRecord& machine) { machine.objective = confirmed->objective; });

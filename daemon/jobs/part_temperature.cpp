@@ -37,7 +37,7 @@ std::optional<double> number_in(std::string_view text) {
   const auto from = text.find_first_not_of(kSpace);
   if (from == std::string_view::npos) return std::nullopt;
   text = text.substr(from, text.find_last_not_of(kSpace) + 1 - from);
-  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;

@@ -186,6 +186,7 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   if (average) {
     average->add(result.map);
     result.repeated = average->finish(result.map);
+    if (auto warning = scatter_warning(*result.repeated, result.map)) result.warnings.push_back(*std::move(warning));
     average.reset();
   }
   books.settle(result);

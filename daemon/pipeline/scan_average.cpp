@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace fvd {
 
@@ -56,6 +57,30 @@ RepeatedScans ScanAverage::finish(HeightMap& map) const {
   }
   if (valid > 0) repeated.sd_rms_um = kUmPerMetre * std::sqrt(sum_m2 / static_cast<double>(valid));
   return repeated;
+}
+
+std::optional<Warning> scatter_warning(const RepeatedScans& repeated, const HeightMap& map) {
+  constexpr double kMostRatio = 3.0;
+  constexpr double kUmPerMetre = 1e6;
+  double squares_m2 = 0.0;
+  std::size_t valid = 0;
+  for (const float sigma_m : map.sigma_m.pixels()) {
+    if (std::isnan(sigma_m)) continue;
+    squares_m2 += static_cast<double>(sigma_m) * static_cast<double>(sigma_m);
+    ++valid;
+  }
+  if (valid == 0 || !repeated.sd_rms_um) return std::nullopt;
+  const double seen_um = *repeated.sd_rms_um;
+  const double expected_um = kUmPerMetre * std::sqrt(repeated.scans * squares_m2 / static_cast<double>(valid));
+  if (!(seen_um > kMostRatio * expected_um)) return std::nullopt;
+  std::ostringstream text;
+  text.precision(3);
+  text << "the " << repeated.scans << " scans scatter by " << seen_um
+       << " um (root mean square), by their own standard "
+       << "errors it would be " << expected_um
+       << " um: the part or the instrument moves or warms from scan to scan, and the standard errors of the mean, on "
+          "which U rests, do not contain that";
+  return Warning{"repeat_scatter", text.str()};
 }
 
 }  // namespace fvd

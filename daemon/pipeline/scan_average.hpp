@@ -3,11 +3,13 @@
 /// One height map of several scans of the same part, and how far they scatter.
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/focus/fit/height_map.hpp"
 #include "core/image/image.hpp"
 #include "daemon/result/repeated_scans.hpp"
+#include "daemon/result/result.hpp"
 
 namespace fvd {
 
@@ -39,5 +41,9 @@ class ScanAverage {
   Plane<float> variance_m2_;    ///< sum of squared standard errors
   Plane<MaskReasons> reasons_;  ///< of all scans
 };
+
+/// Where the scans scatter by more than three times what their standard errors tell: what they have in common, as drift
+/// from scan to scan, is in no standard error. map: as ScanAverage::finish() left it. context: pure.
+[[nodiscard]] std::optional<Warning> scatter_warning(const RepeatedScans& repeated, const HeightMap& map);
 
 }  // namespace fvd

@@ -81,6 +81,19 @@ TEST(Autofocus, StopsWhereTheRegionIsSharpestAndComesFromBelow) {
   }
 }
 
+TEST(Autofocus, StaysInItsRangeWhereTheStageStandsBesideItsTargets) {
+  for (const double error_um : {-0.4, 0.4}) {
+    sim::FakeClock clock;
+    sim::FakeAxis stage(clock);
+    stage.error_um = error_um;
+    TexturedCamera camera(clock, stage, error_um < 0.0 ? -90.0 : 90.0);
+    (void)autofocus(camera, stage, clock, from_to(-100.0, 100.0), {});
+    const auto [lowest, highest] = std::minmax_element(stage.targets_um.begin(), stage.targets_um.end());
+    EXPECT_GE(*lowest, -100.0 - stage.description.take_up.value);
+    EXPECT_LE(*highest, 100.0);
+  }
+}
+
 TEST(Autofocus, MovesNothingForARangeThatCannotBeSearched) {
   sim::FakeClock clock;
   sim::FakeAxis stage(clock);  // -500 to 500 um, 20 of take-up

@@ -4,6 +4,7 @@
 #include "core/stage/stage_accuracy.hpp"
 #include "gtest/gtest.h"
 #include "sim/fakes/fakes.hpp"
+#include "tests/support/expect_error.hpp"
 
 namespace fvd {
 namespace {
@@ -116,6 +117,19 @@ TEST_F(AScan, RefusesToLeaveTheLimitsBeforeAnythingMoves) {
   EXPECT_EQ(run_expecting_error(), ErrorCode::kStageLimit);
   EXPECT_TRUE(stage_.targets_um.empty());
   EXPECT_NE(message_.find("450..510"), std::string::npos) << message_;
+}
+
+TEST_F(AScan, CountsTheWayBelowTheFirstSliceWhoseLineTriggerFails) {
+  stage_.description.take_up = Micrometers{2.0};
+  plan_.line_trigger = true;
+  plan_.start = stage_.description.min + Micrometers{9.0};  // a step is 10
+
+  FVD_EXPECT_ERROR(kStageLimit, check_plan(plan_, stage_.description));
+  plan_.start = stage_.description.min + Micrometers{10.0};
+  EXPECT_NO_THROW(check_plan(plan_, stage_.description));
+  plan_.frame_retries = 0;
+  plan_.start = stage_.description.min + Micrometers{2.0};
+  EXPECT_NO_THROW(check_plan(plan_, stage_.description)) << "nobody comes back to a slice";
 }
 
 TEST_F(AScan, RefusesAnAxisWithoutReference) {

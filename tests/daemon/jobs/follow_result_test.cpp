@@ -142,6 +142,8 @@ TEST(FollowResult, TellsOfAFolderThatIsGone) {
   fs::remove_all(scratch / "job");
   const FollowedResult followed = follow_result(task, {});
   EXPECT_EQ(states_of(followed.text)["preview.png"], FileState::kNotMade);
+  EXPECT_EQ(states_of(followed.text)["height.tiff"], FileState::kNotMade);
+  EXPECT_FALSE(followed.pending) << "or every start would look for it";
   EXPECT_FALSE(fs::exists(scratch / "job"));
 }
 

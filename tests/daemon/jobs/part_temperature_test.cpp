@@ -57,10 +57,10 @@ TEST_F(ATemperatureFile, MayHaveSpaceAndASignAroundItsNumber) {
 }
 
 TEST_F(ATemperatureFile, TellsNothingWhereItHoldsAnythingElse) {
-  for (const std::string& text :
-       {std::string(), std::string("\n"), std::string("warm"), std::string("20.5 C"), std::string("20,5"),
-        std::string("20 21"), std::string("nan"), std::string("inf"), std::string("0x14"), std::string("++20"),
-        std::string("1e999"), std::string("20\0", 3), std::string(65, '0'), std::string(1U << 20U, ' ') + "20"}) {
+  for (const std::string& text : {std::string(), std::string("\n"), std::string("warm"), std::string("20.5 C"),
+                                  std::string("20,5"), std::string("20 21"), std::string("nan"), std::string("inf"),
+                                  std::string("0x14"), std::string("++20"), std::string("+-20"), std::string("1e999"),
+                                  std::string("20\0", 3), std::string(65, '0'), std::string(1U << 20U, ' ') + "20"}) {
     const TemperatureReading reading = read(text);
     EXPECT_FALSE(reading.temperature.has_value()) << text.substr(0, 70);
     EXPECT_THAT(reading.problem, HasSubstr("one number")) << text.substr(0, 70);

@@ -37,6 +37,8 @@ class AStoredResult : public test::AnEngine {
     ASSERT_TRUE(await_state(ScanState::kInitialized));
     job_id_ = jobs().start({1, "a", "part"}).job.job_id;
     ASSERT_TRUE(await_end_of(1));
+    // They are made after the job's end, and change what its result tells of them.
+    ASSERT_TRUE(await([this](const MachineStatus&) { return store_->with_pending_files().empty(); }));
   }
 
   [[nodiscard]] ResultService& results() { return services_->results; }

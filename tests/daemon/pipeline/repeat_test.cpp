@@ -45,7 +45,9 @@ class AFlatSurface : public ::testing::Test {
     sim::FakeClock clock;
     sim::FakeCamera camera(clock, kSide_px, kSide_px, std::move(script));
     sim::FakeAxis stage(clock);
-    camera.paint = [&stage, this](int, std::span<std::byte> pixels) { paint(stage.targets_um.back(), pixels); };
+    camera.paint = [&stage, this](int trigger, std::span<std::byte> pixels) {
+      paint(stage.targets_um.back() - warming_um_ * ((trigger - 1) / kSlices), pixels);
+    };
     WorkerPool pool(1);
     Measured measured;
     MeasurementObserver observer;
@@ -74,6 +76,7 @@ class AFlatSurface : public ::testing::Test {
   }
 
   Recipe recipe_;
+  double warming_um_ = 0.0;  ///< of the part, from scan to scan
   std::array<double, kSide_px * kSide_px> texture_{};
   std::mt19937 noise_{42};
 };
@@ -142,6 +145,16 @@ TEST_F(AFlatSurface, IsTakenInManyScansAsOneJob) {
   EXPECT_EQ(measured.data.slices_planned, 3 * kSlices);
   EXPECT_EQ(measured.data.slices_measured_before, 2 * kSlices);
   EXPECT_EQ(measured.data.steps.size(), static_cast<std::size_t>(kSlices)) << "the log is the last scan's";
+}
+
+TEST_F(AFlatSurface, WarnsOfAPartThatMovesFromScanToScan) {
+  EXPECT_THAT(measure_with(3).data.warnings, ::testing::IsEmpty());
+  warming_um_ = 2.0;
+
+  const Measured measured = measure_with(3);
+
+  ASSERT_EQ(measured.data.warnings.size(), 1U);
+  EXPECT_EQ(measured.data.warnings[0].code, "repeat_scatter");
 }
 
 TEST_F(AFlatSurface, IsOneScanUnlessMoreAreAskedFor) {

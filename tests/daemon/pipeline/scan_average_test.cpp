@@ -80,6 +80,26 @@ TEST(ScanAverage, TellsNoScatterWithoutAValidPoint) {
   EXPECT_FALSE(average.finish(map).sd_rms_um.has_value());
 }
 
+TEST(ScanAverage, WarnsWhereTheScansScatterByMoreThanTheyTell) {
+  // Two scans that differ by d: s = d / sqrt 2. The hole does not count.
+  const auto warning_of = [](double d_um) {
+    ScanAverage average(2, 1);
+    average.add(map_of({0.0F, kHole}, 0.3e-6F));
+    HeightMap map = map_of({static_cast<float>(1e-6 * d_um), 1e-6F}, 0.4e-6F);
+    average.add(map);
+    const RepeatedScans repeated = average.finish(map);
+    return scatter_warning(repeated, map);
+  };
+  const double expected_um = std::sqrt((0.09 + 0.16) / 2.0);
+
+  EXPECT_FALSE(warning_of(2.9 * expected_um * std::sqrt(2.0)).has_value());
+  const auto warning = warning_of(3.1 * expected_um * std::sqrt(2.0));
+  ASSERT_TRUE(warning.has_value());
+  EXPECT_EQ(warning->code, "repeat_scatter");
+  EXPECT_NE(warning->text.find("0.354"), std::string::npos) << warning->text;
+  EXPECT_FALSE(scatter_warning({2, {}, std::nullopt}, map_of({kHole}, 0.0F)).has_value()) << "no point tells";
+}
+
 TEST(ScanAverage, LosesNoDigitsFarFromZero) {
   // Scatter of 10 nm at a height of 100 mm, where a float has steps of 7 nm: the sums may not add their own rounding.
   ScanAverage average(1, 1);
