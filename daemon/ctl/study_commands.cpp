@@ -1,6 +1,5 @@
 #include "daemon/ctl/study_commands.hpp"
 
-#include <chrono>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +7,8 @@
 #include "core/base/error.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_command.hpp"
+#include "daemon/ctl/study_artefact_commands.hpp"
+#include "daemon/ctl/study_options.hpp"
 #include "daemon/ctl/study_scans.hpp"
 #include "daemon/ctl/study_text.hpp"
 
@@ -15,54 +16,11 @@ namespace fvd::ctl {
 
 namespace {
 
-/// The daemon gives a study up after five minutes.
-constexpr std::chrono::seconds kLongestStudy{330};
-
-/// What the commands share.
-struct Desk {
-  StudyArguments& a;
-  const std::function<RpcClient()> connect;
-  const std::string& client;
-  const Terminal& terminal;
-  std::function<int()>& chosen;
-};
-
-template <typename Value>
-void put(Json& params, const char* key, const std::optional<Value>& value) {
-  if (value) params[key] = *value;
-}
-
-/// The jobs given, those of a file, or new ones.
-std::vector<std::string> jobs_of(const Desk& desk, RpcClient& client) {
-  const StudyArguments& a = desk.a;
-  const int ways = (a.jobs.empty() ? 0 : 1) + (a.jobs_file.empty() ? 0 : 1) + (a.scans == 0 ? 0 : 1);
-  if (ways != 1) throw UsageError("give job ids, or --jobs-file, or --scans with --part");
-  if (!a.jobs.empty()) return a.jobs;
-  if (!a.jobs_file.empty()) return read_jobs_file(a.jobs_file);
-  if (a.part.empty()) throw UsageError("--scans needs --part");
-  return scan_often(client, {a.scan_recipe, a.part, desk.client}, a.scans, desk.terminal);
-}
-
-int finish(const Desk& desk, RpcClient& client, const std::string& method, Json params) {
-  if (!desk.a.person.empty()) params["person"] = desk.a.person;
-  const Json reply = client.call(method, params, kLongestStudy);
-  desk.terminal.out << (desk.a.json ? reply.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"
-                                    : study_text(reply))
-                    << std::flush;
-  return study_exit_code(reply);
-}
-
 int run_maps(const Desk& desk, const std::string& method) {
-  RpcClient client = desk.connect();
-  Json params{{"jobs", jobs_of(desk, client)}};
+  Json params{{"jobs", jobs_of(desk)}};
   put(params, "s_nesting_um", desk.a.s_nesting_um);
-  if (!desk.a.region_um.empty()) {
-    params["region"]["rectangle_um"] = {{"x", desk.a.region_um[0]},
-                                        {"y", desk.a.region_um[1]},
-                                        {"width", desk.a.region_um[2]},
-                                        {"height", desk.a.region_um[3]}};
-  }
-  return finish(desk, client, method, params);
+  put_region(desk.a, params);
+  return finish(desk, method, params);
 }
 
 /// "JOB=1,2": the job and exactly `count` numbers.
@@ -86,11 +44,6 @@ std::pair<std::string, std::vector<double>> split_step(const std::string& text, 
   return {text.substr(0, equals), numbers};
 }
 
-void put_evaluated(const StudyArguments& a, Json& params) {
-  if (!a.evaluate_by.empty()) params["recipe"] = a.evaluate_by;
-  if (a.require_calibration) params["require_calibration"] = true;
-}
-
 int run_steps(const Desk& desk, const std::string& method) {
   Json params{{"steps", Json::array()}};
   for (const std::string& text : desk.a.steps) {
@@ -104,8 +57,7 @@ int run_steps(const Desk& desk, const std::string& method) {
   }
   put(params, "u_common_relative", desk.a.u_common_relative);
   put_evaluated(desk.a, params);
-  RpcClient client = desk.connect();
-  return finish(desk, client, method, params);
+  return finish(desk, method, params);
 }
 
 int run_linearity(const Desk& desk) {
@@ -117,30 +69,31 @@ int run_linearity(const Desk& desk) {
     params["steps"].push_back(std::move(step));
   }
   put_evaluated(desk.a, params);
-  RpcClient client = desk.connect();
-  return finish(desk, client, "verify.linearity", params);
+  return finish(desk, "verify.linearity", params);
 }
 
 int run_type1(const Desk& desk) {
   const StudyArguments& a = desk.a;
-  RpcClient client = desk.connect();
-  Json params{{"jobs", jobs_of(desk, client)}, {"measurement", a.measurement}};
+  Json params{{"jobs", jobs_of(desk)}, {"measurement", a.measurement}};
   put(params, "value", a.value);
   put(params, "reference", a.reference);
   put(params, "tolerance", a.tolerance);
   put(params, "resolution", a.resolution);
   put(params, "required", a.required);
   put_evaluated(a, params);
-  return finish(desk, client, "gauge.type1", params);
+  return finish(desk, "gauge.type1", params);
+}
+
+std::vector<std::string> crossed_jobs(const Desk& desk) {
+  const StudyArguments& a = desk.a;
+  RpcClient client = desk.connect();
+  return scan_crossed(client, {a.scan_recipe, a.part, desk.client}, a.parts, a.operators, a.trials, desk.terminal);
 }
 
 int run_rr(const Desk& desk) {
   const StudyArguments& a = desk.a;
-  RpcClient client = desk.connect();
-  const bool given = !a.jobs.empty() || !a.jobs_file.empty();
-  const std::vector<std::string> jobs =
-      given ? jobs_of(desk, client)
-            : scan_crossed(client, {a.scan_recipe, a.part, desk.client}, a.parts, a.operators, a.trials, desk.terminal);
+  const bool given = !a.jobs.empty() || !a.jobs_file.empty() || !a.folders.empty();
+  const std::vector<std::string> jobs = given ? jobs_of(desk) : crossed_jobs(desk);
   Json params{{"parts", a.parts},
               {"operators", a.operators},
               {"trials", a.trials},
@@ -149,15 +102,14 @@ int run_rr(const Desk& desk) {
   put(params, "value", a.value);
   put(params, "tolerance", a.tolerance);
   put_evaluated(a, params);
-  return finish(desk, client, "gauge.rr", params);
+  return finish(desk, "gauge.rr", params);
 }
 
 int run_capability(const Desk& desk) {
   Json params{{"type1", desk.a.type1}, {"rr", desk.a.rr}};
   put(params, "tolerance", desk.a.tolerance);
   put(params, "u_calibration", desk.a.u_calibration);
-  RpcClient client = desk.connect();
-  return finish(desk, client, "gauge.capability", params);
+  return finish(desk, "gauge.capability", params);
 }
 
 int print(const Desk& desk, const Json& reply) {
@@ -178,42 +130,11 @@ int run_accept(const Desk& desk) {
   return kExitOk;
 }
 
-CLI::App* add(CLI::App& parent, const Desk& desk, const char* name, const char* help, std::function<int()> run) {
-  CLI::App* sub = parent.add_subcommand(name, help);
-  sub->callback([&chosen = desk.chosen, run = std::move(run)] { chosen = run; });
-  sub->add_flag("--json", desk.a.json, "print JSON");
-  return sub;
-}
-
-CLI::App* add_asked(CLI::App& parent, const Desk& desk, const char* name, const char* help, std::function<int()> run) {
-  CLI::App* sub = add(parent, desk, name, help, std::move(run));
-  sub->add_option("--person", desk.a.person, "who asks for it");
-  return sub;
-}
-
-void add_job_options(CLI::App& sub, StudyArguments& a, bool scans) {
-  sub.add_option("jobs", a.jobs, "job ids");
-  sub.add_option("--jobs-file", a.jobs_file, "file with a job id a line")->check(CLI::ExistingFile);
-  if (scans)
-    sub.add_option("--scans", a.scans, "start so many jobs first; MOVES the stage")->check(CLI::Range(1, 1000));
-  sub.add_option("--recipe", a.scan_recipe, "recipe of the jobs that are started; default: the prepared one");
-  sub.add_option("--part", a.part, "part id of the jobs that are started");
-}
-
-void add_value_options(CLI::App& sub, StudyArguments& a) {
-  sub.add_option("--measurement", a.measurement, "its name in the recipe")->capture_default_str();
-  sub.add_option("--value", a.value, "of the measurement, as height_um");
-  sub.add_option("--evaluate-by", a.evaluate_by, "recipe whose evaluation the surfaces are given to anew");
-  sub.add_flag("--require-calibration", a.require_calibration, "refuse jobs that were measured without constants");
-}
-
 void add_map_command(CLI::App& parent, const Desk& desk, const char* name, const std::string& method,
                      const char* help) {
   CLI::App* sub = add_asked(parent, desk, name, help, [desk, method] { return run_maps(desk, method); });
   add_job_options(*sub, desk.a, true);
-  sub->add_option("--region-um", desk.a.region_um, "x,y,width,height of the part of the field that counts")
-      ->delimiter(',')
-      ->expected(4);
+  add_region_options(*sub, desk.a);
   if (std::string(name) == "flatness") {
     sub->add_option("--s-nesting-um", desk.a.s_nesting_um, "S-filter that each map is given to first");
   }
@@ -226,6 +147,7 @@ void add_step_command(CLI::App& parent, const Desk& desk, const char* name, cons
   sub->add_option("--u-common-relative", desk.a.u_common_relative,
                   "part of the certificates' uncertainty that all steps share, over the height");
   add_value_options(*sub, desk.a);
+  add_offline_option(*sub, desk.a);
 }
 
 void add_gauge_commands(CLI::App& app, const Desk& desk) {
@@ -296,11 +218,14 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments, const std::fun
                             [desk] { return run_linearity(desk); });
   sub->add_option("--step", arguments.steps, "JOB=Z_UM; once for each job")->required();
   add_value_options(*sub, arguments);
+  add_offline_option(*sub, arguments);
+  add_verifying_artefacts(*verify, desk);
   CLI::App* calibrate = app.add_subcommand("calibrate", "propose constants of the instrument, and accept them");
   calibrate->require_subcommand(1);
   add_map_command(*calibrate, desk, "noise", "calibrate.noise", "propose the measurement noise");
   add_map_command(*calibrate, desk, "flatness", "calibrate.flatness", "propose the reference map of a flat");
   add_step_command(*calibrate, desk, "z", "calibrate.z", "propose alpha_z and l_z");
+  add_calibrating_artefacts(*calibrate, desk);
   sub = add(*calibrate, desk, "accept", "make a study's constants valid", [desk] { return run_accept(desk); });
   sub->add_option("study", arguments.study, "its id")->required();
   sub->add_option("--person", arguments.person, "who accepts them")->required();

@@ -19,11 +19,23 @@ namespace fvd::ctl {
 /// The arguments as typed.
 struct StudyArguments {
   std::vector<std::string> jobs;
-  std::string jobs_file;  ///< a job id a line
-  int scans = 0;          ///< jobs to start for the study; 0 = none
+  std::string jobs_file;             ///< a job id a line
+  std::vector<std::string> folders;  ///< of results, in place of jobs: without a daemon
+  bool offline = false;              ///< the jobs of steps are such folders
+  std::string calibration;           ///< folder of calibration.json, for reference maps; without a daemon
+  int scans = 0;                     ///< jobs to start for the study; 0 = none
   std::string scan_recipe;
   std::string part;
   std::vector<double> region_um;  ///< x, y, width, height
+  std::vector<double> circle_um;  ///< x, y, radius
+  std::optional<double> grid_pitch_um;
+  std::optional<double> u_grid_relative;
+  std::string artefact;
+  std::optional<double> height_um;
+  std::optional<int> pairs;
+  std::optional<double> radius_um;
+  std::optional<double> u_radius_um;
+  bool bowl = false;
   std::optional<double> s_nesting_um;
   std::vector<std::string> steps;  ///< "JOB=REFERENCE,U" or "JOB=Z"
   std::optional<double> u_common_relative;

@@ -52,6 +52,7 @@ std::string study_text(const Json& reply) {
   for (const Json& figure : study.value("figures", Json::array())) text += figure_line(figure);
   text += notes(study, "refusals", "refused");
   text += notes(study, "warnings", "warning");
+  if (!reply.value("kept", true)) return text + "nothing is kept: the study is of folders, without a daemon\n";
   text += padded("study", 8) + text_of(study, "id") + "\n";
   text += padded("report", 8) + text_of(reply, "report") + "\n";
   if (study.contains("proposal")) {

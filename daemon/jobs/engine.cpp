@@ -59,7 +59,8 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
                                           recipe.id, machine.objective,
                                           simulated || (machine.devices && machine.devices->simulated));
                                     }}),
-      evaluator_({deps.store, board_, config.paths.state_dir / "results", memory_budget_bytes(config)}),
+      evaluator_({deps.store, board_, config.paths.state_dir / "results", config.paths.state_dir / "calibration",
+                  memory_budget_bytes(config)}),
       jobs_({deps.store,
              board_,
              work_,
@@ -70,7 +71,8 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              [this] { return tasks_.task_stop(); },
              config.objectives}),
       desk_({[&store = deps.store](const std::string& id) { return store.find(id); },
-             [this](const std::string& id) { return recipes_.load(id); }, memory_budget_bytes(config)},
+             [this](const std::string& id) { return recipes_.load(id); }, memory_budget_bytes(config),
+             calibrations_.folder()},
             studies_, calibrations_, config.camera.simulated || config.stage.simulated),
       study_runner_(desk_, [this] { board_.update([](MachineRecord&) {}); }),
       thread_(hub_, board_, work_, ticks_, [this] { runner_.store_late_end(); }) {

@@ -1,22 +1,10 @@
 #include "daemon/jobs/job_constants.hpp"
 
-#include <algorithm>
-
 #include "core/base/error.hpp"
+#include "daemon/pipeline/reference_input.hpp"
 #include "daemon/surface_files/reference_map.hpp"
 
 namespace fvd {
-
-namespace {
-
-bool asks_for_reference(const EvaluationPlan& plan) {
-  const auto asks = [](const PlannedOperation& step) { return step.op == "flatness_reference"; };
-  return std::any_of(plan.surfaces.begin(), plan.surfaces.end(), [&asks](const auto& surface) {
-    return std::any_of(surface.second.steps.begin(), surface.second.steps.end(), asks);
-  });
-}
-
-}  // namespace
 
 void note_constants(const Recipe& recipe, const CalibrationBook& calibrations, const RepeatabilityOf& repeatability,
                     ResultData& result) {

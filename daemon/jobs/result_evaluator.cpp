@@ -13,6 +13,7 @@
 #include "daemon/export/result_json.hpp"
 #include "daemon/pipeline/evaluation_record.hpp"
 #include "daemon/pipeline/job_memory.hpp"
+#include "daemon/pipeline/reference_input.hpp"
 
 namespace fvd {
 
@@ -134,7 +135,8 @@ std::string ResultEvaluator::evaluated(const Order& order) const {
   row.recipe = order.recipe.id;
   row.recipe_sha256 = order.recipe.sha256;
   AtomicDirectory directory(deps_.results_dir / row.id);
-  const StoredSurface source = read_stored_surface(order.source.result_dir);
+  StoredSurface source = read_stored_surface(order.source.result_dir);
+  read_reference_of(deps_.calibration_dir, order.recipe.evaluation, source.context);
   const EvaluationRecord record = write_evaluation_record(
       directory, source, order.recipe, {row.id, kVersion, std::chrono::system_clock::now()}, nullptr);
   directory.commit();

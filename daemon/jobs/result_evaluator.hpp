@@ -24,7 +24,8 @@ class ResultEvaluator {
     JobStore& store;
     MachineBoard& board;  ///< whose listener is told when an evaluation is done
     std::filesystem::path results_dir;
-    std::size_t memory_bytes = 0;  ///< budget of one evaluation; a job that runs beside it has its own
+    std::filesystem::path calibration_dir;  ///< with the reference maps that results name
+    std::size_t memory_bytes = 0;           ///< budget of one evaluation; a job that runs beside it has its own
   };
   explicit ResultEvaluator(Dependencies dependencies);
   /// finish().

@@ -1,6 +1,7 @@
 #include "daemon/report/study_page.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/report/axis_ticks.hpp"
 #include "daemon/report/colour_scale.hpp"
@@ -49,6 +50,24 @@ double draw_head(Canvas& canvas, const StudyPage& page) {
   return y + 6.0;
 }
 
+/// The longest is as long as arrows may be without a tangle.
+void draw_arrows(Canvas& canvas, const PageRect& field, const StudyMap& map) {
+  constexpr double kLongest = 16.0;
+  double longest_um = 0.0;
+  for (const StudyArrow& arrow : map.arrows) longest_um = std::max(longest_um, std::hypot(arrow.x_um, arrow.y_um));
+  const double per_um = longest_um > 0.0 ? kLongest / longest_um : 0.0;
+  const double per_column = field.width / map.height_m.width();
+  const double per_row = field.height / map.height_m.height();
+  for (const StudyArrow& arrow : map.arrows) {
+    const PagePoint tail{field.x + (arrow.column + 0.5) * per_column, field.y + (arrow.row + 0.5) * per_row};
+    const PagePoint head{tail.x + arrow.x_um * per_um, tail.y + arrow.y_um * per_um};
+    canvas.disc(tail, 1.1, colour::kBad);
+    canvas.line(tail, head, colour::kBad, 0.8);
+  }
+  canvas.text({field.x, field.bottom() + kMapBottom}, map.arrows_title,
+              {.size = kSmall, .ink = colour::kBad, .room = field.width + kBarRoom});
+}
+
 void draw_map(Canvas& canvas, const PageRect& place, const StudyMap& map) {
   PictureSurface surface;
   surface.height_m = map.height_m.view();
@@ -60,6 +79,7 @@ void draw_map(Canvas& canvas, const PageRect& place, const StudyMap& map) {
   const ColourScale scale = map.errors ? ColourScale::kMagma : ColourScale::kViridis;
   draw_map(canvas, field, surface, coloured(image, range, scale));
   draw_colour_bar(canvas, field, range, scale, map.title);
+  if (!map.arrows.empty()) draw_arrows(canvas, field, map);
 }
 
 /// The ends of an axis that has all the values with some room, and its ticks.
@@ -146,6 +166,7 @@ double draw_rows(Canvas& canvas, double top, const StudyPage& page) {
   canvas.text({kPage.x + 0.77 * kPage.width, base}, "Unit", {.size = kSmall, .ink = colour::kPaleInk});
   double y = top + kRow;
   canvas.line({kPage.x, y}, {kPage.right(), y}, colour::kInk, 0.6);
+  y += 1.5;
   for (std::size_t i = 0; i < std::min(page.rows.size(), kMostRows); ++i) {
     draw_row(canvas, y + kRow - 3.3, page.rows[i]);
     y += kRow;

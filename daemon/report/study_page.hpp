@@ -12,13 +12,23 @@
 
 namespace fvd {
 
+/// From the centre of the first pixel; right and down.
+struct StudyArrow {
+  double column = 0.0;
+  double row = 0.0;
+  double x_um = 0.0;
+  double y_um = 0.0;
+};
+
 /// A map of the field.
 struct StudyMap {
   Plane<float> height_m;  ///< metres, NaN = hole
   double pitch_x_um = 1.0;
   double pitch_y_um = 1.0;
-  std::string title;    ///< what the colours are, with its unit: "noise / µm"
-  bool errors = false;  ///< colours of standard errors in place of those of heights
+  std::string title;                    ///< what the colours are, with its unit: "noise / µm"
+  bool errors = false;                  ///< colours of standard errors in place of those of heights
+  std::vector<StudyArrow> arrows = {};  ///< of one scale, so that the longest is well seen
+  std::string arrows_title = {};        ///< what they are, with the length of the longest
 };
 
 struct StudyPlotPoint {

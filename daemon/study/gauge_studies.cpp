@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "config/field_reader.hpp"
 #include "core/metrology/study/capability.hpp"
@@ -122,7 +123,10 @@ void warn_of_rr(const metrology::GaugeRr& gauge, StudyDraft& draft) {
 }
 
 void plot_values(const std::vector<double>& values, double from, const std::string& unit, StudyDraft& draft) {
-  StudyPlot plot{"values in the order given", "number", "value less " + number_text(from) + " / " + unit, {}};
+  StudyPlot plot{"values in the order given",
+                 "number",
+                 "value less " + number_text(from) + " / " + (unit == "um" ? "µm" : unit),
+                 {}};
   for (std::size_t i = 0; i < values.size(); ++i) {
     plot.points.push_back({static_cast<double>(i) + 1.0, values[i] - from, {}});
   }
@@ -250,6 +254,47 @@ std::optional<GaugeRepeatability> repeatability_of(const Study& study) {
   double dof = static_cast<double>(request.parts) * request.operators * (request.trials - 1.0);
   if (value_of("interaction_pooled").value_or(0.0) != 0.0) dof += (request.parts - 1.0) * (request.operators - 1.0);
   return GaugeRepeatability{study.values.front().name, *ev, dof};
+}
+
+StudyDraft texture_study(const TextureRequest& request, Purpose purpose, StudyJobs& jobs) {
+  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kUsualPlacements = 10;
+  if (request.jobs.size() < 2 || request.jobs.size() > kMost) {
+    throw Error(ErrorCode::kStudyRefused,
+                std::to_string(request.jobs.size()) + " jobs were given, 2 to 200 make this study");
+  }
+  refuse_repeated_jobs(request.jobs);
+  StudyDraft draft;
+  std::string unit;
+  const std::vector<double> values = values_of(request, jobs, draft, unit);
+  if (!jobs.of_one_part(request.jobs)) {
+    draft.warn("parts_differ", "the jobs name different parts; reproducibility is that of one surface");
+  }
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const double sd = std::sqrt(squares / (n - 1.0));
+  const std::string name = draft.study.values.front().name;
+  constexpr double kFarFromZero = 2.0;
+  if (!(std::abs(mean) > kFarFromZero * sd)) {
+    throw Error(ErrorCode::kStudyRefused, name + " scatters by " + number_text(sd) + " about " + number_text(mean) +
+                                              ": a share in percent of a value so near to 0 says nothing");
+  }
+  const double percent = 100.0 * sd / std::abs(mean);
+  draft.figure("reproducibility_percent", percent, "%", percent / std::sqrt(2.0 * (n - 1.0)));
+  draft.figure("mean", mean, unit, sd / std::sqrt(n));
+  draft.figure("sd", sd, unit);
+  draft.figure("scans", n, "1");
+  if (values.size() < kUsualPlacements) {
+    draft.warn("few_scans", std::to_string(values.size()) + " scans; 10 are the usual least number");
+  }
+  plot_values(values, mean, unit, draft);
+  if (purpose == Purpose::kCalibrate) {
+    draft.study.proposal = proposal_for(draft.study);
+    draft.study.proposal->texture = TextureConstants{percent, {}};
+  }
+  return draft;
 }
 
 }  // namespace fvd

@@ -38,6 +38,29 @@ enum class Purpose { kVerify, kCalibrate };
 /// EV, AV, INT, GRR, PV, TV, %GRR, ndc.
 [[nodiscard]] StudyDraft rr_study(const RrRequest& request, StudyJobs& jobs);
 
+/// Pitch, shear and mapping deviations; with a second job how the picture moves with z. Each job's z is the mean of its
+/// heights, for where the surface is in focus the picture shows it.
+[[nodiscard]] StudyDraft lateral_study(const LateralRequest& request, StudyJobs& jobs);
+
+/// W_R and D_LIM, of a star by direction.
+[[nodiscard]] StudyDraft resolution_study(const ResolutionRequest& request, StudyJobs& jobs);
+
+/// P_F, P_S and the slope limit. Refused where the region has the base that the cap stands on: the refusal tells the
+/// circle that keeps it out.
+[[nodiscard]] StudyDraft sphere_study(const SphereRequest& request, StudyJobs& jobs);
+
+/// The difference of a scan downwards from one upwards, its plane, and what the encoder tells of it.
+[[nodiscard]] StudyDraft hysteresis_study(const HysteresisRequest& request, StudyJobs& jobs);
+
+/// Relative standard deviation of a value over jobs, in percent.
+[[nodiscard]] StudyDraft texture_study(const TextureRequest& request, Purpose purpose, StudyJobs& jobs);
+
+/// Every study but those of two others. Throws Error kStudyRefused for gauge.capability.
+[[nodiscard]] StudyDraft draft_of_jobs(const StudyRequest& request, StudyJobs& jobs);
+
+/// What the study tells of its request: kind, person, parameters, and this software's version.
+void note_request(const StudyRequest& request, Study& study);
+
 /// Q_MS and Q_MP. Throws Error kStudyRefused where the two are of different values, recipes or objectives, or of
 /// another kind.
 [[nodiscard]] StudyDraft capability_study(const CapabilityRequest& request, const Study& type1, const Study& rr);

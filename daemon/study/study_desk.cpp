@@ -4,9 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "config/field_writer.hpp"
 #include "core/base/error.hpp"
-#include "daemon/base/version.hpp"
 #include "daemon/export/json_values.hpp"
 #include "daemon/study/studies.hpp"
 #include "daemon/study/study_report.hpp"
@@ -18,41 +16,9 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::kStudyRefused, why); }
 
-std::string inputs_text(StudyInput input) {
-  return std::visit(
-      [](auto& request) { return fields_to_json([&](Fields& fields) { request.describe(fields); }).dump(); }, input);
-}
-
 bool is_printable(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c >= 0x20 && c != 0x7F; });
 }
-
-/// Studies of two others.
-struct OfStudies {
-  const StudyBook& book;
-  StudyDraft operator()(const CapabilityRequest& request) const {
-    return capability_study(request, book.get(request.type1), book.get(request.rr));
-  }
-};
-
-/// Studies of jobs.
-struct OfJobs {
-  StudyJobs& jobs;
-  Purpose purpose;
-  StudyDraft operator()(const NoiseRequest& request) const { return noise_study(request, purpose, jobs); }
-  StudyDraft operator()(const FlatnessRequest& request) const { return flatness_study(request, purpose, jobs); }
-  StudyDraft operator()(const StepRequest& request) const { return step_study(request, purpose, jobs); }
-  StudyDraft operator()(const LinearityRequest& request) const { return linearity_study(request, jobs); }
-  StudyDraft operator()(const Type1Request& request) const { return type1_study(request, jobs); }
-  StudyDraft operator()(const RrRequest& request) const { return rr_study(request, jobs); }
-};
-
-template <typename... Parts>
-struct Overloaded : Parts... {
-  using Parts::operator()...;
-};
-template <typename... Parts>
-Overloaded(Parts...) -> Overloaded<Parts...>;
 
 void check_acceptable(const Study& study, const AcceptRequest& request, bool simulated) {
   if (!study.proposal) refuse(study.id + " is of the kind " + study.kind + ", which proposes no constants");
@@ -115,7 +81,13 @@ std::vector<CalibrationFile> take_over(const Study& study, const std::filesystem
     next.z->lead_um = before->lead_um;
   }
   take(study.proposal->noise, next.noise);
+  const std::optional<LateralConstants> lateral_before = next.lateral;
   take(study.proposal->lateral, next.lateral);
+  const StudyFigure* const drift = study.find("drift_x_px_per_um");
+  if (study.proposal->lateral && lateral_before && (drift == nullptr || !drift->value)) {  // of one height alone
+    next.lateral->drift_px_per_um_x = lateral_before->drift_px_per_um_x;
+    next.lateral->drift_px_per_um_y = lateral_before->drift_px_per_um_y;
+  }
   take(study.proposal->texture, next.texture);
   take(study.proposal->flatness, next.flatness);
   if (!study.proposal->flatness) return files;
@@ -149,18 +121,17 @@ StudyDesk::StudyDesk(StudySources sources, StudyBook& studies, CalibrationBook& 
     : sources_(std::move(sources)), studies_(studies), calibrations_(calibrations), simulated_(simulated) {}
 
 StudyDraft StudyDesk::draft(const StudyRequest& request, StudyJobs& jobs) const {
-  const Purpose purpose = request.kind.starts_with("calibrate.") ? Purpose::kCalibrate : Purpose::kVerify;
-  return std::visit(Overloaded{OfStudies{studies_}, OfJobs{jobs, purpose}}, request.input);
+  if (const auto* of_studies = std::get_if<CapabilityRequest>(&request.input)) {
+    return capability_study(*of_studies, studies_.get(of_studies->type1), studies_.get(of_studies->rr));
+  }
+  return draft_of_jobs(request, jobs);
 }
 
 Study StudyDesk::make(const StudyRequest& request, std::stop_token stop, std::function<void()> alive) {
   const MutexLock lock(making_);
   StudyJobs jobs(sources_, std::move(stop), std::move(alive));
   StudyDraft made = draft(request, jobs);
-  made.study.kind = request.kind;
-  made.study.person = request.person;
-  made.study.software_version = kVersion;
-  made.study.inputs = inputs_text(request.input);
+  note_request(request, made.study);
   StudyPage page = study_page(made);
   return studies_.keep(std::move(made), [&page](const Study& study) {
     set_identity(study, page);

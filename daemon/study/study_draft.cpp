@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "core/base/units.hpp"
 #include "daemon/export/gsf.hpp"
@@ -29,6 +30,23 @@ void StudyDraft::figure(const std::string& name, const std::optional<double>& va
                         const std::string& reason) {
   if (value) return figure(name, *value, unit);
   study.figures.push_back({.name = name, .unit = unit, .reason = reason});
+}
+
+StudyMap study_map(const Plane<float>& um, const metrology::HeightField& like, const std::string& title, bool errors) {
+  return {metres_of_um(um), like.pitch_x_um, like.pitch_y_um, title, errors, {}};
+}
+
+Calibration proposal_for(const Study& study) {
+  Calibration proposal;
+  proposal.objective = study.objective;
+  return proposal;
+}
+
+void refuse_repeated_jobs(const std::vector<std::string>& jobs) {
+  std::set<std::string> seen;
+  for (const std::string& job : jobs) {
+    if (!seen.insert(job).second) throw Error(ErrorCode::kStudyRefused, "job " + job + " is given twice");
+  }
 }
 
 Plane<float> metres_of_um(const Plane<float>& um) {

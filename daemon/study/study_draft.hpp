@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/metrology/height_field.hpp"
 #include "core/metrology/study/noise_study.hpp"
 #include "daemon/report/study_page.hpp"
 #include "daemon/study/study.hpp"
@@ -43,6 +44,14 @@ template <typename T>
 /// The bytes of a map as GSF. um: NaN = hole.
 [[nodiscard]] std::string gsf_of_um(const Plane<float>& um, double pitch_x_um, double pitch_y_um,
                                     const std::string& title);
+/// The same map for the page, of the field it was made from.
+[[nodiscard]] StudyMap study_map(const Plane<float>& um, const metrology::HeightField& like, const std::string& title,
+                                 bool errors);
+/// Of the study's objective, without constants.
+[[nodiscard]] Calibration proposal_for(const Study& study);
+/// Throws Error kStudyRefused where one job stands twice: it would look like two that agree.
+void refuse_repeated_jobs(const std::vector<std::string>& jobs);
+
 [[nodiscard]] Plane<float> metres_of_um(const Plane<float>& um);
 [[nodiscard]] Plane<float> floats_of(const Plane<double>& values);
 

@@ -11,6 +11,7 @@
 #include "daemon/export/result_json.hpp"
 #include "daemon/pipeline/evaluation_input.hpp"
 #include "daemon/pipeline/job_memory.hpp"
+#include "daemon/pipeline/reference_input.hpp"
 #include "daemon/study/study_draft.hpp"
 #include "daemon/surface_files/result_folder.hpp"
 
@@ -91,9 +92,13 @@ StudyJobs::Job& StudyJobs::job(const std::string& id) {
 
 const Result& StudyJobs::result(const std::string& id) { return job(id).result; }
 
-metrology::HeightField StudyJobs::field(const std::string& id, std::optional<double> s_nesting_um) {
+metrology::HeightField StudyJobs::field(const std::string& id, std::optional<double> s_nesting_um,
+                                        std::optional<double> else_pitch_um) {
   const Job& found = job(id);
-  ResultSurface read = read_result_surface(found.folder);
+  check_memory({id});
+  SurfaceReadOptions options;
+  if (!found.result.focus.pixel_pitch_x_um) options.pitch_x_um = options.pitch_y_um = else_pitch_um;
+  ResultSurface read = read_result_surface(found.folder, options);
   note_window(read.result.focus, read.surface);
   EvaluationPlan plan;
   std::string name = kMeasuredSurface;
@@ -158,6 +163,7 @@ const Evaluation& StudyJobs::evaluation_of(const std::string& id, const std::str
   note_window(read.result.focus, read.surface);
   keep_repeatability_of(*recipe_, found.result, context);
   context.calibration = found.result.calibration;
+  read_reference_of(sources_.calibration_folder, recipe_->evaluation, context);
   if (corrected == Corrected::kUndone && context.calibration) context.calibration->z.reset();
   return found.evaluation.emplace(evaluate_surface(read.surface, recipe_->evaluation, context, nullptr));
 }
@@ -196,6 +202,11 @@ void StudyJobs::require_calibration(const std::string& id) {
   if (found.calibration || (found.evaluation && found.evaluation->calibration != "none")) return;
   throw Error(ErrorCode::kCalibrationMissing,
               "job " + id + " was measured without constants of the instrument; see calibrate.accept");
+}
+
+bool StudyJobs::of_one_part(const std::vector<std::string>& jobs) {
+  const std::string& first = result(jobs.front()).job.part_id;
+  return std::all_of(jobs.begin(), jobs.end(), [&](const std::string& id) { return result(id).job.part_id == first; });
 }
 
 void StudyJobs::note(const std::vector<std::string>& jobs, const std::string& evaluated_by, Study& study) {
@@ -238,17 +249,30 @@ void StudyJobs::note(const std::vector<std::string>& jobs, const std::string& ev
 }
 
 metrology::Region region_of(const StudyRegion& region, const metrology::HeightField& field) {
-  if (!region.rectangle) return {};
-  const PlannedRectangle& r = *region.rectangle;
   const double width_um = field.width() * field.pitch_x_um;
   const double height_um = field.height() * field.pitch_y_um;
-  constexpr double kSlack_um = 1e-9;
-  if (r.x_um < 0.0 || r.y_um < 0.0 || r.x_um + r.width_um > width_um + kSlack_um ||
-      r.y_um + r.height_um > height_um + kSlack_um) {
+  const auto check = [&](double left, double top, double right, double bottom) {
+    constexpr double kSlack_um = 1e-9;
+    if (left >= -kSlack_um && top >= -kSlack_um && right <= width_um + kSlack_um && bottom <= height_um + kSlack_um) {
+      return;
+    }
     throw Error(ErrorCode::kRegionOutside, "the region leaves the field, which is " + number_text(width_um) + " x " +
                                                number_text(height_um) + " um");
+  };
+  metrology::Region inside;
+  if (region.rectangle) {
+    const PlannedRectangle& r = *region.rectangle;
+    check(r.x_um, r.y_um, r.x_um + r.width_um, r.y_um + r.height_um);
+    inside = metrology::rectangle_region(metrology::grid_of(field), {r.x_um, r.y_um, r.width_um, r.height_um});
   }
-  return metrology::rectangle_region(metrology::grid_of(field), {r.x_um, r.y_um, r.width_um, r.height_um});
+  if (!region.circle) return inside;
+  const StudyCircle& c = *region.circle;
+  check(c.x_um - c.radius_um, c.y_um - c.radius_um, c.x_um + c.radius_um, c.y_um + c.radius_um);
+  metrology::Region round = metrology::circle_region(metrology::grid_of(field), {c.x_um, c.y_um, c.radius_um});
+  if (inside.empty()) return round;
+  std::transform(round.pixels().begin(), round.pixels().end(), inside.pixels().begin(), round.pixels().begin(),
+                 [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a != 0 && b != 0 ? 1 : 0); });
+  return round;
 }
 
 }  // namespace fvd

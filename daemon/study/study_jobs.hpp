@@ -3,6 +3,7 @@
 /// What jobs left behind, as studies take it.
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -25,6 +26,7 @@ struct StudySources {
   std::function<StoredJob(const std::string& job_id)> job;  ///< throws Error kUnknownJob
   std::function<Recipe(const std::string& id)> recipe;      ///< throws Error kUnknownRecipe, kBadRecipe
   std::size_t memory_budget_bytes = std::size_t{1} << 30U;
+  std::filesystem::path calibration_folder = {};  ///< of the reference maps that results name; empty = none is at hand
 };
 
 /// How a job's value is taken.
@@ -51,8 +53,10 @@ class StudyJobs {
   /// What result.json tells. Throws Error kUnknownJob; kStudyRefused where there is no result; kShuttingDown.
   [[nodiscard]] const Result& result(const std::string& job);
 
-  /// The measured heights, through an S-filter where one is asked for. Throws as result(), kSurfaceFile, kStudyRefused.
-  [[nodiscard]] metrology::HeightField field(const std::string& job, std::optional<double> s_nesting_um = {});
+  /// The measured heights, through an S-filter where one is asked for. The result's pitch, or the other where it tells
+  /// none. Throws as result(), kSurfaceFile, kStudyRefused, kMemoryBudget before anything is read.
+  [[nodiscard]] metrology::HeightField field(const std::string& job, std::optional<double> s_nesting_um = {},
+                                             std::optional<double> else_pitch_um = {});
 
   /// The fields of all, of one size and pitch. Throws Error kStudyRefused where they differ, kMemoryBudget before
   /// anything is read.
@@ -63,6 +67,9 @@ class StudyJobs {
   /// kUnknownRecipe, kBadRecipe.
   [[nodiscard]] JobValue value(const std::string& job, const EvaluatedChoice& what, const std::string& recipe,
                                Corrected corrected);
+
+  /// Whether all name the same part.
+  [[nodiscard]] bool of_one_part(const std::vector<std::string>& jobs);
 
   /// Throws Error kCalibrationMissing where the job was evaluated without constants.
   void require_calibration(const std::string& job);
@@ -91,7 +98,8 @@ class StudyJobs {
   std::optional<Recipe> recipe_;
 };
 
-/// The points of the rectangle; empty = every point. Throws Error kRegionOutside where it leaves the field.
+/// The points of the rectangle and of the circle; empty = every point. Throws Error kRegionOutside where one leaves the
+/// field.
 [[nodiscard]] metrology::Region region_of(const StudyRegion& region, const metrology::HeightField& field);
 
 }  // namespace fvd

@@ -4,55 +4,9 @@ namespace fvd {
 
 namespace {
 
-constexpr std::size_t kMaxName_bytes = 64;
-constexpr NumberRange kPlace_um{-1e6, 1e6};
+constexpr std::size_t kMaxName_bytes = kMaxStudyName_bytes;
 constexpr NumberRange kHeight_um{-1e6, 1e6};
 constexpr NumberRange kUncertainty{0.0, 1e6};
-
-void describe_jobs(Fields& fields, std::vector<std::string>& jobs, const char* meaning) {
-  fields.choices("jobs", jobs, {}, meaning);
-  fields.require("jobs");
-}
-
-void describe_optional(Fields& fields, const char* name, std::optional<double>& value, NumberRange range,
-                       const char* meaning) {
-  fields.optional(name, value, [&](Fields& in, double& present) { in.number(name, present, range, meaning); });
-}
-
-void describe_region(Fields& fields, StudyRegion& region) {
-  fields.group("region", "the part of the field that counts; absent = all of it", [&](Fields& in) {
-    in.optional("rectangle_um", region.rectangle, [](Fields& inner, PlannedRectangle& rectangle) {
-      inner.group("rectangle_um", "an upright rectangle, from the outer corner of the first pixel", [&](Fields& sides) {
-        sides.number("x", rectangle.x_um, kPlace_um, "left end");
-        sides.require("x");
-        sides.number("y", rectangle.y_um, kPlace_um, "upper end");
-        sides.require("y");
-        sides.number("width", rectangle.width_um, positive(1e6), "to the right");
-        sides.require("width");
-        sides.number("height", rectangle.height_um, positive(1e6), "down");
-        sides.require("height");
-      });
-    });
-  });
-}
-
-void describe_job(Fields& fields, std::string& job) {
-  fields.text("job", job, kMaxName_bytes, "job id");
-  fields.require("job");
-}
-
-void describe_choice(Fields& fields, EvaluatedChoice& what) {
-  fields.text("measurement", what.measurement, kMaxName_bytes, "its name in the recipe");
-  fields.require("measurement");
-  fields.text("value", what.value, kMaxName_bytes, "with its unit; empty = the measurement's main value");
-}
-
-void describe_evaluated(Fields& fields, std::string& recipe, bool& require_calibration) {
-  fields.text("recipe", recipe, kMaxName_bytes,
-              "whose evaluation the jobs' surfaces are given to anew; empty = the values that the jobs have");
-  fields.boolean("require_calibration", require_calibration,
-                 "refuse jobs that were evaluated without constants of the instrument");
-}
 
 }  // namespace
 
@@ -89,7 +43,7 @@ void LinearityRequest::describe(Fields& fields) {
   fields.list("steps", steps, {2, 200}, "one step, measured at several z", [](Fields& in, RequestedStepAtZ& step) {
     describe_job(in, step.job);
     describe_choice(in, step.what);
-    in.number("z_um", step.z_um, kPlace_um, "where the step was");
+    in.number("z_um", step.z_um, kStudyPlace_um, "where the step was");
     in.require("z_um");
   });
   fields.require("steps");

@@ -8,14 +8,10 @@
 #include <vector>
 
 #include "config/fields.hpp"
-#include "daemon/evaluation/evaluation_plan.hpp"
+#include "daemon/study/artefact_requests.hpp"
+#include "daemon/study/study_parts.hpp"
 
 namespace fvd {
-
-/// The part of the field that counts; without a rectangle all of it.
-struct StudyRegion {
-  std::optional<PlannedRectangle> rectangle;
-};
 
 /// verify.noise, calibrate.noise.
 struct NoiseRequest {
@@ -30,12 +26,6 @@ struct FlatnessRequest {
   std::optional<double> s_nesting_um;
   StudyRegion region;
   void describe(Fields& fields);
-};
-
-/// A value of a job's evaluation.
-struct EvaluatedChoice {
-  std::string measurement;
-  std::string value;  ///< with its unit; empty = the measurement's main value
 };
 
 struct RequestedStep {
@@ -115,7 +105,8 @@ struct CapabilityRequest {
 };
 
 using StudyInput = std::variant<NoiseRequest, FlatnessRequest, StepRequest, LinearityRequest, Type1Request, RrRequest,
-                                CapabilityRequest>;
+                                CapabilityRequest, LateralRequest, ResolutionRequest, SphereRequest, HysteresisRequest,
+                                TextureRequest>;
 
 struct StudyRequest {
   std::string kind;    ///< the method: "verify.noise"; fits the input

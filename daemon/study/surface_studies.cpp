@@ -1,9 +1,10 @@
-/// Studies of whole maps: noise and flatness.
+/// Studies of whole maps: noise, flatness, hysteresis.
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
+#include "core/metrology/artefact/hysteresis.hpp"
 #include "core/metrology/study/flatness_study.hpp"
 #include "core/metrology/study/noise_study.hpp"
 #include "daemon/study/studies.hpp"
@@ -39,20 +40,11 @@ double squares_as_one(const LateralKernel& kernel) {
 
 void check_count(const std::vector<std::string>& jobs, std::size_t least) {
   constexpr std::size_t kMost = 20;
-  if (jobs.size() >= least && jobs.size() <= kMost) return;
-  throw Error(ErrorCode::kStudyRefused, std::to_string(jobs.size()) + " jobs were given, " + std::to_string(least) +
-                                            " to " + std::to_string(kMost) + " make this study");
-}
-
-/// Of the map, in um.
-StudyMap map_of(const Plane<float>& um, const HeightField& like, const std::string& title, bool errors) {
-  return {metres_of_um(um), like.pitch_x_um, like.pitch_y_um, title, errors};
-}
-
-Calibration empty_proposal(const Study& study) {
-  Calibration proposal;
-  proposal.objective = study.objective;
-  return proposal;
+  if (jobs.size() < least || jobs.size() > kMost) {
+    throw Error(ErrorCode::kStudyRefused, std::to_string(jobs.size()) + " jobs were given, " + std::to_string(least) +
+                                              " to " + std::to_string(kMost) + " make this study");
+  }
+  refuse_repeated_jobs(jobs);
 }
 
 double quadratic_mean(const Plane<float>& values) {
@@ -80,11 +72,39 @@ double mean_scan_ms(const std::vector<std::string>& ids, StudyJobs& jobs) {
   return sum_ms / static_cast<double>(ids.size());
 }
 
-void warn_of_parts(const std::vector<std::string>& ids, StudyJobs& jobs, StudyDraft& draft) {
-  const std::string& first = jobs.result(ids.front()).job.part_id;
-  const bool differ =
-      std::any_of(ids.begin(), ids.end(), [&](const std::string& id) { return jobs.result(id).job.part_id != first; });
-  if (differ) draft.warn("parts_differ", "the jobs name different parts; noise is that of one part that does not move");
+/// Scans in one direction would show repeatability in place of hysteresis.
+void check_directions(const HysteresisRequest& request, StudyJobs& jobs, StudyDraft& draft) {
+  const auto rise_um = [&jobs](const std::string& id) -> std::optional<double> {
+    const Result::Slices& slices = jobs.result(id).slices;
+    if (!slices.first_um || !slices.last_um) return std::nullopt;
+    return *slices.last_um - *slices.first_um;
+  };
+  const std::optional<double> up = rise_um(request.up);
+  const std::optional<double> down = rise_um(request.down);
+  if (up && *up <= 0.0) {
+    throw Error(ErrorCode::kStudyRefused, "job " + request.up + " was not scanned upwards");
+  }
+  if (down && *down >= 0.0) {
+    throw Error(ErrorCode::kStudyRefused, "job " + request.down + " was not scanned downwards");
+  }
+  if (!up || !down) draft.warn("direction_unknown", "a job does not tell in which direction it was scanned");
+}
+
+/// What the encoder tells of the two scans: heights have it in them already.
+void note_stage(const HysteresisRequest& request, StudyJobs& jobs, StudyDraft& draft) {
+  const StepSummary& up = jobs.result(request.up).steps;
+  const StepSummary& down = jobs.result(request.down).steps;
+  const bool known = up.steps > 0 && down.steps > 0;
+  draft.figure("stage_difference_um", known ? std::optional(down.error_mean_um - up.error_mean_um) : std::nullopt, "um",
+               "the jobs do not tell measured positions");
+}
+
+Plane<float> difference_of(const HeightField& up, const HeightField& down) {
+  Plane<float> um = Plane<float>::unset(up.width(), up.height());
+  for (int y = 0; y < up.height(); ++y) {
+    for (int x = 0; x < up.width(); ++x) um.at(x, y) = static_cast<float>(down.z_um.at(x, y) - up.z_um.at(x, y));
+  }
+  return um;
 }
 
 }  // namespace
@@ -93,7 +113,9 @@ StudyDraft noise_study(const NoiseRequest& request, Purpose purpose, StudyJobs& 
   check_count(request.jobs, 2);
   StudyDraft draft;
   jobs.note(request.jobs, "", draft.study);
-  warn_of_parts(request.jobs, jobs, draft);
+  if (!jobs.of_one_part(request.jobs)) {
+    draft.warn("parts_differ", "the jobs name different parts; noise is that of one part that does not move");
+  }
   const std::vector<HeightField> fields = jobs.fields(request.jobs);
   const metrology::NoiseStudy noise =
       accepted(metrology::measurement_noise(pointers(fields), region_of(request.region, fields.front())));
@@ -112,11 +134,11 @@ StudyDraft noise_study(const NoiseRequest& request, Purpose purpose, StudyJobs& 
                                    " times what the jobs' standard errors tell; uncertainties that rest on them are "
                                    "wrong by as much");
   }
-  draft.map = map_of(noise.noise_map_um, fields.front(), "standard deviation / µm", true);
+  draft.map = study_map(noise.noise_map_um, fields.front(), "standard deviation / µm", true);
   draft.files.push_back({"noise_map.gsf", gsf_of_um(noise.noise_map_um, fields.front().pitch_x_um,
                                                     fields.front().pitch_y_um, "standard deviation over the scans")});
   if (purpose == Purpose::kCalibrate) {
-    draft.study.proposal = empty_proposal(draft.study);
+    draft.study.proposal = proposal_for(draft.study);
     draft.study.proposal->noise = NoiseConstants{noise.noise_um, {}};
   }
   return draft;
@@ -145,7 +167,7 @@ StudyDraft flatness_study(const FlatnessRequest& request, Purpose purpose, Study
     draft.warn("below_noise", "z_FLT is below twice the reference map's standard error: more positions would lower it");
   }
   const Plane<float> map_um = floats_of(flat.reference.z_um);
-  draft.map = map_of(map_um, like, "mean deviation / µm", false);
+  draft.map = study_map(map_um, like, "mean deviation / µm", false);
   draft.files.push_back(
       {"flatness_reference.gsf", gsf_of_um(map_um, like.pitch_x_um, like.pitch_y_um, "mean deviation from a plane")});
   if (has_errors) {
@@ -154,9 +176,42 @@ StudyDraft flatness_study(const FlatnessRequest& request, Purpose purpose, Study
   }
   if (purpose == Purpose::kCalibrate) {
     if (!has_errors) draft.study.refusals.push_back({"one_position", "a reference map needs two positions or more"});
-    draft.study.proposal = empty_proposal(draft.study);
+    draft.study.proposal = proposal_for(draft.study);
     draft.study.proposal->flatness = FlatnessConstants{flat.flatness_um, u_um, "flatness_reference.gsf", {}};
   }
+  return draft;
+}
+
+StudyDraft hysteresis_study(const HysteresisRequest& request, StudyJobs& jobs) {
+  const std::vector<std::string> ids{request.up, request.down};
+  refuse_repeated_jobs(ids);
+  StudyDraft draft;
+  jobs.note(ids, "", draft.study);
+  if (!jobs.of_one_part(ids)) {
+    draft.warn("parts_differ", "the jobs name different parts; hysteresis is that of one part that does not move");
+  }
+  // Up and down are two recipes, or two settings of one.
+  std::erase_if(draft.study.warnings, [](const StudyWarning& warning) { return warning.code == "recipes_differ"; });
+  check_directions(request, jobs, draft);
+  const std::vector<HeightField> fields = jobs.fields(ids);
+  const HeightField& up = fields.front();
+  const metrology::Hysteresis found = accepted(metrology::hysteresis(up, fields.back(), region_of(request.region, up)));
+  constexpr double kPerMm = 1000.0;
+  draft.figure("mean_um", found.mean_um, "um", found.u_mean_um);
+  draft.figure("slope_x_um_per_mm", kPerMm * found.slope_x, "um/mm");
+  draft.figure("slope_y_um_per_mm", kPerMm * found.slope_y, "um/mm");
+  draft.figure("rest_um", found.rest_um, "um");
+  note_stage(request, jobs, draft);
+  draft.figure("points", found.points, "1");
+  note_valid(found.valid_fraction, draft);
+  if (std::abs(found.mean_um) > 2.0 * found.u_mean_um) {
+    draft.warn("hysteresis", "heights differ by " + number_text(found.mean_um) +
+                                 " um with the direction of the scan, which the measured positions do not explain");
+  }
+  const Plane<float> difference_um = difference_of(up, fields.back());
+  draft.map = study_map(difference_um, up, "down less up / µm", false);
+  draft.files.push_back({"difference.gsf", gsf_of_um(difference_um, up.pitch_x_um, up.pitch_y_um,
+                                                     "heights seen downwards less those seen upwards")});
   return draft;
 }
 

@@ -11,6 +11,7 @@ import numpy as np
 from metrology_artefacts import Plant, box_mean, gsf, value, write_gsf
 from metrology_edges import edge_plan, edges, truth_of
 from metrology_eyes import others_eyes
+from metrology_lateral import lateral
 from metrology_recorded import recorded
 
 GROOVE = {"measurements": {"step": {"kind": "step_height", "band_from_to_um": [20, 340], "edges_um": [195, 285]}}}
@@ -108,8 +109,6 @@ def evaluate_ms(plant, world, plan):
 
 # Keys whose figure another benchmark or a command still to come gives.
 NOT_MEASURED = {
-    "lateral_error": "no command takes a cross grid's pitch through the whole path yet",
-    "alpha_z_within_U_of_20": "no command calibrates z through the whole path yet",
     "last_frame_to_verdict_ms": "needs the daemon at 5 Mpx",
     "ome_ok": "there is no OME-TIFF exporter yet",
     "export_worst_s": "an export failed",
@@ -120,7 +119,7 @@ def main():
     work, build, root = sys.argv[1:4]
     plant = Plant(work, build, root)
     figures = {}
-    for part in (steps, edges, textures, sphere, others_eyes, times):
+    for part in (steps, edges, textures, sphere, lateral, others_eyes, times):
         start = time.monotonic()
         try:
             figures.update(part(plant))

@@ -9,6 +9,7 @@ import subprocess
 PROPERTIES = {"step_sd_ratio": "ratio_of_mean", "step_coverage_of_400": "covered_by_mean",
               "false_pass_of_2000": "false_pass_of_2000", "permutation_worst": "permutation_worst",
               "permutation_worst_of_counts": "permutation_worst_of_counts", "noise_error": "noise_error",
+              "alpha_z_within_U_of_20": "alpha_z_within_U_of_20",
               "reader_peak_mib": "reader_peak_mib"}
 
 
@@ -39,7 +40,8 @@ def verdict_paths(build):
 def recorded(build):
     build = pathlib.Path(build)
     programs = sorted(build.glob("tests/core/metrology/*/metrology_*_test"))
-    programs += [build / "tests/daemon/export/x3p_order_test", build / "tests/daemon/surface_files/surface_files_test"]
+    programs += [build / "tests/daemon/export/x3p_order_test", build / "tests/daemon/surface_files/surface_files_test",
+                 build / "tests/daemon/study/study_test"]
     tests = [test for program in programs if program.exists() for test in run(program)]
     numbers = {}
     for _, _, _, properties in tests:
@@ -59,5 +61,6 @@ def recorded(build):
     figures["x3p_order_ok"] = all(order) if order else None
     figures["verdict_paths"] = verdict_paths(build)
     figures["why"] = {"x3p_order_ok": "x3p_order_test is not built", "verdict_paths": "system_test is not built",
-                      "reader_peak_mib": "surface_files_test is not built", "noise_error": "metrology_study_test is not built"}
+                      "reader_peak_mib": "surface_files_test is not built", "noise_error": "study_test is not built",
+                      "alpha_z_within_U_of_20": "study_test is not built"}
     return figures

@@ -219,6 +219,18 @@ void add_study_methods(MethodTable& methods, const Services& services) {
                          "Proposes alpha_z and l_z from steps of known height, as the axis gave them");
   add_study<LinearityRequest>(methods, services, "verify.linearity",
                               "Linearity l_z over the range, from one step at several z; changes nothing");
+  add_study<LateralRequest>(methods, services, "calibrate.lateral",
+                            "Proposes pitch, shear and, from a second height, drift, from a scan of a cross grid");
+  add_study<ResolutionRequest>(methods, services, "verify.resolution",
+                               "Lateral resolution W_R and D_LIM from a star or an edge; changes nothing");
+  add_study<SphereRequest>(methods, services, "verify.sphere",
+                           "Probing errors P_F and P_S and the slope limit from a sphere's cap; changes nothing");
+  add_study<HysteresisRequest>(methods, services, "verify.hysteresis",
+                               "What a scan downwards sees otherwise than one upwards, and its plane; changes nothing");
+  add_study<TextureRequest>(
+      methods, services, "verify.texture",
+      "Reproducibility of a texture value in percent, from scans of one surface put in place anew; changes nothing");
+  add_study<TextureRequest>(methods, services, "calibrate.texture", "The same, and proposes it as the instrument's");
   add_study<Type1Request>(methods, services, "gauge.type1", "Bias, Cg and Cgk from many scans of one part");
   add_study<RrRequest>(methods, services, "gauge.rr",
                        "Repeatability and reproducibility from parts x operators x trials, by analysis of variance");

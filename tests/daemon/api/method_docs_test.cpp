@@ -98,12 +98,17 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
   const json step{{"job", "a"}, {"measurement", "step"}, {"reference_um", 50}, {"u_reference_um", 0.02}};
   const json at_z{{"job", "a"}, {"measurement", "step"}, {"z_um", 5}};
   const json type1{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"reference", 50}, {"tolerance", 1}};
+  const json texture{{"jobs", {"a", "b"}}, {"measurement", "texture"}};
   const json rr{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"parts", 2}, {"operators", 1}, {"trials", 2}};
   for (const Case& call :
        {Case{"verify.noise", jobs, study}, Case{"calibrate.noise", jobs, study}, Case{"verify.flatness", jobs, study},
         Case{"calibrate.flatness", jobs, study}, Case{"verify.step", {{"steps", {step}}}, study},
         Case{"calibrate.z", {{"steps", {step}}}, study}, Case{"verify.linearity", {{"steps", {at_z, at_z}}}, study},
-        Case{"gauge.type1", type1, study}, Case{"gauge.rr", rr, study},
+        Case{"calibrate.lateral", {{"job", "a"}, {"grid_pitch_um", 40}}, study},
+        Case{"verify.resolution", {{"job", "a"}, {"artefact", "star"}}, study},
+        Case{"verify.sphere", {{"job", "a"}, {"radius_um", 500}}, study},
+        Case{"verify.hysteresis", {{"up", "a"}, {"down", "b"}}, study}, Case{"verify.texture", texture, study},
+        Case{"calibrate.texture", texture, study}, Case{"gauge.type1", type1, study}, Case{"gauge.rr", rr, study},
         Case{"gauge.capability", {{"type1", "study-0001"}, {"rr", "study-0002"}}, study}}) {
     cases.push_back(call);
   }

@@ -6,9 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "config/field_writer.hpp"
+#include "daemon/calibration/calibration_book.hpp"
 #include "daemon/evaluation/evaluate_surface.hpp"
+#include "daemon/export/gsf.hpp"
 #include "daemon/pipeline/stored_surface.hpp"
 #include "daemon/recipes/recipe_document.hpp"
+#include "daemon/surface_files/reference_map.hpp"
 #include "tests/daemon/jobs/engine_bench.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -147,7 +150,8 @@ TEST_F(AStoredResult, IsNotEvaluatedWhereTheJobHasNone) {
   StoredJob none;
   none.status.job_id = "j";
   none.status.state = JobState::kAborted;
-  ResultEvaluator evaluator({*store_, dynamic_cast<MachineBoard&>(machine()), results_dir(), std::size_t{1} << 30U});
+  ResultEvaluator evaluator(
+      {*store_, dynamic_cast<MachineBoard&>(machine()), results_dir(), {}, std::size_t{1} << 30U});
 
   FVD_EXPECT_ERROR(kBadInput, static_cast<void>(evaluator.begin(none, parse_recipe(kTexture, "texture"))));
   none.status.state = JobState::kProcessing;
@@ -158,7 +162,7 @@ TEST_F(AStoredResult, IsNotEvaluatedWhereTheJobHasNone) {
 }
 
 TEST_F(AStoredResult, IsNotEvaluatedBeyondTheMemoryBudget) {
-  ResultEvaluator evaluator({*store_, dynamic_cast<MachineBoard&>(machine()), results_dir(), 1000});
+  ResultEvaluator evaluator({*store_, dynamic_cast<MachineBoard&>(machine()), results_dir(), {}, 1000});
 
   std::string message;
   try {
@@ -169,6 +173,55 @@ TEST_F(AStoredResult, IsNotEvaluatedBeyondTheMemoryBudget) {
   }
 
   EXPECT_THAT(message, HasSubstr("16 x 16 points"));
+}
+
+constexpr const char* kFlattened = R"({"format": 2,
+  "acquire": {"scan": {"start_um": 0, "step_um": 10, "slices": 5}},
+  "reconstruct": {"lateral": {"pixel_pitch_x_um": 0.5, "pixel_pitch_y_um": 0.5}},
+  "evaluation": {"surfaces": {"s": {"steps": [{"op": "flatness_reference"}]}},
+                 "measurements": {"texture": {"kind": "areal", "surface": "s", "parameters": ["Sa", "Sq"]}}}})";
+
+/// An instrument with a reference map of the size of its frames.
+class AFlattenedResult : public AStoredResult {
+ protected:
+  void SetUp() override {
+    CalibrationBook(calibration_dir()).add("", [](Calibration& next) {
+      next.flatness = FlatnessConstants{0.1, 0.01, next.id + "-flatness.gsf", {}};
+      Plane<float> metres(16, 16);
+      for (int i = 0; i < 16; ++i) metres.at(i, i) = 3e-6F;
+      return std::vector<CalibrationFile>{{next.flatness->reference, encode_gsf(metres, {"flat", 0.5, 0.5, {}})}};
+    });
+    test::write_text(folder_.path() / "part.json", R"({"scan": {"start_um": 0, "step_um": 10, "slices": 5},
+      "lateral": {"pixel_pitch_x_um": 0.5, "pixel_pitch_y_um": 0.5}})");
+    test::write_text(folder_.path() / "flattened.json", kFlattened);
+    AStoredResult::SetUp();
+  }
+  [[nodiscard]] std::filesystem::path calibration_dir() const { return folder_.path() / "calibration"; }
+};
+
+TEST_F(AFlattenedResult, IsEvaluatedWithTheReferenceMapThatItNames) {
+  StoredSurface stored = read_stored_surface(results_dir() / job_id_);
+  const Recipe recipe = parse_recipe(kFlattened, "flattened");
+  const json without = json_of(evaluate_surface(stored.surface, recipe.evaluation, stored.context, nullptr));
+  stored.context.flatness_reference = read_reference_map(calibration_dir(), "cal-0001-flatness.gsf");
+  const json with = json_of(evaluate_surface(stored.surface, recipe.evaluation, stored.context, nullptr));
+
+  const DeviceTask::Outcome outcome = outcome_of(job_id_, "flattened");
+
+  ASSERT_EQ(outcome.error, std::nullopt) << outcome.message;
+  const std::string id = json::parse(outcome.json)["id"];
+  EXPECT_EQ(json::parse(results().stored(id).result_json)["evaluation"], with);
+  EXPECT_NE(with, without);
+}
+
+TEST_F(AFlattenedResult, IsRefusedWhereTheMapIsGone) {
+  std::filesystem::remove(calibration_dir() / "cal-0001-flatness.gsf");
+
+  const DeviceTask::Outcome outcome = outcome_of(job_id_, "flattened");
+
+  EXPECT_EQ(outcome.error, ErrorCode::kSurfaceFile);
+  EXPECT_THAT(outcome.message, HasSubstr("cal-0001-flatness.gsf"));
+  EXPECT_FALSE(std::filesystem::exists(results_dir() / (job_id_ + "-e1")));
 }
 
 }  // namespace
