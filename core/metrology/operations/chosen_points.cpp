@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <limits>
+#include <utility>
+
+#include "core/metrology/operations/bands.hpp"
+#include "core/metrology/region_bounds.hpp"
 
 namespace fvd::metrology {
 namespace {
@@ -15,20 +20,24 @@ struct Block {
   std::size_t points = 0;
 };
 
-Block block_of(const HeightField& field, const Region& region) {
+/// Of the rows from first to end.
+Block block_of_rows(const HeightField& field, const Region& region, int first_row, int end_row) {
   Block block{field.width(), 0, field.height(), 0, 0};
-  for (int row = 0; row < field.height(); ++row) {
+  for (int row = first_row; row < end_row; ++row) {
     const double* z = field.z_um.row(row);
     const std::uint8_t* inside = region.empty() ? nullptr : region.row(row);
     const auto is_chosen = [z, inside](int column) {
       return z[column] == z[column] && (inside == nullptr || inside[column] != 0);
     };
+    const int from = inside == nullptr ? 0 : region_bounds::first_inside(inside, field.width());
+    if (from == field.width()) continue;
+    const int to = inside == nullptr ? field.width() : region_bounds::end_inside(inside, field.width());
     std::size_t points = 0;
-    for (int column = 0; column < field.width(); ++column) points += is_chosen(column) ? 1U : 0U;
+    for (int column = from; column < to; ++column) points += is_chosen(column) ? 1U : 0U;
     if (points == 0) continue;
-    int first = 0;
+    int first = from;
     while (!is_chosen(first)) ++first;
-    int end = field.width();
+    int end = to;
     while (!is_chosen(end - 1)) --end;
     block.first_column = std::min(block.first_column, first);
     block.end_column = std::max(block.end_column, end);
@@ -37,6 +46,43 @@ Block block_of(const HeightField& field, const Region& region) {
     block.points += points;
   }
   return block;
+}
+
+Block block_of(const HeightField& field, const Region& region, WorkerPool* pool) {
+  std::vector<Block> bands(static_cast<std::size_t>(band_count(field.height())));
+  run_bands(pool, field.height(), [&](int band, int first, int end) {
+    bands[static_cast<std::size_t>(band)] = block_of_rows(field, region, first, end);
+  });
+  Block block{field.width(), 0, field.height(), 0, 0};
+  for (const Block& band : bands) {
+    block.first_column = std::min(block.first_column, band.first_column);
+    block.end_column = std::max(block.end_column, band.end_column);
+    block.first_row = std::min(block.first_row, band.first_row);
+    block.end_row = std::max(block.end_row, band.end_row);
+    block.points += band.points;
+  }
+  return block;
+}
+
+/// The block's heights, and their standard errors where chosen.sigma_um is there to take them.
+void copy_block(const HeightField& field, const Region& region, const Block& block, WorkerPool* pool,
+                ChosenPoints& chosen) {
+  const int columns = block.end_column - block.first_column;
+  run_bands(pool, block.end_row - block.first_row, [&](int, int first, int end) {
+    for (int row = first; row < end; ++row) {
+      const int y = block.first_row + row;
+      double* z = chosen.copy_um.row(row);
+      std::copy_n(field.z_um.row(y) + block.first_column, columns, z);
+      if (!chosen.sigma_um.empty()) {
+        std::copy_n(field.sigma_um.row(y) + block.first_column, columns, chosen.sigma_um.row(row));
+      }
+      if (region.empty()) continue;
+      const std::uint8_t* inside = region.row(y) + block.first_column;
+      for (int column = 0; column < columns; ++column) {
+        if (inside[column] == 0) z[column] = std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+  });
 }
 
 /// (2 i + 1 - count) / count: exactly the negative of its mirror image.
@@ -48,9 +94,9 @@ std::vector<double> normal_coordinates(int count) {
 
 }  // namespace
 
-ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma) {
+ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma, WorkerPool* pool) {
   assert(region.empty() || (region.width() == field.width() && region.height() == field.height()));
-  const Block block = block_of(field, region);
+  const Block block = block_of(field, region, pool);
   ChosenPoints chosen;
   if (block.points == 0) return chosen;
   const int columns = block.end_column - block.first_column;
@@ -62,21 +108,14 @@ ChosenPoints choose_points(const HeightField& field, const Region& region, bool 
   chosen.half_y_um = 0.5 * rows * field.pitch_y_um;
   chosen.centre_x_um = 0.5 * (block.first_column + block.end_column) * field.pitch_x_um;
   chosen.centre_y_um = 0.5 * (block.first_row + block.end_row) * field.pitch_y_um;
-  chosen.z_um = Plane<double>::unset(columns, rows);
-  if (with_sigma && field.has_sigma()) chosen.sigma_um = Plane<float>::unset(columns, rows);
-  for (int row = 0; row < rows; ++row) {
-    const int y = block.first_row + row;
-    std::copy_n(field.z_um.row(y) + block.first_column, columns, chosen.z_um.row(row));
-    if (!chosen.sigma_um.empty()) {
-      std::copy_n(field.sigma_um.row(y) + block.first_column, columns, chosen.sigma_um.row(row));
-    }
-    if (region.empty()) continue;
-    const std::uint8_t* inside = region.row(y) + block.first_column;
-    double* z = chosen.z_um.row(row);
-    for (int column = 0; column < columns; ++column) {
-      if (inside[column] == 0) z[column] = std::numeric_limits<double>::quiet_NaN();
-    }
+  if (region.empty() && !with_sigma) {
+    chosen.z_um = {field.z_um.row(block.first_row) + block.first_column, columns, rows, field.width()};
+    return chosen;
   }
+  chosen.copy_um = Plane<double>::unset(columns, rows);
+  if (with_sigma && field.has_sigma()) chosen.sigma_um = Plane<float>::unset(columns, rows);
+  copy_block(field, region, block, pool, chosen);
+  chosen.z_um = std::as_const(chosen.copy_um).view();
   return chosen;
 }
 
