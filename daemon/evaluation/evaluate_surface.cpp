@@ -130,7 +130,7 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
 
 Evaluation evaluate_surface(const SurfaceRef& surface, const EvaluationPlan& plan, const EvaluationContext& context,
                             WorkerPool* pool, const KeptPagesPtr& pages) {
-  SurfaceChain chain(surface, plan, context, {pool, pages});
+  SurfaceChain chain(surface, plan, context, pool, pages);
   Evaluation evaluation;
   if (context.calibration) evaluation.calibration = context.calibration->id;
   evaluation.rule = plan.decision.rule;

@@ -117,8 +117,8 @@ metrology::OperationReport applied(const EvaluationPlan& plan, const PlannedOper
 }  // namespace
 
 SurfaceChain::SurfaceChain(SurfaceRef surface, const EvaluationPlan& plan, const EvaluationContext& context,
-                           EvaluationMeans means)
-    : surface_(std::move(surface)), plan_(plan), context_(context), means_(std::move(means)) {}
+                           WorkerPool* pool, KeptPagesPtr pages)
+    : surface_(std::move(surface)), plan_(plan), context_(context), means_{pool, std::move(pages)} {}
 
 const SurfaceState& SurfaceChain::state(const std::string& name) {
   if (const auto found = states_.find(name); found != states_.end()) return found->second;

@@ -48,10 +48,11 @@ struct EvaluationMeans {
   KeptPagesPtr pages = nullptr;  ///< where the memory of surfaces comes from and goes to, if given
 };
 
-/// surface, plan, context and the means' pool outlive it. context: one thread.
+/// What surface refers to, plan, context and pool outlive it; pool may be null. context: one thread.
 class SurfaceChain {
  public:
-  SurfaceChain(SurfaceRef surface, const EvaluationPlan& plan, const EvaluationContext& context, EvaluationMeans means);
+  SurfaceChain(SurfaceRef surface, const EvaluationPlan& plan, const EvaluationContext& context, WorkerPool* pool,
+               KeptPagesPtr pages = nullptr);
 
   /// kMeasuredSurface or one of the plan's; the plan was checked.
   [[nodiscard]] const SurfaceState& state(const std::string& name);
