@@ -11,6 +11,7 @@
 #include "core/metrology/height_field.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "core/surface/surface.hpp"
+#include "core/surface/surface_ref.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
 #include "daemon/evaluation/evaluation_plan.hpp"
 #include "daemon/result/evaluation_result.hpp"

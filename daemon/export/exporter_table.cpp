@@ -94,11 +94,6 @@ std::span<const Exporter> exporter_table() {
   return kExporters;
 }
 
-bool shows_evaluation(const Exporter& exporter) noexcept {
-  return exporter.need == ExportNeed::kEachSection || exporter.need == ExportNeed::kCuttingEdges ||
-         exporter.encode == report_file;
-}
-
 std::vector<Exporter> chosen_exporters(const std::optional<std::vector<std::string>>& names) {
   std::vector<Exporter> chosen;
   const auto is_named = [&names](std::string_view name) {

@@ -81,9 +81,6 @@ struct DividedExporters {
 /// All exporters, in the order in which result.json lists their files. A new one is a row here and a source of its own.
 [[nodiscard]] std::span<const Exporter> exporter_table();
 
-/// Whether its file shows what was measured, and not the surface alone.
-[[nodiscard]] bool shows_evaluation(const Exporter& exporter) noexcept;
-
 /// The exporters of these names or formats in the order of the table; all that are not only made on request where no
 /// names are given. A name that no exporter has chooses nothing.
 [[nodiscard]] std::vector<Exporter> chosen_exporters(const std::optional<std::vector<std::string>>& names);

@@ -15,6 +15,7 @@
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/worker_pool.hpp"
+#include "daemon/export/picture_exporters.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/sha256.hpp"
 #include "daemon/result/evaluate.hpp"
@@ -43,6 +44,12 @@ std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ExportInpu
     }
   }
   return tasks;
+}
+
+/// Whether its file shows what was measured, and not the surface alone.
+bool shows_evaluation(const Exporter& exporter) {
+  return exporter.need == ExportNeed::kEachSection || exporter.need == ExportNeed::kCuttingEdges ||
+         exporter.encode == report_file;
 }
 
 /// Indices of the tasks as they are begun.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/surface/surface.hpp"
+#include "core/surface/surface_ref.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
 #include "daemon/result/result.hpp"
 #include "daemon/result/result_data.hpp"

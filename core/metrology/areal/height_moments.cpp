@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kLanes = 8;
 constexpr std::size_t kBlock = 1024;
 
-/// A sum of terms that are at most `largest` in size. Each is rounded to a whole number of parts, 2^-51 or less of the
-/// largest, and whole numbers have the same sum in any order.
+/// A sum of terms that are at most `largest` in size. Each is taken apart into a whole number of parts, 2^-50 of the
+/// largest, and a whole number of parts of these, 2^-100; whole numbers have the same sum in any order.
 class WholeSum {
  public:
   explicit WholeSum(double largest) {
@@ -27,18 +27,25 @@ class WholeSum {
   /// Below kBlock terms at a time, then carry().
   void add(std::size_t lane, double term) {
     // The sum's lowest bits are the whole number; it does not leave the range of one exponent.
-    lanes_[lane] += std::bit_cast<std::int64_t>(term * parts_ + kWhole) - kWholeBits;
+    const double in_parts = term * parts_;
+    const double whole = in_parts + kWhole;
+    const double rest = in_parts - (whole - kWhole);
+    coarse_[lane] += std::bit_cast<std::int64_t>(whole) - kWholeBits;
+    fine_[lane] += std::bit_cast<std::int64_t>(rest * kFine + kWhole) - kWholeBits;
   }
   void carry() {
-    for (std::int64_t& lane : lanes_) {
+    for (std::int64_t& lane : coarse_) {
       high_ += lane >> kLowBits;
       low_ += lane & kLowMask;
       lane = 0;
     }
+    for (std::int64_t& lane : fine_) {
+      fine_high_ += lane >> kLowBits;
+      fine_low_ += lane & kLowMask;
+      lane = 0;
+    }
   }
-  [[nodiscard]] double sum() const {
-    return (std::ldexp(static_cast<double>(high_), kLowBits) + static_cast<double>(low_)) / parts_;
-  }
+  [[nodiscard]] double sum() const { return (joined(high_, low_) + joined(fine_high_, fine_low_) / kFine) / parts_; }
 
  private:
   static constexpr double kWhole = 0x1.8p52;
@@ -46,10 +53,19 @@ class WholeSum {
   static constexpr int kLowBits = 32;
   static constexpr std::int64_t kLowMask = (std::int64_t{1} << kLowBits) - 1;
 
+  static constexpr double kFine = 0x1p50;
+
+  static double joined(std::int64_t high, std::int64_t low) {
+    return std::ldexp(static_cast<double>(high), kLowBits) + static_cast<double>(low);
+  }
+
   double parts_ = 1.0;  // in a unit of the terms
-  std::array<std::int64_t, kLanes> lanes_{};
+  std::array<std::int64_t, kLanes> coarse_{};
+  std::array<std::int64_t, kLanes> fine_{};
   std::int64_t high_ = 0;
   std::int64_t low_ = 0;
+  std::int64_t fine_high_ = 0;
+  std::int64_t fine_low_ = 0;
 };
 
 /// visit(lane, height) for each; carry() after each block.
@@ -110,12 +126,13 @@ HeightMoments height_moments(std::span<const double> heights_um) {
   moments.pit_um = -extremes.lowest;
   const double largest = std::max(std::abs(extremes.highest), std::abs(extremes.lowest));
   if (largest == 0.0) return moments;
-  // In units of the largest, whose powers are 1 at most.
-  const double per_um = 1.0 / largest;
-  WholeSum first(1.0);
-  WholeSum second(1.0);
-  WholeSum third(1.0);
-  WholeSum fourth(1.0);
+  // In a unit, a power of 2, of which there are 1 to 2 in the largest.
+  const double unit_um = std::ldexp(1.0, std::clamp(std::ilogb(largest), -1000, 1000));
+  const double per_um = 1.0 / unit_um;
+  WholeSum first(2.0);
+  WholeSum second(4.0);
+  WholeSum third(8.0);
+  WholeSum fourth(16.0);
   each_height(
       heights_um,
       [&](std::size_t lane, double z) {
@@ -134,8 +151,8 @@ HeightMoments height_moments(std::span<const double> heights_um) {
       });
   const double square = second.sum() / count;
   const double root = std::sqrt(square);
-  moments.mean_absolute_um = largest * (first.sum() / count);
-  moments.root_mean_square_um = largest * root;
+  moments.mean_absolute_um = unit_um * (first.sum() / count);
+  moments.root_mean_square_um = unit_um * root;
   moments.skewness = third.sum() / count / (square * root);
   moments.kurtosis = fourth.sum() / count / (square * square);
   return moments;

@@ -4,9 +4,7 @@
 #include <cassert>
 #include <cstdint>
 #include <limits>
-#include <utility>
 
-#include "core/metrology/operations/bands.hpp"
 #include "core/metrology/region_bounds.hpp"
 
 namespace fvd::metrology {
@@ -20,10 +18,9 @@ struct Block {
   std::size_t points = 0;
 };
 
-/// Of the rows from first to end.
-Block block_of_rows(const HeightField& field, const Region& region, int first_row, int end_row) {
+Block block_of(const HeightField& field, const Region& region) {
   Block block{field.width(), 0, field.height(), 0, 0};
-  for (int row = first_row; row < end_row; ++row) {
+  for (int row = 0; row < field.height(); ++row) {
     const double* z = field.z_um.row(row);
     const std::uint8_t* inside = region.empty() ? nullptr : region.row(row);
     const auto is_chosen = [z, inside](int column) {
@@ -48,43 +45,6 @@ Block block_of_rows(const HeightField& field, const Region& region, int first_ro
   return block;
 }
 
-Block block_of(const HeightField& field, const Region& region, WorkerPool* pool) {
-  std::vector<Block> bands(static_cast<std::size_t>(band_count(field.height())));
-  run_bands(pool, field.height(), [&](int band, int first, int end) {
-    bands[static_cast<std::size_t>(band)] = block_of_rows(field, region, first, end);
-  });
-  Block block{field.width(), 0, field.height(), 0, 0};
-  for (const Block& band : bands) {
-    block.first_column = std::min(block.first_column, band.first_column);
-    block.end_column = std::max(block.end_column, band.end_column);
-    block.first_row = std::min(block.first_row, band.first_row);
-    block.end_row = std::max(block.end_row, band.end_row);
-    block.points += band.points;
-  }
-  return block;
-}
-
-/// The block's heights, and their standard errors where chosen.sigma_um is there to take them.
-void copy_block(const HeightField& field, const Region& region, const Block& block, WorkerPool* pool,
-                ChosenPoints& chosen) {
-  const int columns = block.end_column - block.first_column;
-  run_bands(pool, block.end_row - block.first_row, [&](int, int first, int end) {
-    for (int row = first; row < end; ++row) {
-      const int y = block.first_row + row;
-      double* z = chosen.copy_um.row(row);
-      std::copy_n(field.z_um.row(y) + block.first_column, columns, z);
-      if (!chosen.sigma_um.empty()) {
-        std::copy_n(field.sigma_um.row(y) + block.first_column, columns, chosen.sigma_um.row(row));
-      }
-      if (region.empty()) continue;
-      const std::uint8_t* inside = region.row(y) + block.first_column;
-      for (int column = 0; column < columns; ++column) {
-        if (inside[column] == 0) z[column] = std::numeric_limits<double>::quiet_NaN();
-      }
-    }
-  });
-}
-
 /// (2 i + 1 - count) / count: exactly the negative of its mirror image.
 std::vector<double> normal_coordinates(int count) {
   std::vector<double> coordinates;
@@ -94,9 +54,9 @@ std::vector<double> normal_coordinates(int count) {
 
 }  // namespace
 
-ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma, WorkerPool* pool) {
+ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma) {
   assert(region.empty() || (region.width() == field.width() && region.height() == field.height()));
-  const Block block = block_of(field, region, pool);
+  const Block block = block_of(field, region);
   ChosenPoints chosen;
   if (block.points == 0) return chosen;
   const int columns = block.end_column - block.first_column;
@@ -108,14 +68,21 @@ ChosenPoints choose_points(const HeightField& field, const Region& region, bool 
   chosen.half_y_um = 0.5 * rows * field.pitch_y_um;
   chosen.centre_x_um = 0.5 * (block.first_column + block.end_column) * field.pitch_x_um;
   chosen.centre_y_um = 0.5 * (block.first_row + block.end_row) * field.pitch_y_um;
-  if (region.empty() && !with_sigma) {
-    chosen.z_um = {field.z_um.row(block.first_row) + block.first_column, columns, rows, field.width()};
-    return chosen;
-  }
-  chosen.copy_um = Plane<double>::unset(columns, rows);
+  chosen.z_um = Plane<double>::unset(columns, rows);
   if (with_sigma && field.has_sigma()) chosen.sigma_um = Plane<float>::unset(columns, rows);
-  copy_block(field, region, block, pool, chosen);
-  chosen.z_um = std::as_const(chosen.copy_um).view();
+  for (int row = 0; row < rows; ++row) {
+    const int y = block.first_row + row;
+    std::copy_n(field.z_um.row(y) + block.first_column, columns, chosen.z_um.row(row));
+    if (!chosen.sigma_um.empty()) {
+      std::copy_n(field.sigma_um.row(y) + block.first_column, columns, chosen.sigma_um.row(row));
+    }
+    if (region.empty()) continue;
+    const std::uint8_t* inside = region.row(y) + block.first_column;
+    double* z = chosen.z_um.row(row);
+    for (int column = 0; column < columns; ++column) {
+      if (inside[column] == 0) z[column] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
   return chosen;
 }
 

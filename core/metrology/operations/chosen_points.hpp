@@ -6,15 +6,13 @@
 #include <vector>
 
 #include "core/metrology/height_field.hpp"
-#include "core/runtime/worker_pool.hpp"
 
 namespace fvd::metrology {
 
 /// The smallest block of pixels that holds all valid points of a region. Normal coordinates run from -1 to 1 between
 /// the outer borders of the block; they are exactly mirrored when the surface is.
 struct ChosenPoints {
-  PlaneView<const double> z_um;  ///< [rows][columns] of the block; NaN = hole or outside of the region
-  Plane<double> copy_um;   ///< what z_um shows; empty where it shows the field itself, which all points were chosen of
+  Plane<double> z_um;      ///< [rows][columns] of the block; NaN = hole or outside of the region
   Plane<float> sigma_um;   ///< empty where the field has none or it was not asked for
   std::vector<double> x;   ///< normal coordinate of each column
   std::vector<double> y;   ///< of each row
@@ -25,9 +23,7 @@ struct ChosenPoints {
   double half_y_um = 1.0;
 };
 
-/// region: empty or of the shape of the field. The field must not change while heights of the block are read. With
-/// sigma the heights are always a copy. context: pure.
-[[nodiscard]] ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma,
-                                         WorkerPool* pool = nullptr);
+/// region: empty or of the shape of the field. context: pure.
+[[nodiscard]] ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma);
 
 }  // namespace fvd::metrology

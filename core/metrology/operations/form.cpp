@@ -53,7 +53,7 @@ OperationReport remove_plane(HeightField& field, const ChosenPoints& points) {
 /// Which of the two roots above a point is the surface: the one that most of the points are nearer to.
 bool is_upper_side(const ChosenPoints& points, RoundKind kind, const RoundForm& form) {
   long upper = 0;
-  for (int row = 0; row < points.z_um.height; row += 7) {
+  for (int row = 0; row < points.z_um.height(); row += 7) {
     for (std::size_t i = static_cast<std::size_t>(row % 5); i < points.x.size(); i += 5) {
       const double z = points.z_um.row(row)[i];
       if (std::isnan(z)) continue;

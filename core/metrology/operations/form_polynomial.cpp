@@ -107,7 +107,7 @@ class PolynomialFit {
     Sums sums{MatrixXd::Zero(order + 1, order + 1), MatrixXd::Zero(degree_ + 1, degree_ + 1), 0.0};
     VectorXd valid(columns);
     VectorXd residual(columns);
-    for (int row = 0; row < points_.z_um.height; ++row) {
+    for (int row = 0; row < points_.z_um.height(); ++row) {
       const auto z = Eigen::Map<const VectorXd>(points_.z_um.row(row), columns);
       const VectorXd along_x = coefficients_ * y_.row(row).head(degree_ + 1).transpose();
       residual.noalias() = z - x_.leftCols(degree_ + 1) * along_x;

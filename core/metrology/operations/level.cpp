@@ -56,8 +56,8 @@ std::optional<Fit> fit_weighted(const ChosenPoints& points, WorkerPool* pool) {
 /// A standard error of 0 would outweigh every other point: those points are left out.
 std::size_t drop_without_sigma(ChosenPoints& points) {
   std::size_t dropped = 0;
-  for (std::size_t i = 0; i < points.copy_um.pixels().size(); ++i) {
-    double& z = points.copy_um.pixels()[i];
+  for (std::size_t i = 0; i < points.z_um.pixels().size(); ++i) {
+    double& z = points.z_um.pixels()[i];
     if (std::isnan(z) || points.sigma_um.pixels()[i] > 0.0F) continue;
     z = std::numeric_limits<double>::quiet_NaN();
     ++dropped;
@@ -84,7 +84,7 @@ std::optional<Fit> fit_robust(const ChosenPoints& points, OperationReport& repor
 OperationReport level(HeightField& field, LevelMethod method, const Region& region, WorkerPool* pool) {
   const bool weighted = method == LevelMethod::kWeighted;
   if (weighted && !field.has_sigma()) return refusal("the surface has no standard errors to weigh its points by");
-  ChosenPoints points = choose_points(field, region, weighted, pool);
+  ChosenPoints points = choose_points(field, region, weighted);
   OperationReport report;
   if (weighted) {
     const std::size_t dropped = drop_without_sigma(points);

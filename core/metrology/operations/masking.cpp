@@ -1,12 +1,7 @@
 #include "core/metrology/operations/masking.hpp"
 
 #include <cassert>
-#include <cmath>
-#include <cstddef>
 #include <limits>
-#include <vector>
-
-#include "core/metrology/operations/bands.hpp"
 
 namespace fvd::metrology {
 
@@ -18,33 +13,21 @@ void make_hole(HeightField& field, int column, int row, Plane<MaskReasons>* reas
   bits = static_cast<MaskReasons>(bits | reason);
 }
 
-OperationReport mask_sigma(HeightField& field, double max_sigma_um, Plane<MaskReasons>* reasons, WorkerPool* pool) {
+OperationReport mask_sigma(HeightField& field, double max_sigma_um, Plane<MaskReasons>* reasons) {
   assert(max_sigma_um > 0.0);
   if (!field.has_sigma()) return refusal("the surface has no standard errors");
   OperationReport report;
   report.values = {{"max_sigma_um", max_sigma_um, std::nullopt}};
-  struct Counts {
-    std::size_t used = 0;
-    std::size_t removed = 0;
-  };
-  std::vector<Counts> bands(static_cast<std::size_t>(band_count(field.height())));
-  run_bands(pool, field.height(), [&](int band, int first, int end) {
-    Counts& counts = bands[static_cast<std::size_t>(band)];
-    for (int row = first; row < end; ++row) {
-      const double* z = field.z_um.row(row);
-      const float* sigma_um = field.sigma_um.row(row);
-      for (int column = 0; column < field.width(); ++column) {
-        if (std::isnan(z[column])) continue;
-        ++counts.used;
-        if (static_cast<double>(sigma_um[column]) <= max_sigma_um) continue;
-        make_hole(field, column, row, reasons, mask_reason::kMaxSigma);
-        ++counts.removed;
-      }
+  for (int row = 0; row < field.height(); ++row) {
+    const double* z = field.z_um.row(row);
+    const float* sigma_um = field.sigma_um.row(row);
+    for (int column = 0; column < field.width(); ++column) {
+      if (z[column] != z[column]) continue;
+      ++report.points_used;
+      if (static_cast<double>(sigma_um[column]) <= max_sigma_um) continue;
+      make_hole(field, column, row, reasons, mask_reason::kMaxSigma);
+      ++report.points_removed;
     }
-  });
-  for (const Counts& counts : bands) {
-    report.points_used += counts.used;
-    report.points_removed += counts.removed;
   }
   return report;
 }

@@ -74,10 +74,10 @@ inline void add_row(PlaneSums& sums, const RowSums& row, double y) {
 template <typename Share>
 [[nodiscard]] PlaneSums sum_plane(const ChosenPoints& points, const Eigen::Vector3d& plane, WorkerPool* pool,
                                   const Share& share) {
-  const int rows = points.z_um.height;
+  const int rows = points.z_um.height();
   std::vector<PlaneSums> bands(static_cast<std::size_t>(band_count(rows)));
   run_bands(pool, rows, [&](int band, int first, int end) {
-    const auto columns = static_cast<std::size_t>(points.z_um.width);
+    const auto columns = static_cast<std::size_t>(points.z_um.width());
     for (int row = first; row < end; ++row) {
       const double y = points.y[static_cast<std::size_t>(row)];
       const double base = plane[0] + plane[2] * y;

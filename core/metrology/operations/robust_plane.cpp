@@ -27,7 +27,7 @@ struct Around {
 
 /// Residuals in [from, to) by bands; the order within does not matter to an order statistic.
 Around collect(const ChosenPoints& points, const Eigen::Vector3d& plane, double from, double to, WorkerPool* pool) {
-  const int rows = points.z_um.height;
+  const int rows = points.z_um.height();
   std::vector<Around> bands(static_cast<std::size_t>(band_count(rows)));
   run_bands(pool, rows, [&](int band, int first, int end) {
     Around& around = bands[static_cast<std::size_t>(band)];
@@ -76,10 +76,7 @@ double median_residual(const ChosenPoints& points, const Eigen::Vector3d& plane,
 
 double largest_height(const ChosenPoints& points) {
   double largest = 0.0;
-  for (int row = 0; row < points.z_um.height; ++row) {
-    const double* z = points.z_um.row(row);
-    for (std::size_t i = 0; i < points.x.size(); ++i) largest = std::abs(z[i]) > largest ? std::abs(z[i]) : largest;
-  }
+  for (const double z : points.z_um.pixels()) largest = std::abs(z) > largest ? std::abs(z) : largest;
   return largest;
 }
 

@@ -38,7 +38,7 @@ std::vector<Eigen::Vector3d> sample_of(const ChosenPoints& points, Sequence& seq
   std::vector<Eigen::Vector3d> sample;
   std::size_t index = 0;
   std::size_t wanted = sequence.next(step);
-  for (int row = 0; row < points.z_um.height; ++row) {
+  for (int row = 0; row < points.z_um.height(); ++row) {
     const double* z = points.z_um.row(row);
     for (std::size_t i = 0; i < points.x.size(); ++i) {
       if (std::isnan(z[i])) continue;

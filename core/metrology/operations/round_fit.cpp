@@ -67,7 +67,7 @@ class Fitter {
   [[nodiscard]] Sums sums_of(const RoundForm& form) const {
     Sums sums;
     Vector derivatives;
-    for (int row = 0; row < points_.z_um.height; row += step_) {
+    for (int row = 0; row < points_.z_um.height(); row += step_) {
       const double* z = points_.z_um.row(row);
       const double y = points_.centre_y_um + points_.half_y_um * points_.y[static_cast<std::size_t>(row)];
       for (std::size_t i = 0; i < points_.x.size(); i += static_cast<std::size_t>(step_)) {

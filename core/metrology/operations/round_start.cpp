@@ -19,8 +19,8 @@ constexpr double kRightAngle_rad = 1.5707963267948966;
 template <typename Visit>
 void visit_coarse(const ChosenPoints& points, const Visit& visit) {
   const int step = coarse_step(points);
-  for (int row = 0; row < points.z_um.height; row += step) {
-    for (int column = 0; column < points.z_um.width; column += step) {
+  for (int row = 0; row < points.z_um.height(); row += step) {
+    for (int column = 0; column < points.z_um.width(); column += step) {
       const double z = points.z_um.at(column, row);
       if (!std::isnan(z)) {
         visit(points.x[static_cast<std::size_t>(column)], points.y[static_cast<std::size_t>(row)], z);
