@@ -111,7 +111,7 @@ NOT_MEASURED = {
     "lateral_error": "no command takes a cross grid's pitch through the whole path yet",
     "alpha_z_within_U_of_20": "no command calibrates z through the whole path yet",
     "last_frame_to_verdict_ms": "needs the daemon at 5 Mpx",
-    "ome_ok": "there is no OME-TIFF exporter yet",
+    "ome_ok": "the recorded slices could not be exported or read",
     "export_worst_s": "an export failed",
 }
 
