@@ -1,6 +1,6 @@
 #pragma once
 
-/// From how far below its slices a step scan may come.
+/// From how far before its slices a step scan may come: below them, above them in a scan downwards.
 
 #include <algorithm>
 

@@ -122,7 +122,7 @@ class SliceSorter {
   [[nodiscard]] double reach_um() const { return last_way_um_; }
   /// Position along the way, from the first target on.
   [[nodiscard]] double along(double z_um) const {
-    return plan_.downwards ? plan_.last().value - z_um : z_um - plan_.start.value;
+    return plan_.downwards ? plan_.highest().value - z_um : z_um - plan_.start.value;
   }
 
  private:
@@ -236,7 +236,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
   const Micrometers before = run_up(plan, stage);
   const Micrometers after_last = run_out(plan, stage);
   const Micrometers low = plan.start - (plan.downwards ? after_last : before);
-  const Micrometers high = plan.last() + (plan.downwards ? before : after_last);
+  const Micrometers high = plan.highest() + (plan.downwards ? before : after_last);
   const std::stop_callback wake(stop, [this] { deps_.camera.interrupt(); });
   report.steps.reserve(static_cast<std::size_t>(plan.slices));
   struct Waiting {

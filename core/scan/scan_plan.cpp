@@ -56,14 +56,17 @@ void check_continuous(const ScanPlan& plan, const CameraSettings& settings, cons
 void check_plan(const ScanPlan& plan, const StageInfo& stage) {
   const bool moving = plan.mode == ScanMode::kContinuous;
   const Micrometers before = moving ? run_up(plan, stage) : approach(plan, stage);
-  const Micrometers lowest = plan.start - before;
-  const Micrometers highest = moving ? plan.last() + (plan.downwards ? before : run_out(plan, stage)) : plan.last();
+  const Micrometers behind = moving ? run_out(plan, stage) : Micrometers{0.0};
+  const Micrometers lowest = plan.start - (plan.downwards ? behind : before);
+  const Micrometers highest = plan.highest() + (plan.downwards ? before : behind);
   if (lowest >= stage.min && highest <= stage.max) return;
   std::ostringstream message;
   message << "the scan from " << plan.start.value << " um to " << highest.value << " um with " << before.value
-          << (moving ? " um of run-up needs " : " um of take-up below needs ") << lowest.value << ".." << highest.value
-          << " um, the stage may travel " << stage.min.value << ".." << stage.max.value
-          << " um: change the recipe's range or the stage's limits";
+          << (moving           ? " um of run-up needs "
+              : plan.downwards ? " um of take-up above needs "
+                               : " um of take-up below needs ")
+          << lowest.value << ".." << highest.value << " um, the stage may travel " << stage.min.value << ".."
+          << stage.max.value << " um: change the recipe's range or the stage's limits";
   throw Error(ErrorCode::kStageLimit, message.str());
 }
 

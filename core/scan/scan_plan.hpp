@@ -17,7 +17,7 @@ enum class ScanMode {
 
 struct ScanPlan {
   ScanMode mode = ScanMode::kStep;
-  Micrometers start;       ///< target of slice 0
+  Micrometers start;       ///< target of the lowest slice
   Micrometers step{10.0};  ///< > 0: the scan goes one way only, so that backlash stays loaded
   int slices = 0;          ///< >= 1
   SettleCriterion settle;
@@ -26,16 +26,19 @@ struct ScanPlan {
 
   bool line_trigger = false;  ///< kStep: the drive's in-position output triggers the camera
 
-  double speed_um_per_s = 0.0;  ///< kContinuous: > 0
-  double max_blur_steps = 0.5;  ///< kContinuous: largest travel during one exposure, in steps
-  bool downwards = false;       ///< kContinuous: from the last slice to the first, for the calibration of the lag
+  double speed_um_per_s = 0.0;               ///< kContinuous: > 0
+  double max_blur_steps = 0.5;               ///< kContinuous: largest travel during one exposure, in steps
+  bool downwards = false;                    ///< from the highest slice to the lowest
   std::chrono::microseconds time_offset{0};  ///< kContinuous: of the stage's clock against the camera's, see LagResult
 
   /// kContinuous: frames per second at which the slices lie one step apart.
   [[nodiscard]] double frame_rate_hz() const { return speed_um_per_s / step.value; }
 
-  [[nodiscard]] Micrometers target(int index) const { return start + static_cast<double>(index) * step; }
-  [[nodiscard]] Micrometers last() const { return target(slices - 1); }
+  /// In the order of the scan.
+  [[nodiscard]] Micrometers target(int index) const {
+    return start + static_cast<double>(downwards ? slices - 1 - index : index) * step;
+  }
+  [[nodiscard]] Micrometers highest() const { return start + static_cast<double>(slices - 1) * step; }
 };
 
 /// Run-up distance before the first slice of a continuous scan: the axis is at constant speed there, the backlash

@@ -40,6 +40,11 @@ void record_exposure(StepRecord& step, const CapturedFrame& captured, const Posi
   step.exposure_start = captured.frame.exposure_start;
 }
 
+/// Where the stage has passed before the target.
+Micrometers before(const ScanPlan& plan, Micrometers target, Micrometers distance) {
+  return plan.downwards ? target + distance : target - distance;
+}
+
 Error too_many_lost(int index, Micrometers target, const ScanPlan& plan, const ScanReport& report) {
   std::ostringstream message;
   const int lost = report.lost_slices;
@@ -61,11 +66,11 @@ Error too_many_lost(int index, Micrometers target, const ScanPlan& plan, const S
 void ScanRunner::take_up(const ScanPlan& plan, std::stop_token stop) {
   const Micrometers distance = deps_.stage.info().take_up;
   if (distance.value <= 0) return;
-  // The move below the first slice only has to end below it: an axis with backlash comes to rest outside the window
-  // that slices are held to when it arrives from above.
+  // The move below the first slice (above it, of a scan downwards) only has to end there: an axis with backlash comes
+  // to rest outside the window that slices are held to when it arrives from the other side.
   SettleCriterion wide = plan.settle;
   wide.window = std::max(plan.settle.window, distance * 0.5);
-  deps_.stage.move_to(plan.start - distance, wide, stop);
+  deps_.stage.move_to(before(plan, plan.target(0), distance), wide, stop);
 }
 
 void ScanRunner::hand_over(Slice&& slice, int index, std::stop_token stop) {
@@ -94,7 +99,7 @@ std::optional<CapturedFrame> ScanRunner::capture_by_line(const ScanPlan& plan, M
     SettleCriterion wide = plan.settle;
     const Micrometers away = approach(plan, deps_.stage.info());
     wide.window = std::max(plan.settle.window, away * 0.5);
-    deps_.stage.move_to(target - away, wide, stop);
+    deps_.stage.move_to(before(plan, target, away), wide, stop);
     move = deps_.stage.move_to(target, plan.settle, stop);
   }
 }

@@ -9,8 +9,10 @@
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/kept_slices.hpp"
 #include "daemon/ctl/pitch_option.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/ome_tiff.hpp"
 #include "daemon/export/surface_writers.hpp"
 #include "daemon/surface_files/result_folder.hpp"
 #include "daemon/surface_files/texture_image.hpp"
@@ -21,8 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kSlices = "ome-tiff";  ///< of the slices, not of the surface
+
 std::vector<std::string> formats() {
-  std::vector<std::string> names;
+  std::vector<std::string> names{kSlices};
   for (const SurfaceWriter& writer : surface_writers()) names.emplace_back(writer.format);
   return names;
 }
@@ -41,12 +45,29 @@ void print_summary(const ExportArguments& arguments, const Surface& surface, con
                << std::flush;
 }
 
+int export_slices(const ExportArguments& arguments, const SurfaceReadOptions& options, const Terminal& terminal) {
+  KeptSlices slices(arguments.source, options);
+  const OmeStack& stack = slices.stack();
+  write_ome_tiff(arguments.out, stack, [&slices](int index) { return slices.read(index); });
+  terminal.out << "slices    " << stack.slices() << " of " << stack.width << " x " << stack.height << " pixels, "
+               << significant_bits(stack.format) << " bit\n";
+  if (stack.pitch_x_um && stack.pitch_y_um) {
+    terminal.out << "pitch     " << *stack.pitch_x_um << " x " << *stack.pitch_y_um << " um\n";
+  }
+  terminal.out << "z         " << stack.z_um.front() << " to " << stack.z_um.back() << " um\n"
+               << "file      " << arguments.out << "\n"
+               << std::flush;
+  return kExitOk;
+}
+
 }  // namespace
 
 void add_export_options(CLI::App& command, ExportArguments& a) {
   command.add_option("source", a.source, "folder of a result, or a file of a surface: X3P, GSF, SDF, float TIFF, CSV")
       ->required();
-  command.add_option("--format", a.format, "of the new file; gsf_sigma: the standard errors")
+  command
+      .add_option("--format", a.format,
+                  "of the new file; gsf_sigma: the standard errors; ome-tiff: the slices that a job kept")
       ->required()
       ->check(CLI::IsMember(formats()));
   command.add_option("--out", a.out, "the new file; must not exist")->required();
@@ -55,6 +76,7 @@ void add_export_options(CLI::App& command, ExportArguments& a) {
 
 int run_export(const ExportArguments& arguments, const Terminal& terminal) {
   const SurfaceReadOptions options = read_options(arguments.pitch_um);
+  if (arguments.format == kSlices) return export_slices(arguments, options, terminal);
   if (fs::is_directory(arguments.source)) {
     const ResultSurface read = read_result_surface(arguments.source, options);
     const TextureImage texture = read_texture(arguments.source, read.surface, read.result);

@@ -53,6 +53,9 @@ ZSource z_source(const ProcessArguments& arguments, const Recipe& recipe, const 
   if (!arguments.recipe.empty() && !arguments.z_step_um && !arguments.z_start_um && std::filesystem::exists(recorded))
     return ZFile{recorded, LengthUnit::kMicrometre};
   if (named) return ZNames{};
+  if (!arguments.recipe.empty() && recipe.downwards && !arguments.z_step_um && !arguments.z_start_um) {
+    return ZSpacing{recipe.start_um + recipe.step_um * (recipe.slices - 1), -recipe.step_um};
+  }
   return ZSpacing{arguments.z_start_um.value_or(arguments.recipe.empty() ? 0.0 : recipe.start_um),
                   arguments.z_step_um.value_or(recipe.step_um)};
 }

@@ -15,6 +15,7 @@
 #include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/noise_floor.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
+#include "daemon/evaluation/section_fit.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
 
 namespace fvd {
@@ -147,6 +148,27 @@ ordered_json spreads_json(const CuttingEdge& edge) {
   return json;
 }
 
+/// The edge line for pictures: places at even distances, of several the one where most is missing; null = not measured.
+ordered_json line_json(const std::vector<metrology::EdgeLinePoint>& line) {
+  constexpr std::size_t kMostPlaces = 300;
+  constexpr double kPerMicrometre = 1e3;
+  const std::size_t block = (line.size() + kMostPlaces - 1) / kMostPlaces;
+  ordered_json deviations = ordered_json::array();
+  for (std::size_t begin = 0; begin < line.size(); begin += block) {
+    std::optional<double> most;
+    for (std::size_t i = begin; i < std::min(begin + block, line.size()); ++i) {
+      if (line[i].deviation_um) most = std::max(most.value_or(*line[i].deviation_um), *line[i].deviation_um);
+    }
+    deviations.push_back(most ? ordered_json(std::round(*most * kPerMicrometre) / kPerMicrometre) : ordered_json());
+  }
+  const double every_um = line.size() < 2 ? 0.0
+                                          : (line.back().along_um - line.front().along_um) /
+                                                static_cast<double>(line.size() - 1) * static_cast<double>(block);
+  return {{"from_um", line.empty() ? 0.0 : line.front().along_um},
+          {"every_um", every_um},
+          {"missing_um", std::move(deviations)}};
+}
+
 ordered_json details_json(const CuttingEdge& edge) {
   ordered_json json{{"direction_deg", edge.direction_deg},
                     {"window_um", edge.window_um},
@@ -167,6 +189,7 @@ ordered_json details_json(const CuttingEdge& edge) {
                      {"unmeasured_um", chipping.unmeasured_um},
                      {"notches", ordered_json::array()}};
   for (const metrology::Notch& notch : chipping.notches) chips["notches"].push_back(notch_json(notch));
+  if (!chipping.line.empty()) chips["line"] = line_json(chipping.line);
   json["chipping"] = std::move(chips);
   return json;
 }
@@ -277,6 +300,7 @@ EvaluatedMeasurement measure_edge(const MeasurementInput& input) {
   made.not_evaluated.emplace_back("slice_z");
   made.details = details_json(edge).dump();
   made.cross_section = edge_section(edge, input.planned);
+  if (made.cross_section) add_edge_fit(input, edge, *made.cross_section);
   return made;
 }
 

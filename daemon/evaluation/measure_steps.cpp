@@ -15,6 +15,7 @@
 #include "daemon/evaluation/measure_kinds.hpp"
 #include "daemon/evaluation/measured_section.hpp"
 #include "daemon/evaluation/plan_regions.hpp"
+#include "daemon/evaluation/section_fit.hpp"
 #include "daemon/evaluation/value_names.hpp"
 #include "daemon/evaluation/value_uncertainty.hpp"
 
@@ -136,6 +137,10 @@ void warn_of_tilt_along(EvaluatedMeasurement& made) {
     by_traces.verdict = Verdict::kUncertain;
 }
 
+double along_groove(const metrology::GrooveSettings& settings, const StepValue& step) {
+  return settings.across == metrology::Across::kY ? step.slope_y : step.slope_x;
+}
+
 void measure_flat_bottom(const MeasurementInput& input, EvaluatedMeasurement& made) {
   const metrology::GrooveSettings settings = groove_settings(input.planned);
   const auto outcome = metrology::iso5436_a1(input.surface.field, settings);
@@ -157,6 +162,7 @@ void measure_flat_bottom(const MeasurementInput& input, EvaluatedMeasurement& ma
                    {"regions", regions_json(groove.regions.data(), groove.regions.data() + groove.regions.size())}}
           .dump();
   made.cross_section = groove_section(input.surface.field, settings, groove.edges);
+  add_groove_fit(input, groove.edges, along_groove(settings, groove.areal), *made.cross_section);
 }
 
 void measure_rounded_bottom(const MeasurementInput& input, EvaluatedMeasurement& made) {
@@ -175,6 +181,10 @@ void measure_rounded_bottom(const MeasurementInput& input, EvaluatedMeasurement&
                    {"regions", regions_json(groove.regions.data(), groove.regions.data() + groove.regions.size())}}
           .dump();
   made.cross_section = groove_section(input.surface.field, settings, groove.edges);
+  double slope = 0.0;
+  for (const metrology::StepTrace& trace : groove.traces.each) slope += trace.slope;
+  add_rounded_groove_fit(input, groove.edges, slope / static_cast<double>(groove.traces.each.size()),
+                         *made.cross_section);
 }
 
 metrology::StepSlope slope_of(const std::string& name) {
@@ -223,6 +233,9 @@ EvaluatedMeasurement measure_step_between(const MeasurementInput& input) {
                      .dump();
   const std::array sections{SectionRegion{input.planned.lower, &lower}, SectionRegion{input.planned.upper, &upper}};
   made.cross_section = regions_section(field, sections);
+  const std::array fitted{FittedRegion{sections[0], step.lower.mean_z_um},
+                          FittedRegion{sections[1], step.upper.mean_z_um}};
+  add_plane_fit(input, fitted, step.value.slope_x, step.value.slope_y, *made.cross_section);
   if (input.planned.slope == "fixed" && input.surface.levelled) {
     made.not_evaluated.emplace_back("levelling");
     made.warnings.push_back({"levelling_not_in_u",
@@ -265,8 +278,13 @@ EvaluatedMeasurement measure_levels(const MeasurementInput& input) {
                               {"regions", regions_json(regions, regions + found.regions.size())}}
                      .dump();
   std::vector<SectionRegion> sections;
-  for (const metrology::NamedRegion& region : named) sections.push_back({region.name, region.region});
+  std::vector<FittedRegion> fitted;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    sections.push_back({named[i].name, named[i].region});
+    fitted.push_back({sections.back(), found.regions[i].mean_z_um});
+  }
   made.cross_section = regions_section(field, sections);
+  add_plane_fit(input, fitted, found.slope_x, found.slope_y, *made.cross_section);
   return made;
 }
 

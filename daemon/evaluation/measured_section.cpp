@@ -15,33 +15,8 @@ namespace fvd {
 
 namespace {
 
-struct Point {
-  double x_um = 0.0;
-  double y_um = 0.0;
-};
-
-Point centre_of(const metrology::HeightField& field, const metrology::Region& region) {
-  const metrology::RegionBounds bounds = metrology::bounds_of(region, region.width(), region.height());
-  double columns = 0.0;
-  double rows = 0.0;
-  double count = 0.0;
-  for (int y = bounds.top; y < bounds.bottom; ++y) {
-    const std::uint8_t* inside = region.row(y);
-    std::int64_t in_row = 0;
-    std::int64_t sum = 0;  // whole numbers: as exact as sums of halves
-    for (int x = bounds.left; x < bounds.right; ++x) {
-      in_row += inside[x] != 0 ? 1 : 0;
-      sum += inside[x] != 0 ? x : 0;
-    }
-    columns += static_cast<double>(sum) + 0.5 * static_cast<double>(in_row);
-    rows += (y + 0.5) * static_cast<double>(in_row);
-    count += static_cast<double>(in_row);
-  }
-  return {columns / count * field.pitch_x_um, rows / count * field.pitch_y_um};
-}
-
 /// How far from `at` into the direction the field's border is.
-double reach_um(const metrology::HeightField& field, const Point& at, double along_x, double along_y) {
+double reach_um(const metrology::HeightField& field, const SectionPlace& at, double along_x, double along_y) {
   const auto to_border = [](double place, double direction, double length) {
     if (direction == 0.0) return std::numeric_limits<double>::infinity();
     return (direction > 0.0 ? length - place : -place) / direction;
@@ -71,6 +46,26 @@ void add_region(const metrology::HeightField& field, const SectionRegion& region
 
 }  // namespace
 
+SectionPlace centre_of(const metrology::HeightField& field, const metrology::Region& region) {
+  const metrology::RegionBounds bounds = metrology::bounds_of(region, region.width(), region.height());
+  double columns = 0.0;
+  double rows = 0.0;
+  double count = 0.0;
+  for (int y = bounds.top; y < bounds.bottom; ++y) {
+    const std::uint8_t* inside = region.row(y);
+    std::int64_t in_row = 0;
+    std::int64_t sum = 0;  // whole numbers: as exact as sums of halves
+    for (int x = bounds.left; x < bounds.right; ++x) {
+      in_row += inside[x] != 0 ? 1 : 0;
+      sum += inside[x] != 0 ? x : 0;
+    }
+    columns += static_cast<double>(sum) + 0.5 * static_cast<double>(in_row);
+    rows += (y + 0.5) * static_cast<double>(in_row);
+    count += static_cast<double>(in_row);
+  }
+  return {columns / count * field.pitch_x_um, rows / count * field.pitch_y_um};
+}
+
 CrossSection groove_section(const metrology::HeightField& field, const metrology::GrooveSettings& settings,
                             const metrology::GrooveEdges& edges) {
   const bool along_x = settings.across == metrology::Across::kX;
@@ -95,8 +90,8 @@ CrossSection groove_section(const metrology::HeightField& field, const metrology
 }
 
 CrossSection regions_section(const metrology::HeightField& field, std::span<const SectionRegion> regions) {
-  const Point first = centre_of(field, *regions.front().points);
-  const Point last = centre_of(field, *regions.back().points);
+  const SectionPlace first = centre_of(field, *regions.front().points);
+  const SectionPlace last = centre_of(field, *regions.back().points);
   const double distance_um = std::hypot(last.x_um - first.x_um, last.y_um - first.y_um);
   // Regions around each other have one centre: a row is as good as any line then.
   const double along_x = distance_um > 0.0 ? (last.x_um - first.x_um) / distance_um : 1.0;
@@ -123,23 +118,27 @@ CrossSection profile_section(const PlannedMeasurement& planned) {
   return section;
 }
 
-std::optional<CrossSection> edge_section(const metrology::CuttingEdge& edge, const PlannedMeasurement& planned) {
+const metrology::EdgeSection* middle_section(const metrology::CuttingEdge& edge) {
   std::vector<const metrology::EdgeSection*> measured;
   for (const metrology::EdgeSection& section : edge.sections) {
     if (section.state == metrology::EdgeReason::kNone) measured.push_back(&section);
   }
-  if (measured.empty()) return std::nullopt;
-  const metrology::EdgeSection& middle = *measured[measured.size() / 2];
+  return measured.empty() ? nullptr : measured[measured.size() / 2];
+}
+
+std::optional<CrossSection> edge_section(const metrology::CuttingEdge& edge, const PlannedMeasurement& planned) {
+  const metrology::EdgeSection* const middle = middle_section(edge);
+  if (middle == nullptr) return std::nullopt;
   const double angle = edge.direction_deg * std::numbers::pi / 180.0;
   const double from_um = planned.flank_um.at(0);
   const double to_um = planned.flank_um.at(1);
   constexpr double kBeyond = 1.3;
   const double half_um = kBeyond * to_um;
   CrossSection section;
-  section.from_x_um = middle.x_um + std::sin(angle) * half_um;
-  section.from_y_um = middle.y_um - std::cos(angle) * half_um;
-  section.to_x_um = middle.x_um - std::sin(angle) * half_um;
-  section.to_y_um = middle.y_um + std::cos(angle) * half_um;
+  section.from_x_um = middle->x_um + std::sin(angle) * half_um;
+  section.from_y_um = middle->y_um - std::cos(angle) * half_um;
+  section.to_x_um = middle->x_um - std::sin(angle) * half_um;
+  section.to_y_um = middle->y_um + std::cos(angle) * half_um;
   // Always from left to right: the flanks lie as in the image.
   if (section.from_x_um > section.to_x_um) {
     std::swap(section.from_x_um, section.to_x_um);

@@ -18,6 +18,14 @@ namespace fvd {
                                           const metrology::GrooveSettings& settings,
                                           const metrology::GrooveEdges& edges);
 
+struct SectionPlace {
+  double x_um = 0.0;
+  double y_um = 0.0;
+};
+
+/// Of a region's points. It has at least one.
+[[nodiscard]] SectionPlace centre_of(const metrology::HeightField& field, const metrology::Region& region);
+
 struct SectionRegion {
   std::string name;
   const metrology::Region* points = nullptr;
@@ -29,6 +37,9 @@ struct SectionRegion {
 
 /// From end to end of the profile.
 [[nodiscard]] CrossSection profile_section(const PlannedMeasurement& planned);
+
+/// The middle one of the measured sections; nullptr where none was measured.
+[[nodiscard]] const metrology::EdgeSection* middle_section(const metrology::CuttingEdge& edge);
 
 /// Across the edge in the middle one of the measured sections, somewhat further than the flanks are looked at, as wide
 /// as a section. Nothing where no section was measured.

@@ -56,6 +56,19 @@ void write_new_file(const std::filesystem::path& path, const ByteProducer& produ
   UnsyncedFile(path, produce).finish();
 }
 
+void write_new_file_at_will(const std::filesystem::path& path, const std::function<void(int fd)>& write) {
+  UniqueFd file(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  if (!file.valid()) throw storage_error(errno, "create", path);
+  try {
+    write(file.get());
+    if (::fsync(file.get()) != 0) throw storage_error(errno, "bring to disk", path);
+    if (::close(file.release()) != 0) throw storage_error(errno, "close", path);
+  } catch (...) {
+    ::unlink(path.c_str());
+    throw;
+  }
+}
+
 void sync_directory(const std::filesystem::path& directory) {
   const UniqueFd fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!fd.valid()) throw storage_error(errno, "open directory", directory);

@@ -46,6 +46,9 @@ class UnsyncedFile {
 /// removed. Throws Error kStorageFull, kStorageWrite.
 void write_new_file(const std::filesystem::path& path, std::string_view bytes);
 void write_new_file(const std::filesystem::path& path, const ByteProducer& produce);
+/// The same for a writer that goes back in its file. write: gets the file, open to be read and written; also throws
+/// what it throws.
+void write_new_file_at_will(const std::filesystem::path& path, const std::function<void(int fd)>& write);
 
 /// Brings a directory's entries to the disk. Throws Error kStorageWrite.
 void sync_directory(const std::filesystem::path& directory);

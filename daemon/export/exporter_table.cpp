@@ -8,7 +8,6 @@
 #include "daemon/export/height_tiff.hpp"
 #include "daemon/export/mask_png.hpp"
 #include "daemon/export/picture_exporters.hpp"
-#include "daemon/export/preview.hpp"
 #include "daemon/export/step_csv.hpp"
 #include "daemon/export/surface_writers.hpp"
 #include "daemon/export/texture_png.hpp"

@@ -23,6 +23,8 @@ PictureSurface picture_of(const ExportInput& input) {
 
 }  // namespace
 
+std::string preview_file(const ExportInput& input) { return overview_png(picture_of(input), input.result.get()); }
+
 std::string sigma_picture_file(const ExportInput& input) { return sigma_png(picture_of(input)); }
 
 std::string holes_picture_file(const ExportInput& input) { return holes_png(picture_of(input)); }

@@ -20,6 +20,7 @@ struct ExportInput;
 /// Of input.measurement.
 [[nodiscard]] std::string profile_picture_file(const ExportInput& input);
 
+[[nodiscard]] std::string preview_file(const ExportInput& input);
 [[nodiscard]] std::string report_file(const ExportInput& input);
 
 }  // namespace fvd

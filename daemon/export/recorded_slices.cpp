@@ -25,10 +25,14 @@ std::string encode_pgm(const ImageView& slice) {
   return file;
 }
 
-void SliceRecorder::add(const ImageView& slice, double z_um) {
-  std::string number = std::to_string(slices_);
+std::string recorded_slice_name(int index) {
+  std::string number = std::to_string(index);
   number.insert(0, number.size() < 5 ? 5 - number.size() : 0, '0');
-  directory_.add_file("slices/slice_" + number + ".pgm", encode_pgm(slice));
+  return "slice_" + number + ".pgm";
+}
+
+void SliceRecorder::add(const ImageView& slice, double z_um) {
+  directory_.add_file("slices/" + recorded_slice_name(slices_), encode_pgm(slice));
   char text[32];
   const auto end = std::to_chars(std::begin(text), std::end(text), z_um).ptr;  // shortest text that reads back equal
   z_lines_.append(text, end);

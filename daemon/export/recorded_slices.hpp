@@ -13,6 +13,9 @@ namespace fvd {
 /// A binary PGM (netpbm "P5"); maxval is the format's largest grey level, so that reading it back restores the format.
 [[nodiscard]] std::string encode_pgm(const ImageView& slice);
 
+/// "slice_00000.pgm" of the first slice.
+[[nodiscard]] std::string recorded_slice_name(int index);
+
 /// Whether z.txt in the folder of slices says that a device was simulated.
 [[nodiscard]] bool recorded_of_simulation(const std::filesystem::path& folder);
 

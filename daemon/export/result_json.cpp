@@ -156,6 +156,7 @@ Json slices(const Result::Slices& slices) {
             {"measured", slices.measured},
             {"first_um", um_or_null(slices.first_um)},
             {"last_um", um_or_null(slices.last_um)}};
+  if (slices.exposure_us) json["exposure_us"] = rounded(*slices.exposure_us, 3);
   json["scan_mode"] = slices.mode == ScanMode::kContinuous ? "continuous" : "step";
   if (slices.mode == ScanMode::kContinuous) {
     json["speed_um_per_s"] = um(slices.speed_um_per_s);

@@ -234,6 +234,7 @@ Result::Slices slices(const Node& node) {
   slices.measured = node.at("measured").integer<int>();
   slices.first_um = node.at("first_um").optional_number();
   slices.last_um = node.at("last_um").optional_number();
+  if (node.has("exposure_us")) slices.exposure_us = node.at("exposure_us").optional_number();
   slices.mode = node.at("scan_mode").named(scan_mode_from_name, "step or continuous");
   if (slices.mode == ScanMode::kContinuous) {
     slices.speed_um_per_s = node.at("speed_um_per_s").number();

@@ -137,9 +137,9 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
     if (phase == "acquiring") note_temperature(job.status.request, deps_.config.temperature, acquired);
     tell_phase(phase);
   };
-  // In a continuous scan nobody commands the stage to be just there.
+  // In a continuous scan nobody commands the stage to be just there; and the history is of one direction.
   const auto remember_steps = [this, &recipe](const StepLog& steps) {
-    if (recipe.mode == ScanMode::kStep) deps_.history.add(deps_.hub.axis().info().feedback, steps);
+    if (recipe.mode == ScanMode::kStep && !recipe.downwards) deps_.history.add(deps_.hub.axis().info().feedback, steps);
   };
   observer.on_earlier_scan = remember_steps;
   std::optional<SliceRecorder> recorder;

@@ -119,6 +119,7 @@ ScanPlan scan_plan(const Recipe& recipe) {
   ScanPlan plan;
   plan.start = Micrometers{recipe.start_um};
   plan.step = Micrometers{recipe.step_um};
+  plan.downwards = recipe.downwards;
   plan.slices = recipe.slices;
   plan.settle = recipe.settle;
   plan.frame_retries = recipe.frame_retries;
@@ -143,6 +144,7 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   result.scan_mode = recipe.mode;
   result.speed_um_per_s = recipe.mode == ScanMode::kContinuous ? recipe.speed_um_per_s : 0.0;
   const CameraSettings settings = deps.camera.configure(recipe.camera);
+  if (settings.exposure_us > 0.0) result.exposure_us = settings.exposure_us;
   std::optional<StreamingFocusStack> stack;
   const auto renew_stack = [&] {
     stack.reset();  // its memory first

@@ -37,10 +37,11 @@ struct Recipe {
 
   std::string objective;  ///< that must be the confirmed one; empty = any
 
-  double start_um = 0.0;  ///< z of the first slice
+  double start_um = 0.0;  ///< z of the lowest slice
   double step_um = 10.0;  ///< > 0, distance of slices
   int slices = 21;        ///< 3..65535
   ScanMode mode = ScanMode::kStep;
+  bool downwards = false;       ///< from the highest slice to the lowest; not of continuous scans
   double speed_um_per_s = 0.0;  ///< continuous: > 0
   double max_blur_steps = 0.5;  ///< continuous: > 0, way of the stage during an exposure
   int repeat = 1;               ///< 1..20 scans, of which the heights are the mean

@@ -91,6 +91,12 @@ void check_together(const Recipe& recipe, const Places& places, Problems& proble
   if (judged({mode, trigger}) && recipe.mode == ScanMode::kContinuous && recipe.camera.trigger == TriggerMode::kLine) {
     refuse(trigger, "line", "is for scan.mode step; in a continuous scan the camera runs free");
   }
+  const std::string direction = places.scan + "/direction";
+  if (judged({mode, direction}) && recipe.mode == ScanMode::kContinuous && recipe.downwards) {
+    refuse(direction, "down",
+           "is for scan.mode step: in a continuous scan what differs between the directions is the lag of the stage's "
+           "clock, not the stage's own");
+  }
   if (judged({peak, extra_peaks}) &&
       std::find(recipe.extra_peaks.begin(), recipe.extra_peaks.end(), recipe.peak) != recipe.extra_peaks.end()) {
     refuse(extra_peaks, peak_method_name(recipe.peak), "is the peak already; expected others only");
@@ -194,18 +200,26 @@ Problems check_stage_limits(const Recipe& recipe, const StageLimits& stage, cons
   Problems problems;
   const std::string scan = recipe.format == 1 ? kFormat1Places.scan : kFormat2Places.scan;
   const auto judged = [&](const std::string& key) { return !is_reported(read, scan + key); };
-  const double first = recipe.start_um - stage.take_up.value;
-  const double last = recipe.start_um + recipe.step_um * (recipe.slices - 1);
+  const double take_up = stage.take_up.value;
+  const double below = recipe.downwards ? 0.0 : take_up;
+  const double above = recipe.downwards ? take_up : 0.0;
+  const double first = recipe.start_um - below;
+  const double last = recipe.start_um + recipe.step_um * (recipe.slices - 1) + above;
+  const auto with_take_up = [take_up](double um) {
+    std::ostringstream text;
+    if (um > 0.0) text << " with " << take_up << " um of take-up";
+    return text.str();
+  };
   if (judged("/start_um") && first < stage.min.value) {
     std::ostringstream text;
-    text << recipe.start_um << " with " << stage.take_up.value << " um of take-up reaches " << first
-         << " um; expected a start of at least " << stage.min.value + stage.take_up.value << " um";
+    text << recipe.start_um << with_take_up(below) << " reaches " << first << " um; expected a start of at least "
+         << stage.min.value + below << " um";
     problems.push_back({scan + "/start_um", text.str()});
   }
   if (judged("/start_um") && judged("/step_um") && judged("/slices") && last > stage.max.value) {
     std::ostringstream text;
-    text << recipe.slices << " slices reach " << last << " um; expected at most " << stage.max.value
-         << " um: fewer slices, a smaller step_um or a lower start_um";
+    text << recipe.slices << " slices" << with_take_up(above) << " reach " << last << " um; expected at most "
+         << stage.max.value << " um: fewer slices, a smaller step_um or a lower start_um";
     problems.push_back({scan + "/slices", text.str()});
   }
   const double speed = recipe.speed_um_per_s;

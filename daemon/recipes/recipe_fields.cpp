@@ -47,7 +47,7 @@ void describe_settle(SettleCriterion& settle, Fields& fields) {
 }
 
 void describe_scan(Recipe& recipe, Fields& fields) {
-  fields.number("start_um", recipe.start_um, {-1e6, 1e6}, "z of the first slice");
+  fields.number("start_um", recipe.start_um, {-1e6, 1e6}, "z of the lowest slice");
   fields.require("start_um");
   fields.number("step_um", recipe.step_um, positive(1e5), "distance of slices");
   fields.require("step_um");
@@ -57,6 +57,10 @@ void describe_scan(Recipe& recipe, Fields& fields) {
   fields.choice("mode", mode, {"step", "continuous"},
                 "step = the stage stops for every slice; continuous = it does not");
   recipe.mode = mode == "continuous" ? ScanMode::kContinuous : ScanMode::kStep;
+  std::string direction = recipe.downwards ? "down" : "up";
+  fields.choice("direction", direction, {"up", "down"},
+                "step: up = from start_um upwards; down = the same slices from the highest on, approached from above");
+  recipe.downwards = direction == "down";
   fields.number("speed_um_per_s", recipe.speed_um_per_s, {0.0, 1e6}, "continuous: speed of the stage");
   fields.number("max_blur_steps", recipe.max_blur_steps, positive(10.0),
                 "continuous: way of the stage during an exposure, in steps; more is refused");

@@ -95,15 +95,38 @@ void draw_sections(Canvas& canvas, const Plot& plot, const EdgeAlong& edge) {
   finish();
 }
 
-/// The line dips by a notch's depth where it is as wide as that.
+/// What is missing is below the form; broken where it is not measured.
+void draw_edge_line(Canvas& canvas, const Plot& plot, const EdgeAlong& edge) {
+  const bool told = !edge.line.empty();
+  canvas.line({plot.inside.x, plot.y(0.0)}, {plot.inside.right(), plot.y(0.0)}, told ? colour::kRule : colour::kLine,
+              told ? 0.5 : 0.8);
+  std::vector<PagePoint> line;
+  const auto finish = [&] {
+    if (line.size() > 1) canvas.polyline(line, colour::kLine, 0.6);
+    line.clear();
+  };
+  for (const EdgeAlong::Place& place : edge.line) {
+    if (place.missing_um) {
+      line.push_back({plot.x(place.along_um), plot.y(-*place.missing_um)});
+    } else {
+      finish();
+    }
+  }
+  finish();
+}
+
+/// A notch as a wedge of its depth, as wide as that at half of it; with the edge's line only its outline.
 void draw_notches(Canvas& canvas, const Plot& plot, const EdgeAlong& edge) {
-  canvas.line({plot.inside.x, plot.y(0.0)}, {plot.inside.right(), plot.y(0.0)}, colour::kLine, 0.8);
   for (const EdgeAlong::Notch& notch : edge.notches) {
-    const double half_um = notch.width_um / 2.0;
+    const double half_um = notch.width_um;
     const PagePoint tip{plot.x(notch.along_um), plot.y(-notch.depth_um)};
     const std::vector<PagePoint> dip{
         {plot.x(notch.along_um - half_um), plot.y(0.0)}, tip, {plot.x(notch.along_um + half_um), plot.y(0.0)}};
-    canvas.polygon(dip, colour::kBad);
+    if (edge.line.empty()) {
+      canvas.polygon(dip, colour::kBad);
+    } else {
+      canvas.polygon_outline(dip, colour::kBad);
+    }
     canvas.text({tip.x, tip.y + 7.0}, fixed_text(notch.depth_um, 1) + " µm",
                 {.size = kLabel, .ink = colour::kBad, .align = TextAlign::kCentre});
   }
@@ -124,6 +147,19 @@ void fit_values(const EdgeAlong& edge, Plot& plot) {
   plot.high = high * 1.1;
 }
 
+std::vector<EdgeAlong::Place> line_of(const nlohmann::json& told) {
+  std::vector<EdgeAlong::Place> line;
+  const auto from_um = number_at(told, "from_um");
+  const auto every_um = number_at(told, "every_um");
+  const auto missing = told.find("missing_um");
+  if (!from_um || !every_um || missing == told.end() || !missing->is_array()) return line;
+  for (const auto& place : *missing) {
+    const double along_um = *from_um + *every_um * static_cast<double>(line.size());
+    line.push_back({along_um, place.is_number() ? std::optional(place.get<double>()) : std::nullopt});
+  }
+  return line;
+}
+
 }  // namespace
 
 std::optional<EdgeAlong> edge_along(const EvaluatedMeasurement& measurement) {
@@ -141,7 +177,9 @@ std::optional<EdgeAlong> edge_along(const EvaluatedMeasurement& measurement) {
             [](const EdgeAlong::Section& a, const EdgeAlong::Section& b) { return a.along_um < b.along_um; });
   edge.looked_for_notches = measurement.values.count("notches") > 0;
   const auto chipping = details.find("chipping");
-  if (chipping == details.end() || !chipping->is_object() || !chipping->contains("notches")) return edge;
+  if (chipping == details.end() || !chipping->is_object()) return edge;
+  if (chipping->contains("line")) edge.line = line_of((*chipping)["line"]);
+  if (!chipping->contains("notches")) return edge;
   for (const auto& notch : (*chipping)["notches"]) {
     edge.notches.push_back({number_at(notch, "along_um").value_or(0.0), number_at(notch, "depth_um").value_or(0.0),
                             number_at(notch, "width_um").value_or(0.0)});
@@ -160,9 +198,14 @@ void draw_edge(Canvas& canvas, const PageRect& place, const EdgeAlong& edge, con
   line.inside = {place.x + kLeft, values.inside.bottom() + kGap, place.width - kLeft, room * kLineShare};
   fit_values(edge, values);
   double deepest_um = 1.0;
+  double highest_um = 0.0;
   for (const EdgeAlong::Notch& notch : edge.notches) deepest_um = std::max(deepest_um, notch.depth_um);
+  for (const EdgeAlong::Place& spot : edge.line) {
+    deepest_um = std::max(deepest_um, spot.missing_um.value_or(0.0));
+    highest_um = std::max(highest_um, -spot.missing_um.value_or(0.0));
+  }
   line.low = -1.6 * deepest_um;  // with the words below a notch
-  line.high = 0.25 * deepest_um;
+  line.high = std::max(0.25 * deepest_um, 1.1 * highest_um);
   draw_values_axis(canvas, values, 7, name);
   draw_values_axis(canvas, line, 3, "edge line / µm");
   draw_places_axis(canvas, line);
@@ -170,6 +213,7 @@ void draw_edge(Canvas& canvas, const PageRect& place, const EdgeAlong& edge, con
   hatch_unmeasured(canvas, line, edge);
   draw_sections(canvas, values, edge);
   canvas.begin_clip(line.inside);
+  draw_edge_line(canvas, line, edge);
   draw_notches(canvas, line, edge);
   canvas.end_clip();
   canvas.frame(values.inside, colour::kPaleInk);

@@ -22,8 +22,13 @@ struct EdgeAlong {
     double depth_um = 0.0;
     double width_um = 0.0;
   };
+  struct Place {
+    double along_um = 0.0;
+    std::optional<double> missing_um;  ///< of the edge line's form; absent = not measured
+  };
   std::vector<Section> sections;  ///< in order along the edge
   std::vector<Notch> notches;
+  std::vector<Place> line;  ///< the edge line; empty in results that do not tell it
   bool looked_for_notches = false;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/report/axis_ticks.hpp"
 #include "daemon/report/map_plot.hpp"
 
 namespace fvd {
@@ -46,6 +47,16 @@ void draw_hole_key(Canvas& canvas, const PicturePage& page) {
   canvas.fill(sample, colour::kHole);
   canvas.frame(sample, colour::kPaleInk);
   canvas.text({sample.right() + 4.0, sample.bottom() - 1.5}, "no valid height", {.size = 6.5});
+}
+
+void draw_scale_bar(Canvas& canvas, const PicturePage& page, const PictureSurface& surface, double x) {
+  if (!surface.is_metric()) return;
+  const double points_per_um = page.field.width / surface.width_um();
+  const double length_um = round_step(surface.width_um() / 4.0);
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(length_um) + 1e-9)));
+  const double y = page.field.bottom() + kMapBottom + 6.0;
+  canvas.fill({x, y, length_um * points_per_um, 3.0}, colour::kInk);
+  canvas.text({x + length_um * points_per_um + 5.0, y + 4.0}, fixed_text(length_um, decimals) + " µm", {.size = 7.0});
 }
 
 }  // namespace fvd

@@ -27,4 +27,7 @@ void draw_page_title(Canvas& canvas, const PicturePage& page, const PictureSurfa
 /// What grey means, below the field.
 void draw_hole_key(Canvas& canvas, const PicturePage& page);
 
+/// Below the field from x on, where the pitch is known.
+void draw_scale_bar(Canvas& canvas, const PicturePage& page, const PictureSurface& surface, double x);
+
 }  // namespace fvd

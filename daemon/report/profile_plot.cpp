@@ -30,7 +30,7 @@ struct Plot {
 };
 
 /// The heights with some room above and below.
-void fit_heights(const std::vector<SectionPoint>& points, Plot& plot) {
+void fit_heights(const std::vector<SectionPoint>& points, const CrossSection& section, Plot& plot) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (const SectionPoint& point : points) {
@@ -39,6 +39,12 @@ void fit_heights(const std::vector<SectionPoint>& points, Plot& plot) {
     high = std::max(high, point.height_um);
   }
   if (low > high) return;
+  for (const CrossSection::Curve& curve : section.fit) {
+    for (const double z_um : curve.z_um) {
+      low = std::min(low, z_um);
+      high = std::max(high, z_um);
+    }
+  }
   constexpr double kLeastSpan_um = 0.01;
   const double span = std::max(high - low, kLeastSpan_um);
   const double middle = (low + high) / 2.0;
@@ -107,6 +113,30 @@ void draw_line(Canvas& canvas, const Plot& plot, const std::vector<SectionPoint>
   finish();
 }
 
+void draw_fit(Canvas& canvas, const Plot& plot, const CrossSection& section) {
+  canvas.begin_clip(plot.inside);
+  for (const CrossSection::Curve& curve : section.fit) {
+    std::vector<PagePoint> line;
+    for (std::size_t i = 0; i < std::min(curve.along_um.size(), curve.z_um.size()); ++i) {
+      line.push_back({plot.x(curve.along_um[i]), plot.y(curve.z_um[i])});
+    }
+    if (line.size() > 1) canvas.polyline(line, colour::kFit, 1.0);
+  }
+  canvas.end_clip();
+}
+
+/// At the right above the plot; returns the room that it takes.
+double draw_fit_key(Canvas& canvas, const Plot& plot, const CrossSection& section, double base) {
+  if (section.fit.empty() || section.fit_name.empty()) return 0.0;
+  const TextStyle style{.size = kLabel, .align = TextAlign::kRight};
+  constexpr double kSample = 14.0;
+  const double width = canvas.text_width(section.fit_name, style);
+  canvas.text({plot.inside.right(), base}, section.fit_name, style);
+  const double left = plot.inside.right() - width - kSample - 4.0;
+  canvas.line({left, base - 2.0}, {left + kSample, base - 2.0}, colour::kFit, 1.0);
+  return width + kSample + 10.0;
+}
+
 }  // namespace
 
 void draw_profile(Canvas& canvas, const PageRect& place, const PictureSurface& surface, const CrossSection& section,
@@ -115,11 +145,13 @@ void draw_profile(Canvas& canvas, const PageRect& place, const PictureSurface& s
   Plot plot;
   plot.inside = {place.x + kLeft, place.y + kTop, place.width - kLeft - 4.0, place.height - kTop - kBottom};
   plot.length_um = section.length_um();
-  fit_heights(points, plot);
-  canvas.text({place.x + kLeft, place.y + 7.0}, title, {.size = 6.5, .bold = true, .room = place.width - kLeft});
+  fit_heights(points, section, plot);
+  const double key = draw_fit_key(canvas, plot, section, place.y + 7.0);
+  canvas.text({place.x + kLeft, place.y + 7.0}, title, {.size = 6.5, .bold = true, .room = place.width - kLeft - key});
   draw_axes(canvas, plot, surface);
   draw_regions(canvas, plot, section);
   draw_line(canvas, plot, points);
+  draw_fit(canvas, plot, section);
   canvas.frame(plot.inside, colour::kPaleInk);
 }
 

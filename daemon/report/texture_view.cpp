@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/report/axis_ticks.hpp"
 #include "daemon/report/map_plot.hpp"
 #include "daemon/report/measurement_pictures.hpp"
 #include "daemon/report/page_file.hpp"
@@ -60,17 +59,6 @@ Raster shrunk(const PictureTexture& texture, int width, int height) {
   return raster;
 }
 
-void draw_scale_bar(Canvas& canvas, const PicturePage& page, const PictureSurface& surface) {
-  if (!surface.is_metric()) return;
-  const double points_per_um = page.field.width / surface.width_um();
-  const double length_um = round_step(surface.width_um() / 4.0);
-  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(length_um) + 1e-9)));
-  const double y = page.field.bottom() + kMapBottom + 6.0;
-  canvas.fill({page.field.x, y, length_um * points_per_um, 3.0}, colour::kInk);
-  canvas.text({page.field.x + length_um * points_per_um + 5.0, y + 4.0}, fixed_text(length_um, decimals) + " µm",
-              {.size = 7.0});
-}
-
 }  // namespace
 
 std::string texture_view_png(const PictureSurface& surface, const PictureTexture& texture) {
@@ -81,7 +69,7 @@ std::string texture_view_png(const PictureSurface& surface, const PictureTexture
   draw_page_title(canvas, page, surface, known ? "all-in-focus image" : "the image is not known");
   if (!known) return file.bytes();
   draw_map(canvas, page.field, surface, shrunk(texture, surface.height_m.width, surface.height_m.height));
-  draw_scale_bar(canvas, page, surface);
+  draw_scale_bar(canvas, page, surface, page.field.x);
   return file.bytes();
 }
 

@@ -15,12 +15,20 @@ struct CrossSection {
     double to_um = 0.0;
     bool operator==(const Region&) const = default;
   };
+  /// A line over the section, in measured heights.
+  struct Curve {
+    std::vector<double> along_um;
+    std::vector<double> z_um;  ///< as many
+    bool operator==(const Curve&) const = default;
+  };
   double from_x_um = 0.0;
   double from_y_um = 0.0;
   double to_x_um = 0.0;
   double to_y_um = 0.0;
   double band_width_um = 0.0;  ///< across the line; what lies in it is averaged
   std::vector<Region> regions;
+  std::string fit_name = {};    ///< what the curves are, for people; empty = there is none
+  std::vector<Curve> fit = {};  ///< what was fitted, at most some hundred points
 
   [[nodiscard]] double length_um() const;
   bool operator==(const CrossSection&) const = default;

@@ -66,6 +66,7 @@ Result::Slices slices_of(const ResultData& data) {
     slices.first_um = data.steps.front().commanded_um;
     slices.last_um = data.steps.back().commanded_um;
   }
+  slices.exposure_us = data.exposure_us;
   slices.mode = data.scan_mode;
   slices.speed_um_per_s = data.speed_um_per_s;
   slices.ramp_frames = data.ramp_frames;

@@ -74,6 +74,12 @@ void describe(CrossSection::Region& region, Fields& fields) {
   fields.number("to_um", region.to_um, kAnyNumber, "along the line");
 }
 
+void describe(CrossSection::Curve& curve, Fields& fields) {
+  constexpr IntegerRange kPoints{1, 1000};
+  fields.numbers("along_um", curve.along_um, kAnyNumber, kPoints, "along the line");
+  fields.numbers("z_um", curve.z_um, kAnyNumber, kPoints, "measured heights, as many");
+}
+
 void describe(CrossSection& section, Fields& fields) {
   fields.number("from_x_um", section.from_x_um, kAnyNumber, "where the line begins");
   fields.number("from_y_um", section.from_y_um, kAnyNumber, "likewise, downwards");
@@ -82,6 +88,12 @@ void describe(CrossSection& section, Fields& fields) {
   fields.number("band_width_um", section.band_width_um, kAnyNumber, "across the line");
   fields.list("regions", section.regions, {0, 100}, "that count",
               [](Fields& in, CrossSection::Region& region) { describe(region, in); });
+  optional_text(fields, "fit_name", section.fit_name, "what was fitted");
+  bool fitted = !section.fit.empty();
+  fields.optional_field("fit", fitted, [&](Fields& in) {
+    in.list("fit", section.fit, {1, 200}, "lines of the fit",
+            [](Fields& inner, CrossSection::Curve& curve) { describe(curve, inner); });
+  });
 }
 
 void describe(EvaluatedMeasurement& measurement, Fields& fields) {

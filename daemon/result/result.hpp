@@ -178,6 +178,7 @@ struct Result {
     std::optional<double> flicker_percent;     ///< of the light from slice to slice, corrected; absent in older results
     std::optional<Drift> drift = {};           ///< absent where the slices do not tell
     std::optional<double> scale_percent = {};  ///< growth of the image over the focus curve's width
+    std::optional<double> exposure_us = {};    ///< of each slice; absent where the camera did not tell it
     bool operator==(const Slices&) const = default;
   };
   /// What the focus curves say of the stage.

@@ -65,6 +65,7 @@ struct ResultData {
   double speed_um_per_s = 0.0;                ///< of a continuous scan
   int ramp_frames = 0;                        ///< likewise
   int slices_planned = 0;                     ///< of all scans
+  std::optional<double> exposure_us;          ///< of each slice; absent = not known
   int slices_measured_before = 0;             ///< by the scans before the one of `steps`
   std::vector<SuspectSlice> suspects_before;  ///< of those scans, one scan after the other
   FrameCounts frames;                         ///< of all scans

@@ -23,17 +23,6 @@ struct Candidate {
   Surface (*read)(const fs::path&, const SurfaceReadOptions&);
 };
 
-Result result_of(const fs::path& folder) {
-  const fs::path path = folder / "result.json";
-  const FileBytes file(path);
-  if (file.size() > kMaxResult_bytes) refuse(path, "file", "it is above 8 MiB");
-  try {
-    return read_result_json(file.text(0, kMaxResult_bytes));
-  } catch (const Error& error) {
-    refuse(path, "content", error.what());
-  }
-}
-
 /// The first of the files that is there; nothing where none is.
 template <std::size_t size>
 std::optional<Surface> first_of(const fs::path& folder, const Candidate (&candidates)[size],
@@ -82,10 +71,21 @@ Plane<MaskReasons> mask_of(const fs::path& path, const Surface& surface) {
 
 }  // namespace
 
+Result read_result(const fs::path& folder) {
+  const fs::path path = folder / "result.json";
+  const FileBytes file(path);
+  if (file.size() > kMaxResult_bytes) refuse(path, "file", "it is above 8 MiB");
+  try {
+    return read_result_json(file.text(0, kMaxResult_bytes));
+  } catch (const Error& error) {
+    refuse(path, "content", error.what());
+  }
+}
+
 ResultSurface read_result_surface(const fs::path& folder, const SurfaceReadOptions& options) {
   // Not in braces: g++ 12 frees a member twice if the next one's initialiser throws.
   ResultSurface read;
-  read.result = result_of(folder);
+  read.result = read_result(folder);
   const Result::Focus& focus = read.result.focus;
   const fs::path json = folder / "result.json";
   SurfaceReadOptions pitch;

@@ -15,6 +15,9 @@ struct ResultSurface {
   Result result;  ///< as result.json tells it
 };
 
+/// result.json of the folder. Throws Error kSurfaceFile. context: thread-safe.
+[[nodiscard]] Result read_result(const std::filesystem::path& folder);
+
 /// Heights from height.tiff, height.gsf, height.sdf or height.x3p, the first that is there, bit for bit as the job had
 /// them; sigma_m from sigma.tiff or sigma.gsf; mask from mask.png; the pitch from result.json, of `options` where that
 /// tells none. Throws Error kSurfaceFile. context: thread-safe.

@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import time
 import zipfile
@@ -136,6 +137,36 @@ def report(plant, out, evaluation):
     return figures
 
 
+def slices_by_tifffile(plant, out, slices):
+    """The slices, recorded as a job keeps them, through an OME-TIFF and tifffile."""
+    try:
+        import tifffile
+    except ImportError:
+        return {"ome_ok": None, "why": {"ome_ok": "python3-tifffile is not installed"}}
+    job, file = plant.work / "kept", plant.work / "f.ome.tif"
+    shutil.copytree(out, job)
+    (job / "slices").mkdir()
+    recorded = sorted(slices.glob("slice_*.pgm"))
+    for number, slice_file in enumerate(recorded):
+        shutil.copy(slice_file, job / "slices" / f"slice_{number:05}.pgm")
+    z_um = np.loadtxt(slices / "z.txt") + 0.01 * np.sin(np.arange(len(recorded)))  # the stage is where it is
+    np.savetxt(job / "slices/z.txt", z_um, fmt="%.17g")
+    plant.run(plant.fvdctl, "export", job, "--format", "ome-tiff", "--out", file)
+    height, width = gsf(out / "height.gsf").shape
+    with tifffile.TiffFile(file) as tiff:
+        series = tiff.series[0]
+        pixels = tifffile.xml2dict(tiff.ome_metadata)["OME"]["Image"]["Pixels"]
+        read = series.asarray()
+        good = tiff.is_ome and series.axes == "ZYX" and read.shape == (len(recorded), height, width) and read.dtype == np.uint8
+        good = good and pixels["DimensionOrder"] == "XYZCT" and pixels["PhysicalSizeX"] == pixels["PhysicalSizeY"] == 1
+        good = good and pixels["PhysicalSizeXUnit"] == "\u00b5m" and pixels["SignificantBits"] == 8
+        good = good and abs(pixels["PhysicalSizeZ"] - (z_um[-1] - z_um[0]) / (len(z_um) - 1)) < 0.01
+        good = good and [plane["PositionZ"] for plane in pixels["Plane"]] == z_um.tolist()
+        for number, slice_file in enumerate(recorded):
+            good = good and read[number].tobytes() == slice_file.read_bytes()[-height * width:]
+    return {"ome_ok": bool(good)}
+
+
 def others_eyes(plant):
     plan = {"surfaces": {"level": {"steps": [{"op": "level"}]}},
             "measurements": {"t": {"kind": "areal", "surface": "level", "parameters": ["Sa", "Sq", "Sz", "Sku"]},
@@ -156,6 +187,7 @@ def others_eyes(plant):
     figures["export_worst_s"] = round(worst_s, 2)
     figures["files_give_the_same_values"] = same
     figures["md5_ok"] = digests(plant.work / "f.x3p")
-    for part in (lambda: in_gwyddion(plant, out, slices), lambda: meshes(plant, out), lambda: report(plant, out, evaluation)):
+    for part in (lambda: in_gwyddion(plant, out, slices), lambda: meshes(plant, out), lambda: report(plant, out, evaluation),
+                 lambda: slices_by_tifffile(plant, out, slices)):
         figures.update(part())
     return figures

@@ -125,7 +125,7 @@ def evaluate_ms(plant, world, plan):
 # Keys whose figure another benchmark or a command still to come gives.
 NOT_MEASURED = {
     "last_frame_to_verdict_ms": "bench_verdict is not built, or failed",
-    "ome_ok": "there is no OME-TIFF exporter yet",
+    "ome_ok": "the recorded slices could not be exported or read",
     "export_worst_s": "an export failed",
 }
 

@@ -6,7 +6,7 @@ set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 source "$here/../support/setup.sh"
 
-fvd_packages+=(admesh f3d gwyddion libgwyddion20-dev poppler-utils python3-numpy xauth xvfb)
+fvd_packages+=(admesh f3d gwyddion libgwyddion20-dev poppler-utils python3-numpy python3-tifffile xauth xvfb)
 fvd_install_packages
 fvd_build bench_verdict fvdctl fvd-sim metrology_{areal,edge,filter,reference,step,study,uncertainty}_test study_test surface_files_test system_test x3p_order_test
 work=$(mktemp -d /tmp/fvd-metrology.XXXXXX)

@@ -57,6 +57,28 @@ TEST_F(AScan, TakesUpTheBacklashBelowAndThenGoesOneWay) {
   EXPECT_EQ(stage_.targets_um, (std::vector{-27.0, -7.0, 3.0, 13.0, 23.0, 33.0}));
 }
 
+TEST_F(AScan, DownwardsTakesUpTheBacklashAboveAndVisitsTheSamePlaces) {
+  plan_.downwards = true;
+
+  run();
+
+  EXPECT_EQ(stage_.targets_um, (std::vector{53.0, 33.0, 23.0, 13.0, 3.0, -7.0}));
+  EXPECT_EQ(sink_.z_um, (std::vector{33.0, 23.0, 13.0, 3.0, -7.0}));
+  EXPECT_EQ(report_.steps.front().index, 0) << "in the order of the scan";
+}
+
+TEST_F(AScan, DownwardsNeedsRoomForItsTakeUpAbove) {
+  plan_.downwards = true;
+  plan_.start = Micrometers{-500.0};
+  run();
+  EXPECT_EQ(stage_.targets_um.back(), -500.0) << "and none below";
+  plan_.start = Micrometers{441.0};
+
+  EXPECT_EQ(run_expecting_error(), ErrorCode::kStageLimit);
+  EXPECT_NE(message_.find("take-up above"), std::string::npos) << message_;
+  EXPECT_NE(message_.find("441..501"), std::string::npos) << message_;
+}
+
 TEST_F(AScan, HandsOnMeasuredNotCommandedHeights) {
   stage_.error_um = 0.25;
   run();

@@ -29,6 +29,8 @@ Evaluation sample() {
   step.not_evaluated = {"temperature"};
   step.details = R"({"slope":0.0203})";
   step.cross_section = CrossSection{1.5, 2.25, 100.0, 2.0, 9.0, {{"A", 0.125, 7.0}, {"C", 8.0, 9.5}}};
+  step.cross_section->fit_name = "fitted lines";
+  step.cross_section->fit = {{{0.125, 7.0}, {100.25, 101.5}}, {{8.0}, {50.0}}};
   step.verdict = Verdict::kUncertain;
   EvaluatedValue height;
   height.value = 49.985;

@@ -1,4 +1,6 @@
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -8,9 +10,9 @@
 
 #include "daemon/export/height_tiff.hpp"
 #include "daemon/export/mask_png.hpp"
-#include "daemon/export/preview.hpp"
 #include "daemon/export/texture_png.hpp"
 #include "daemon/report/axis_ticks.hpp"
+#include "daemon/report/surface_pictures.hpp"
 #include "tests/daemon/export/sample_result.hpp"
 
 namespace fvd {
@@ -87,9 +89,25 @@ TEST(TexturePng, KeepsTheGreyLevelsOfTheCamera) {
   EXPECT_EQ(wide.at<std::uint16_t>(0, 0), 4095) << "not stretched";
 }
 
-cv::Mat preview_of(const HeightMap& map) {
-  return decode(encode_preview_png(map, test::summary_of(map), {"title", "subtitle", true, 2.0}));
+Result preview_result() {
+  Result result;
+  result.job = {"J7", 4711, "part-42"};
+  result.recipe.id = "chapter";
+  result.provenance.created = std::chrono::system_clock::time_point(std::chrono::seconds(1'700'000'000));
+  result.measurements = {{"height_mean", "height", 12.5, "um", {}, {}, {}, 100, 1.0, {}, {}}};
+  return result;
 }
+
+std::string preview_bytes(const HeightMap& map, const Result& result) {
+  PictureSurface surface;
+  surface.height_m = map.height_m.view();
+  surface.pitch_x_um = surface.pitch_y_um = 2.0;
+  surface.title = "title";
+  surface.simulated = true;
+  return overview_png(surface, result);
+}
+
+cv::Mat preview_of(const HeightMap& map) { return decode(preview_bytes(map, preview_result())); }
 
 TEST(Preview, PaintsHolesInNeutralGreyAndHeightsInColour) {
   HeightMap map = test::sample_map(400, 300);
@@ -97,22 +115,25 @@ TEST(Preview, PaintsHolesInNeutralGreyAndHeightsInColour) {
     for (int y = 0; y < 300; ++y) test::make_hole(map, x, y, mask_reason::kLowProminence);
   }
   const cv::Mat page = preview_of(map);
-  ASSERT_EQ(page.type(), CV_8UC3);
-  const auto hole = page.at<cv::Vec3b>(84 + 150, 24 + 100);
-  EXPECT_EQ(hole[0], hole[1]);
-  EXPECT_EQ(hole[1], hole[2]);
-  const auto surface = page.at<cv::Vec3b>(84 + 150, 24 + 300);
+
+  // The field begins at (92, 126) and has 2.6 pixels a point.
+  const auto at = [&page](double x, double y) {
+    return page.at<cv::Vec3b>(static_cast<int>(126 + 2.6 * y), static_cast<int>(92 + 2.6 * x));
+  };
+  EXPECT_EQ(at(100, 150), cv::Vec3b(171, 171, 171));
+  const auto surface = at(300, 150);
   EXPECT_TRUE(surface[0] != surface[1] || surface[1] != surface[2]);
-  EXPECT_NE(page.at<cv::Vec3b>(84 + 2, 24 + 300), page.at<cv::Vec3b>(84 + 297, 24 + 300)) << "heights differ";
+  EXPECT_NE(at(300, 2), at(300, 297)) << "heights differ";
+  EXPECT_EQ(at(-2, 2), cv::Vec3b(255, 255, 255)) << "the paper beside the field";
 }
 
 TEST(Preview, FitsMapsOfAnySize) {
   for (const auto& [width, height] : {std::pair{1, 1}, {2, 700}, {5000, 40}, {3000, 2000}, {60, 45}}) {
     const cv::Mat page = preview_of(test::sample_map(width, height));
-    EXPECT_GE(page.cols, 400) << width;
-    EXPECT_LE(page.cols, 1620) << width;
-    EXPECT_GE(page.rows, 200) << width;
-    EXPECT_LE(page.rows, 1150) << width;
+    EXPECT_GE(page.cols, 1000) << width;
+    EXPECT_LE(page.cols, 1300) << width;
+    EXPECT_GE(page.rows, 300) << width;
+    EXPECT_LE(page.rows, 1400) << width;
   }
 }
 
@@ -125,6 +146,44 @@ TEST(Preview, DrawsAMapWithoutAnyValidPointAndAFlatOne) {
   HeightMap flat = test::sample_map(30, 20);
   for (float& z : flat.height_m.pixels()) z = 1e-4F;
   EXPECT_FALSE(preview_of(flat).empty());
+}
+
+TEST(Preview, TellsJobDateVerdictAndValues) {
+  const HeightMap map = test::sample_map(40, 30);
+  const Result result = preview_result();
+  const std::string plain = preview_bytes(map, result);
+  EXPECT_TRUE(plain == preview_bytes(map, result)) << "the same bytes";
+  const auto expect_told = [&](const char* what, const std::function<void(Result&)>& change) {
+    Result other = result;
+    change(other);
+    EXPECT_FALSE(plain == preview_bytes(map, other)) << what;
+  };
+  expect_told("job", [](Result& other) { other.job.id = "J8"; });
+  expect_told("date", [](Result& other) { other.provenance.created += std::chrono::seconds(1); });
+  expect_told("recipe", [](Result& other) { other.recipe.id = "groove"; });
+  expect_told("verdict", [](Result& other) { other.verdict = Verdict::kFail; });
+  expect_told("map's values", [](Result& other) { other.measurements.front().value = 12.6; });
+  expect_told("an evaluation's main value", [](Result& other) { other.evaluation = test::sample_measurements(); });
+}
+
+TEST(Preview, GrowsWithItsValuesToADozenOfThem) {
+  const HeightMap map = test::sample_map(40, 30);
+  const auto rows = [&map](int measurements) {
+    Result result = preview_result();
+    result.evaluation.emplace();
+    for (int i = 0; i < measurements; ++i) {
+      const std::string name = "m" + std::to_string(10 + i);
+      result.evaluation->order.push_back(name);
+      EvaluatedMeasurement& made = result.evaluation->measurements[name];
+      made.main_value = "a_um";
+      for (const char* key : {"a_um", "b_um"}) made.values[key].value = 1.0;  // b is no main value and has no limits
+    }
+    return decode(preview_bytes(map, result)).rows;
+  };
+
+  EXPECT_EQ(rows(2) - rows(1), 23) << "one row of 11.5 points";
+  EXPECT_GT(rows(13), rows(12)) << "that there are more";
+  EXPECT_EQ(rows(40), rows(13));
 }
 
 TEST(AxisTicks, AreRoundAndInsideTheRange) {

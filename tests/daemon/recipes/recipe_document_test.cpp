@@ -281,6 +281,33 @@ TEST(Recipe, OfAContinuousScanNeedsASpeedThatTheStageHas) {
   }
 }
 
+TEST(Recipe, DownwardsIsForScansInSteps) {
+  const std::string scan = R"({"start_um": 0, "step_um": 1, "slices": 5, "direction": "down")";
+  EXPECT_TRUE(parse_recipe(with_scan(scan + "}"), "r").downwards);
+  EXPECT_FALSE(parse_recipe(kSmallest, "r").downwards) << "up unless it is said";
+  FVD_EXPECT_ERROR_SAYING(
+      kBadRecipe, (void)parse_recipe(with_scan(scan + R"(, "mode": "continuous", "speed_um_per_s": 5})"), "r"),
+      AllOf(HasSubstr("/acquire/scan/direction: down is for scan.mode step"), HasSubstr("lag")));
+  FVD_EXPECT_ERROR_SAYING(
+      kBadRecipe,
+      (void)parse_recipe(with_scan(R"({"start_um": 0, "step_um": 1, "slices": 5, "direction": "left"})"), "r"),
+      HasSubstr("/acquire/scan/direction"));
+}
+
+TEST(Recipe, DownwardsNeedsItsTakeUpAbove) {
+  Recipe recipe = parse_recipe(kSmallest, "r");  // -7 to 193
+  recipe.downwards = true;
+
+  EXPECT_THAT(check_stage_limits(recipe, {-7_um, 213_um, 20_um, 1000.0}), IsEmpty());
+  const Problems high = check_stage_limits(recipe, {-7_um, 212_um, 20_um, 1000.0});
+  ASSERT_THAT(high, SizeIs(1));
+  EXPECT_EQ(high[0].pointer, "/acquire/scan/slices");
+  EXPECT_THAT(high[0].message, AllOf(HasSubstr("20 um of take-up"), HasSubstr("213"), HasSubstr("at most 212")));
+  const Problems low = check_stage_limits(recipe, {-6_um, 213_um, 20_um, 1000.0});
+  ASSERT_THAT(low, SizeIs(1));
+  EXPECT_THAT(low[0].message, AllOf(HasSubstr("at least -6"), Not(HasSubstr("take-up"))));
+}
+
 TEST(Recipe, IsCheckedAgainstTheStageLimits) {
   const Recipe recipe = parse_recipe(kSmallest, "r");  // -7 to 193, with 20 of take-up from -27
 

@@ -84,6 +84,38 @@ TEST(MeasurementPictures, ShowACrossSectionUnderItsNameAndTheImageWhereThereIsOn
   EXPECT_FALSE(dark == texture_view_png(picture, texture)) << "the same level is darker where more fit";
 }
 
+TEST(MeasurementPictures, DrawWhatWasFittedAndTheEdgesLine) {
+  const Surface surface = test::groove_surface();
+  const PictureSurface picture = picture_surface(surface);
+  Evaluation evaluation = test::sample_evaluation();
+  EvaluatedMeasurement& step = evaluation.measurements.at("step");
+  const std::string without = profile_png(picture, "step", step);
+  step.cross_section->fit = {{{16.0, 300.0}, {120.0, 120.0}}};
+  step.cross_section->fit_name = "fitted lines";
+  const std::string with = profile_png(picture, "step", step);
+  EXPECT_FALSE(without == with);
+  step.cross_section->fit.front().z_um = {119.0, 119.0};
+  EXPECT_FALSE(with == profile_png(picture, "step", step)) << "where it lies";
+  step.cross_section->fit.front().z_um.pop_back();
+  EXPECT_TRUE(profile_png(picture, "step", step).starts_with("\x89PNG")) << "half a line";
+
+  Evaluation edges;
+  edges.order = {"edge"};
+  EvaluatedMeasurement& edge = edges.measurements["edge"];
+  edge.kind = "cutting_edge";
+  edge.main_value = "radius_um";
+  const auto drawn = [&](const std::string& chipping) {
+    edge.details =
+        R"({"sections":[{"along_um":0,"radius_um":10},{"along_um":50,"radius_um":11}],"chipping":)" + chipping + "}";
+    return edge_png(picture, edges);
+  };
+  const std::string bare = drawn(R"({"notches":[]})");
+  const std::string line = drawn(R"({"notches":[],"line":{"from_um":0,"every_um":10,"missing_um":[0,1,0.5,0]}})");
+  EXPECT_FALSE(bare == line);
+  EXPECT_FALSE(line == drawn(R"({"notches":[],"line":{"from_um":0,"every_um":10,"missing_um":[0,1,null,0]}})"));
+  EXPECT_TRUE(bare == drawn(R"({"notches":[],"line":[]})")) << "no line";
+}
+
 TEST(SurfacePictures, AreTheSameBytesForTheSameSurface) {
   const Surface surface = test::groove_surface();
   const PictureSurface picture = picture_surface(surface);
