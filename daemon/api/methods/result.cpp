@@ -69,7 +69,7 @@ void add_result_methods(MethodTable& methods, const Services& services) {
                            .run = with<GetParams>([services](const Call&, const GetParams& params) {
                              return result_of(services, params.job.key(params.client), params.format);
                            })};
-  methods["result.evaluate"] = {
+  methods["result.evaluate"] = Method{
       .about = {.summary =
                     "Evaluates a stored result's surface by another recipe: a new record; the job's result stays",
                 .params = described<EvaluateParams>(),
