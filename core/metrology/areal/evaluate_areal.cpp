@@ -33,18 +33,21 @@ ArealValue none(const Parts&... parts) {
 /// What the parameters of one region share, each made when it is first asked for.
 class Evaluator {
  public:
-  Evaluator(RegionHeights heights, const ArealSettings& settings) : heights_(std::move(heights)), settings_(settings) {
-    if (heights_.points == 0) return;
-    sorted_um_ = sorted_descending(heights_.valid_heights_um());
-    mean_um_ = mean_of_sorted_um(sorted_um_);
-    for (double& z_um : sorted_um_) z_um -= mean_um_;
-    moments_ = height_moments(sorted_um_);
+  Evaluator(const HeightField& field, const Region& region, const ArealSettings& settings)
+      : field_(field), region_(region), survey_(survey_region(field, region)), settings_(settings) {
+    if (survey_.points == 0) return;
+    heights_um_ = valid_heights_um(field, region, survey_);
+    mean_um_ = mean_height_um(heights_um_);
+    for (double& z_um : heights_um_) z_um -= mean_um_;
+    moments_ = height_moments(heights_um_);
   }
+
+  [[nodiscard]] const RegionSurvey& survey() const { return survey_; }
 
   [[nodiscard]] double mean_um() const { return mean_um_; }
 
   ArealValue value_of(ArealParameter parameter) {
-    if (heights_.points == 0) return ArealValue::none(kNoPoints);
+    if (survey_.points == 0) return ArealValue::none(kNoPoints);
     switch (parameter) {
       case ArealParameter::kSa:
         return ArealValue::of(moments_.mean_absolute_um);
@@ -96,20 +99,20 @@ class Evaluator {
     return ArealValue::of(value);
   }
 
-  ArealValue hybrid(ArealParameter parameter) const {
+  ArealValue hybrid(ArealParameter parameter) {
     if (parameter == ArealParameter::kSdq) {
-      const auto gradient = root_mean_square_gradient(heights_);
+      const auto gradient = root_mean_square_gradient(map());
       return gradient ? ArealValue::of(*gradient)
                       : ArealValue::none("no point has valid neighbours on both sides in x and in y");
     }
-    const auto ratio = developed_area_ratio_percent(heights_);
+    const auto ratio = developed_area_ratio_percent(map());
     return ratio ? ArealValue::of(*ratio) : ArealValue::none("no four neighbouring points are valid");
   }
 
   ArealValue spatial(ArealParameter parameter) {
     if (moments_.root_mean_square_um < kFlatSqUm) return ArealValue::none(kFlat);
-    if (parameter == ArealParameter::kStd) return texture_direction_deg(heights_);
-    if (!lengths_) lengths_ = autocorrelation_lengths(Autocorrelation(heights_, mean_um_), settings_.acf_threshold);
+    if (parameter == ArealParameter::kStd) return texture_direction_deg(map());
+    if (!lengths_) lengths_ = autocorrelation_lengths(Autocorrelation(map(), mean_um_), settings_.acf_threshold);
     const auto& [lengths, reason] = *lengths_;
     if (!lengths) return ArealValue::none(reason);
     return ArealValue::of(parameter == ArealParameter::kSal ? lengths->shortest_um
@@ -117,8 +120,8 @@ class Evaluator {
   }
 
   ArealValue core(ArealParameter parameter) {
-    if (heights_.points < settings_.min_points_core) {
-      return none("the region has ", heights_.points, " valid points, fewer than ", settings_.min_points_core);
+    if (survey_.points < settings_.min_points_core) {
+      return none("the region has ", survey_.points, " valid points, fewer than ", settings_.min_points_core);
     }
     if (!core_) core_ = curve().core();
     switch (parameter) {
@@ -141,7 +144,7 @@ class Evaluator {
     switch (parameter) {
       case ArealParameter::kSmr:
         if (!settings_.smr_height_um) return ArealValue::none("the height of Smr is not given");
-        return ArealValue::of(material_ratio_percent(sorted_um_, *settings_.smr_height_um));
+        return ArealValue::of(material_ratio_percent(sorted_um(), *settings_.smr_height_um));
       case ArealParameter::kSmc:
         return ArealValue::of(curve().height_at_um(settings_.smc_ratio_percent));
       case ArealParameter::kSxp:
@@ -159,13 +162,28 @@ class Evaluator {
   }
 
   const MaterialRatioCurve& curve() {
-    if (!curve_) curve_.emplace(sorted_um_);
+    if (!curve_) curve_.emplace(sorted_um());
     return *curve_;
   }
 
-  RegionHeights heights_;
+  const RegionHeights& map() {
+    if (!map_) map_ = cut_region(field_, region_);
+    return *map_;
+  }
+
+  const std::vector<double>& sorted_um() {
+    if (!is_sorted_) heights_um_ = sorted_descending(std::move(heights_um_));
+    is_sorted_ = true;
+    return heights_um_;
+  }
+
+  const HeightField& field_;
+  const Region& region_;
+  RegionSurvey survey_;
   const ArealSettings& settings_;
-  std::vector<double> sorted_um_;  // about the mean
+  std::vector<double> heights_um_;  // about the mean; in descending order once it was asked for
+  bool is_sorted_ = false;
+  std::optional<RegionHeights> map_;  // where neighbours count
   double mean_um_ = 0.0;
   HeightMoments moments_;
   std::optional<MaterialRatioCurve> curve_;
@@ -177,11 +195,10 @@ class Evaluator {
 
 ArealEvaluation evaluate_areal(const HeightField& field, const Region& region,
                                std::span<const ArealParameter> parameters, const ArealSettings& settings) {
-  RegionHeights heights = cut_region(field, region);
+  Evaluator evaluator(field, region, settings);
   ArealEvaluation evaluation;
-  evaluation.region_points = heights.region_points;
-  evaluation.points = heights.points;
-  Evaluator evaluator(std::move(heights), settings);
+  evaluation.region_points = evaluator.survey().region_points;
+  evaluation.points = evaluator.survey().points;
   evaluation.mean_um = evaluator.mean_um();
   evaluation.values.reserve(parameters.size());
   for (const ArealParameter parameter : parameters) evaluation.values.push_back(evaluator.value_of(parameter));

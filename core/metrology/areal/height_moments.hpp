@@ -1,13 +1,13 @@
 #pragma once
 
-/// Means, moments and extremes of heights.
+/// Means, moments and extremes of heights: the same bytes in whatever order the points stand.
 
 #include <span>
 
 namespace fvd::metrology {
 
-/// The mean of sorted heights, which is the same bytes in whatever order the points stood.
-[[nodiscard]] double mean_of_sorted_um(std::span<const double> descending);
+/// At least one height.
+[[nodiscard]] double mean_height_um(std::span<const double> heights_um);
 
 /// Sa Sq Ssk Sku Sp Sv Sz of ISO 25178-2:2021, or Pa Pq Psk Pku Pp Pv Pt of ISO 21920-2:2021.
 struct HeightMoments {
@@ -20,7 +20,7 @@ struct HeightMoments {
   [[nodiscard]] double total_um() const { return peak_um + pit_um; }
 };
 
-/// descending: at least one height, about the mean.
-[[nodiscard]] HeightMoments height_moments(std::span<const double> descending);
+/// heights_um: at least one height, about the mean.
+[[nodiscard]] HeightMoments height_moments(std::span<const double> heights_um);
 
 }  // namespace fvd::metrology

@@ -1,125 +1,110 @@
 #include "core/metrology/areal/height_weights.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <functional>
+#include <cstdint>
+#include <vector>
 
 namespace fvd::metrology {
 
 namespace {
 
-/// What the derivatives are made of.
-struct Sums {
-  int left = 0;
-  int top = 0;
-  int right = -1;  // last column
-  int bottom = -1;
-  double points = 0.0;
-  double mean_um = 0.0;
-  double mean_sign = 0.0;
-  double m2 = 0.0;
-  double m3 = 0.0;
-  double m4 = 0.0;
-  int highest_column = 0;
-  int highest_row = 0;
-  int lowest_column = 0;
-  int lowest_row = 0;
-};
-
-double sign(double value) { return value > 0.0 ? 1.0 : (value < 0.0 ? -1.0 : 0.0); }
-
-void each_point(const HeightField& field, const Region& region,
-                const std::function<void(int column, int row, double z_um)>& visit) {
-  for (int row = 0; row < field.height(); ++row) {
-    for (int column = 0; column < field.width(); ++column) {
-      if (is_inside(region, column, row) && !field.is_hole(column, row)) visit(column, row, field.z_um.at(column, row));
-    }
-  }
-}
-
-Sums sums_of(const HeightField& field, const Region& region) {
-  Sums sums;
-  sums.left = field.width();
-  sums.top = field.height();
-  each_point(field, region, [&](int column, int row, double z_um) {
-    if (sums.points == 0.0 || z_um > field.z_um.at(sums.highest_column, sums.highest_row)) {
-      sums.highest_column = column;
-      sums.highest_row = row;
-    }
-    if (sums.points == 0.0 || z_um < field.z_um.at(sums.lowest_column, sums.lowest_row)) {
-      sums.lowest_column = column;
-      sums.lowest_row = row;
-    }
-    sums.left = std::min(sums.left, column);
-    sums.right = std::max(sums.right, column);
-    sums.top = std::min(sums.top, row);
-    sums.bottom = row;
-    sums.points += 1.0;
-    sums.mean_um += z_um;
-  });
-  if (sums.points == 0.0) return sums;
-  sums.mean_um /= sums.points;
-  each_point(field, region, [&sums](int, int, double z_um) {
-    const double h = z_um - sums.mean_um;
-    sums.mean_sign += sign(h) / sums.points;
-    sums.m2 += h * h / sums.points;
-    sums.m3 += h * h * h / sums.points;
-    sums.m4 += h * h * h * h / sums.points;
-  });
-  return sums;
-}
-
-/// The derivative to a height h over the mean, where the parameter is a mean over all points.
-std::function<double(double)> derivative_of(ArealParameter parameter, const Sums& s) {
-  const double root = std::sqrt(s.m2);
-  switch (parameter) {
-    case ArealParameter::kSa:
-      return [s](double h) { return (sign(h) - s.mean_sign) / s.points; };
-    case ArealParameter::kSq:
-      return [s, root](double h) { return h / (s.points * root); };
-    case ArealParameter::kSsk:
-      return [s, root](double h) {
-        const double skewness = s.m3 / (s.m2 * root);
-        return 3.0 * ((h * h - s.m2) / (s.m2 * root) - skewness * h / s.m2) / s.points;
-      };
-    case ArealParameter::kSku:
-      return [s](double h) {
-        const double kurtosis = s.m4 / (s.m2 * s.m2);
-        return 4.0 * ((h * h * h - s.m3) / (s.m2 * s.m2) - kurtosis * h / s.m2) / s.points;
-      };
-    case ArealParameter::kSp:
-      return [s](double) { return -1.0 / s.points; };
-    case ArealParameter::kSv:
-      return [s](double) { return 1.0 / s.points; };
-    case ArealParameter::kSz:
-      return [](double) { return 0.0; };
-    default:
-      return {};
-  }
-}
-
-bool needs_scatter(ArealParameter parameter) {
-  return parameter == ArealParameter::kSq || parameter == ArealParameter::kSsk || parameter == ArealParameter::kSku;
-}
+double sign(double value) { return (value > 0.0 ? 1.0 : 0.0) - (value < 0.0 ? 1.0 : 0.0); }
 
 }  // namespace
 
-std::optional<WeightMap> height_weights(const HeightField& field, const Region& region, ArealParameter parameter) {
-  const Sums sums = sums_of(field, region);
-  const auto derivative = derivative_of(parameter, sums);
-  if (!derivative || sums.points == 0.0 || (needs_scatter(parameter) && sums.m2 == 0.0)) return std::nullopt;
-  WeightMap map;
-  map.left = sums.left;
-  map.top = sums.top;
-  map.weights = Plane<double>(sums.right - sums.left + 1, sums.bottom - sums.top + 1, 0.0);
-  each_point(field, region, [&](int column, int row, double z_um) {
-    map.weights.at(column - map.left, row - map.top) = derivative(z_um - sums.mean_um);
-  });
-  const bool with_peak = parameter == ArealParameter::kSp || parameter == ArealParameter::kSz;
-  const bool with_pit = parameter == ArealParameter::kSv || parameter == ArealParameter::kSz;
-  if (with_peak) map.weights.at(sums.highest_column - map.left, sums.highest_row - map.top) += 1.0;
-  if (with_pit) map.weights.at(sums.lowest_column - map.left, sums.lowest_row - map.top) -= 1.0;
+HeightWeights::HeightWeights(const HeightField& field, const Region& region)
+    : field_(field), region_(region), survey_(survey_region(field, region)) {
+  if (survey_.points == 0) return;
+  std::vector<double> heights_um = valid_heights_um(field, region, survey_);
+  const auto [lowest, highest] = std::minmax_element(heights_um.begin(), heights_um.end());
+  lowest_um_ = *lowest;
+  highest_um_ = *highest;
+  mean_um_ = mean_height_um(heights_um);
+  double signs = 0.0;  // whole numbers
+  for (double& height_um : heights_um) {
+    height_um -= mean_um_;
+    signs += sign(height_um);
+  }
+  mean_sign_ = signs / static_cast<double>(survey_.points);
+  moments_ = height_moments(heights_um);
+}
+
+/// derivative: to a height over the mean.
+template <typename Derivative>
+WeightMap HeightWeights::mapped(const Derivative& derivative) const {
+  const RegionBounds& bounds = survey_.valid;
+  WeightMap map{bounds.left, bounds.top, Plane<double>::unset(bounds.width(), bounds.height())};
+  for (int row = 0; row < bounds.height(); ++row) {
+    const double* z = field_.z_um.row(bounds.top + row) + bounds.left;
+    const std::uint8_t* inside = region_.empty() ? nullptr : region_.row(bounds.top + row) + bounds.left;
+    double* weights = map.weights.row(row);
+    for (int x = 0; x < bounds.width(); ++x) {
+      const double weight = derivative(z[x] - mean_um_);
+      weights[x] = z[x] == z[x] ? weight : 0.0;
+    }
+    if (inside == nullptr) continue;
+    for (int x = 0; x < bounds.width(); ++x) weights[x] = inside[x] != 0 ? weights[x] : 0.0;
+  }
   return map;
+}
+
+/// To the first point of this height.
+void HeightWeights::add_at(double height_um, double weight, WeightMap& map) const {
+  for (int row = 0; row < map.weights.height(); ++row) {
+    const double* z = field_.z_um.row(map.top + row) + map.left;
+    for (int x = 0; x < map.weights.width(); ++x) {
+      if (z[x] != height_um || !is_inside(region_, map.left + x, map.top + row)) continue;
+      map.weights.at(x, row) += weight;
+      return;
+    }
+  }
+  assert(false);
+}
+
+std::optional<WeightMap> HeightWeights::of(ArealParameter parameter) const {
+  if (survey_.points == 0) return std::nullopt;
+  const auto points = static_cast<double>(survey_.points);
+  const double root = moments_.root_mean_square_um;
+  const double square = root * root;
+  const bool needs_scatter =
+      parameter == ArealParameter::kSq || parameter == ArealParameter::kSsk || parameter == ArealParameter::kSku;
+  if (needs_scatter && root == 0.0) return std::nullopt;
+  std::optional<WeightMap> map;
+  switch (parameter) {
+    case ArealParameter::kSa:
+      return mapped([mean = mean_sign_, points](double h) { return (sign(h) - mean) / points; });
+    case ArealParameter::kSq:
+      return mapped([divisor = points * root](double h) { return h / divisor; });
+    case ArealParameter::kSsk:
+      return mapped([=, skewness = moments_.skewness](double h) {
+        return 3.0 * ((h * h - square) / (square * root) - skewness * h / square) / points;
+      });
+    case ArealParameter::kSku:
+      return mapped([=, cubes = moments_.skewness * square * root, kurtosis = moments_.kurtosis](double h) {
+        return 4.0 * ((h * h * h - cubes) / (square * square) - kurtosis * h / square) / points;
+      });
+    case ArealParameter::kSp:
+      map = mapped([=](double) { return -1.0 / points; });
+      add_at(highest_um_, 1.0, *map);
+      return map;
+    case ArealParameter::kSv:
+      map = mapped([=](double) { return 1.0 / points; });
+      add_at(lowest_um_, -1.0, *map);
+      return map;
+    case ArealParameter::kSz:
+      map = mapped([](double) { return 0.0; });
+      add_at(highest_um_, 1.0, *map);
+      add_at(lowest_um_, -1.0, *map);
+      return map;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<WeightMap> height_weights(const HeightField& field, const Region& region, ArealParameter parameter) {
+  return HeightWeights(field, region).of(parameter);
 }
 
 }  // namespace fvd::metrology

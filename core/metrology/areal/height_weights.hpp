@@ -5,15 +5,40 @@
 #include <optional>
 
 #include "core/metrology/areal/areal_parameters.hpp"
+#include "core/metrology/areal/height_moments.hpp"
+#include "core/metrology/areal/region_heights.hpp"
 #include "core/metrology/height_field.hpp"
 #include "core/metrology/uncertainty/weight_map.hpp"
 
 namespace fvd::metrology {
 
-/// Derivatives of Sa, Sq, Ssk, Sku, Sp, Sv or Sz to the heights of the region's valid points, with the mean that moves
-/// with them (first order, GUM 5.1.3): e.g. z / (N Sq) for Sq. Absent for other parameters, and where the region has no
-/// points or, but for Sa and extremes, no scatter. Sp, Sv and Sz rest on single points; noise also lets other points
-/// take their place, which raises the value and is not told by a derivative. context: pure.
+/// Of one region's parameters. The field and the region outlive it. context: pure.
+class HeightWeights {
+ public:
+  HeightWeights(const HeightField& field, const Region& region);
+
+  /// Derivatives of Sa, Sq, Ssk, Sku, Sp, Sv or Sz to the heights of the region's valid points, with the mean that
+  /// moves with them (first order, GUM 5.1.3): e.g. z / (N Sq) for Sq. Absent for other parameters, and where the
+  /// region has no points or, but for Sa and extremes, no scatter. Sp, Sv and Sz rest on single points; noise also lets
+  /// other points take their place, which raises the value and is not told by a derivative.
+  [[nodiscard]] std::optional<WeightMap> of(ArealParameter parameter) const;
+
+ private:
+  template <typename Derivative>
+  [[nodiscard]] WeightMap mapped(const Derivative& derivative) const;
+  void add_at(double height_um, double weight, WeightMap& map) const;
+
+  const HeightField& field_;
+  const Region& region_;
+  RegionSurvey survey_;
+  double mean_um_ = 0.0;
+  double mean_sign_ = 0.0;
+  double highest_um_ = 0.0;
+  double lowest_um_ = 0.0;
+  HeightMoments moments_;
+};
+
+/// The same for one parameter.
 [[nodiscard]] std::optional<WeightMap> height_weights(const HeightField& field, const Region& region,
                                                       ArealParameter parameter);
 

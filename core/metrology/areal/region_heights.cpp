@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <iterator>
+#include <cstdint>
 #include <limits>
 
 namespace fvd::metrology {
@@ -11,63 +10,78 @@ namespace {
 
 constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
 
-struct Bounds {
-  int left = std::numeric_limits<int>::max();
-  int right = -1;
-  int top = std::numeric_limits<int>::max();
-  int bottom = -1;
-};
-
-/// Counts the points and tells the rectangle that the valid ones take.
-Bounds survey(const HeightField& field, const Region& region, RegionHeights& cut) {
-  Bounds bounds;
-  for (int y = 0; y < field.height(); ++y) {
-    const std::size_t before = cut.points;
-    for (int x = 0; x < field.width(); ++x) {
-      if (!is_inside(region, x, y)) continue;
-      ++cut.region_points;
-      if (field.is_hole(x, y)) continue;
-      ++cut.points;
-      bounds.left = std::min(bounds.left, x);
-      bounds.right = std::max(bounds.right, x);
-    }
-    if (cut.points == before) continue;
-    bounds.top = std::min(bounds.top, y);
-    bounds.bottom = y;
+/// Calls row(y, z, inside): heights and the region's row, null where all is inside, of the columns of the bounds.
+template <typename Row>
+void each_row(const HeightField& field, const Region& region, const RegionBounds& bounds, const Row& row) {
+  for (int y = bounds.top; y < bounds.bottom; ++y) {
+    row(y, field.z_um.row(y) + bounds.left, region.empty() ? nullptr : region.row(y) + bounds.left);
   }
-  return bounds;
+}
+
+bool is_valid(double z, const std::uint8_t* inside, int column) {
+  return z == z && (inside == nullptr || inside[column] != 0);
 }
 
 }  // namespace
 
-std::vector<double> RegionHeights::valid_heights_um() const {
-  std::vector<double> heights;
-  heights.reserve(points);
-  for (int y = 0; y < height; ++y) {
-    const double* from = row(y);
-    std::copy_if(from, from + width, std::back_inserter(heights), [](double z) { return !std::isnan(z); });
-  }
+RegionSurvey survey_region(const HeightField& field, const Region& region) {
+  assert(region.empty() || (region.width() == field.width() && region.height() == field.height()));
+  const RegionBounds asked = bounds_of(region, field.width(), field.height());
+  RegionSurvey survey;
+  RegionBounds& valid = survey.valid;
+  valid = {field.width(), field.height(), 0, 0};
+  each_row(field, region, asked, [&](int y, const double* z, const std::uint8_t* inside) {
+    std::size_t in_region = 0;
+    std::size_t points = 0;
+    for (int x = 0; x < asked.width(); ++x) {
+      const bool is_asked = inside == nullptr || inside[x] != 0;
+      in_region += is_asked ? 1U : 0U;
+      points += is_asked && z[x] == z[x] ? 1U : 0U;
+    }
+    survey.region_points += in_region;
+    if (points == 0) return;
+    survey.points += points;
+    int first = 0;
+    while (!is_valid(z[first], inside, first)) ++first;
+    int end = asked.width();
+    while (!is_valid(z[end - 1], inside, end - 1)) --end;
+    valid.left = std::min(valid.left, asked.left + first);
+    valid.right = std::max(valid.right, asked.left + end);
+    valid.top = std::min(valid.top, y);
+    valid.bottom = y + 1;
+  });
+  if (survey.points == 0) valid = {};
+  return survey;
+}
+
+std::vector<double> valid_heights_um(const HeightField& field, const Region& region, const RegionSurvey& survey) {
+  std::vector<double> heights(survey.points);
+  double* next = heights.data();
+  each_row(field, region, survey.valid, [&](int, const double* z, const std::uint8_t* inside) {
+    for (int x = 0; x < survey.valid.width(); ++x) {
+      if (is_valid(z[x], inside, x)) *next++ = z[x];
+    }
+  });
+  assert(next == heights.data() + heights.size());
   return heights;
 }
 
 RegionHeights cut_region(const HeightField& field, const Region& region) {
-  assert(region.empty() || (region.width() == field.width() && region.height() == field.height()));
+  const RegionSurvey survey = survey_region(field, region);
   RegionHeights cut;
   cut.pitch_x_um = field.pitch_x_um;
   cut.pitch_y_um = field.pitch_y_um;
-  const Bounds bounds = survey(field, region, cut);
+  cut.points = survey.points;
+  cut.region_points = survey.region_points;
   if (cut.points == 0) return cut;
   constexpr int kMargin = RegionHeights::kMargin;
-  cut.width = bounds.right - bounds.left + 1;
-  cut.height = bounds.bottom - bounds.top + 1;
+  cut.width = survey.valid.width();
+  cut.height = survey.valid.height();
   cut.z_um = Plane<double>(cut.width + 2 * kMargin, cut.height + 2 * kMargin, kHole);
-  for (int y = 0; y < cut.height; ++y) {
-    double* to = cut.z_um.row(y + kMargin) + kMargin;
-    for (int x = 0; x < cut.width; ++x) {
-      const int column = bounds.left + x;
-      if (is_inside(region, column, bounds.top + y)) to[x] = field.z_um.at(column, bounds.top + y);
-    }
-  }
+  each_row(field, region, survey.valid, [&](int y, const double* z, const std::uint8_t* inside) {
+    double* to = cut.z_um.row(y - survey.valid.top + kMargin) + kMargin;
+    for (int x = 0; x < cut.width; ++x) to[x] = is_valid(z[x], inside, x) ? z[x] : kHole;
+  });
   return cut;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/metrology/height_field.hpp"
+#include "core/metrology/region_bounds.hpp"
 
 namespace fvd::metrology {
 
@@ -24,11 +25,22 @@ struct RegionHeights {
 
   /// The first of width heights of a row of the rectangle; row from -kMargin to height + kMargin - 1.
   [[nodiscard]] const double* row(int row) const { return z_um.row(row + kMargin) + kMargin; }
-  /// Row by row.
-  [[nodiscard]] std::vector<double> valid_heights_um() const;
 };
 
-/// region: empty or of the field's shape.
+/// How many points a region has, and the rectangle that the valid ones take.
+struct RegionSurvey {
+  RegionBounds valid;             ///< without valid points {0, 0, 0, 0}
+  std::size_t points = 0;         ///< valid points
+  std::size_t region_points = 0;  ///< points of the region, holes included
+};
+
+/// region: empty or of the field's shape, as in the next two.
+[[nodiscard]] RegionSurvey survey_region(const HeightField& field, const Region& region);
+
+/// Row by row. survey: of the same field and region.
+[[nodiscard]] std::vector<double> valid_heights_um(const HeightField& field, const Region& region,
+                                                   const RegionSurvey& survey);
+
 [[nodiscard]] RegionHeights cut_region(const HeightField& field, const Region& region);
 
 }  // namespace fvd::metrology

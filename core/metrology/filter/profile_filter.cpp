@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/metrology/filter/border_error.hpp"
@@ -77,14 +79,84 @@ double value_at(const PointMoments& sums) {
   return constant_term(moments).value_or(kHole);
 }
 
+/// What the fit is where every point within reach counts alike: one weight for each distance.
+template <std::size_t Terms>
+struct WholeKernel {
+  std::vector<double> weights;  ///< at the distances 0, 1, ...; empty where the points do not determine the fit
+  double share = 0.0;           ///< sum of the kernel
+
+  explicit WholeKernel(const PoweredKernel& kernel) {
+    const auto reach = static_cast<std::size_t>(kernel.reach());
+    const std::vector<double> ones(2 * reach + 1, 1.0);
+    const PointMoments sums = moments_at<Terms>(kernel, ones, ones, kernel.reach());
+    share = sums.weight[0];
+    if (share < kMinRegressionWeightShare) return;
+    for (std::size_t distance = 0; distance <= reach; ++distance) {
+      // A height of 1 in two mirrored places: odd powers are 0.
+      PointMoments one = sums;
+      for (std::size_t k = 0; k < Terms; ++k) one.height[k] = k % 2 == 0 ? kernel.powers[k][distance] : 0.0;
+      weights.push_back(value_at<Terms>(one));
+    }
+    if (std::isnan(weights.front())) weights.clear();
+  }
+};
+
+constexpr std::size_t kLanes = 8;
+
+/// smooth_um[i] for i in [first, end), all of whose neighbours within reach count.
+void average(std::span<const double> kernel, std::span<const double> z_um, std::size_t first, std::size_t end,
+             std::span<double> smooth_um) {
+  std::size_t i = first;
+  for (; i + kLanes <= end; i += kLanes) {
+    std::array<double, kLanes> sums{};
+    const double* at = z_um.data() + i;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] = kernel[0] * at[lane];
+    for (std::size_t distance = 1; distance < kernel.size(); ++distance) {
+      const double* before = at - distance;
+      const double* behind = at + distance;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += kernel[distance] * (before[lane] + behind[lane]);
+    }
+    std::copy(sums.begin(), sums.end(), smooth_um.data() + i);
+  }
+  for (; i < end; ++i) {
+    double sum = kernel[0] * z_um[i];
+    for (std::size_t distance = 1; distance < kernel.size(); ++distance) {
+      sum += kernel[distance] * (z_um[i - distance] + z_um[i + distance]);
+    }
+    smooth_um[i] = sum;
+  }
+}
+
+/// Runs of points that count alike, further than the reach from their ends, take one weighted sum a point; the others
+/// take all moments.
 template <std::size_t Terms>
 void smooth_profile(const PoweredKernel& kernel, std::span<const double> z_um, std::span<const double> weights,
                     std::span<double> smooth_um, std::span<double> share) {
-  for (std::size_t i = 0; i < z_um.size(); ++i) {
-    const PointMoments sums = moments_at<Terms>(kernel, z_um, weights, static_cast<int>(i));
-    share[i] = sums.weight[0];
-    smooth_um[i] = share[i] >= kMinRegressionWeightShare ? value_at<Terms>(sums) : kHole;
+  const auto reach = static_cast<std::size_t>(kernel.reach());
+  const auto point_by_point = [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const PointMoments sums = moments_at<Terms>(kernel, z_um, weights, static_cast<int>(i));
+      share[i] = sums.weight[0];
+      smooth_um[i] = share[i] >= kMinRegressionWeightShare ? value_at<Terms>(sums) : kHole;
+    }
+  };
+  std::optional<WholeKernel<Terms>> whole;
+  std::size_t done = 0;
+  for (std::size_t from = 0; from < weights.size();) {
+    std::size_t to = from;
+    while (to < weights.size() && weights[to] == 1.0) ++to;
+    if (to - from > 2 * reach) {
+      if (!whole) whole.emplace(kernel);
+      if (whole->weights.empty()) break;
+      point_by_point(done, from + reach);
+      average(whole->weights, z_um, from + reach, to - reach, smooth_um);
+      std::fill(share.begin() + static_cast<std::ptrdiff_t>(from + reach),
+                share.begin() + static_cast<std::ptrdiff_t>(to - reach), whole->share);
+      done = to - reach;
+    }
+    from = to + 1;
   }
+  point_by_point(done, z_um.size());
 }
 
 void smooth(FilterMethod method, const PoweredKernel& kernel, std::span<const double> z_um,

@@ -8,6 +8,7 @@
 
 #include "core/metrology/height_field.hpp"
 #include "core/metrology/uncertainty/weight_map.hpp"
+#include "core/runtime/worker_pool.hpp"
 
 namespace fvd::metrology {
 
@@ -20,8 +21,9 @@ struct LinearNoise {
 ///   var(sum w_i z_i) = sum over p of (sum over i of k(p - i) w_i sigma_i)^2 / sum of k^2.
 /// p reaches beyond the field by the kernel's reach. Absent where the field has no sigma. Every point with a weight
 /// must have a sigma. Own definition (GUM 5.2.2 with the correlation of the focus window). context: pure, as the next.
-/// Cost: one separable convolution of the map's rectangle.
-[[nodiscard]] std::optional<LinearNoise> linear_noise(const HeightField& field, const WeightMap& map);
+/// Cost: one separable convolution of the map's rectangle, in bands where a pool is given; the same bytes either way.
+[[nodiscard]] std::optional<LinearNoise> linear_noise(const HeightField& field, const WeightMap& map,
+                                                      WorkerPool* pool = nullptr);
 
 /// Covariances of several estimates under the same noise: row-major, maps.size() squared, symmetric. At least one map.
 [[nodiscard]] std::optional<std::vector<double>> linear_covariance(const HeightField& field,

@@ -4,38 +4,27 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 
+#include "core/metrology/region_bounds.hpp"
 #include "core/metrology/uncertainty/noise_map.hpp"
 
 namespace fvd::metrology {
 namespace {
 
-struct Rectangle {
-  int left = 0;
-  int top = 0;
-  int right = 0;  // one past the last
-  int bottom = 0;
-};
-
-Rectangle rectangle_of(const HeightField& field, const Region& region, int margin_px) {
+RegionBounds rectangle_of(const HeightField& field, const Region& region, int margin_px) {
   if (region.empty() || margin_px < 0) return {0, 0, field.width(), field.height()};
-  Rectangle found{field.width(), field.height(), 0, 0};
-  for (int y = 0; y < field.height(); ++y) {
-    for (int x = 0; x < field.width(); ++x) {
-      if (region.at(x, y) == 0) continue;
-      found = {std::min(found.left, x), std::min(found.top, y), std::max(found.right, x + 1),
-               std::max(found.bottom, y + 1)};
-    }
-  }
-  if (found.right == 0) return {};
+  const RegionBounds found = bounds_of(region, field.width(), field.height());
+  if (found.empty()) return {};
   return {std::max(0, found.left - margin_px), std::max(0, found.top - margin_px),
           std::min(field.width(), found.right + margin_px), std::min(field.height(), found.bottom + margin_px)};
 }
 
 template <typename T>
-Plane<T> cut(const Plane<T>& plane, const Rectangle& to) {
+Plane<T> cut(const Plane<T>& plane, const RegionBounds& to) {
   if (plane.empty()) return {};
-  Plane<T> part(to.right - to.left, to.bottom - to.top);
+  Plane<T> part(to.width(), to.height());
   for (int y = 0; y < part.height(); ++y) std::copy_n(plane.row(to.top + y) + to.left, part.width(), part.row(y));
   return part;
 }
@@ -53,25 +42,53 @@ struct Running {
   }
 };
 
+using Drawn = std::vector<std::optional<double>>;
+
+/// So many draws at a time that they together take no more points than the whole field, which is what is reserved.
+int lanes_of(const HeightField& field, const HeightField& part, int draws, const WorkerPool* pool) {
+  if (pool == nullptr) return 1;
+  const auto points = [](const HeightField& of) { return static_cast<std::int64_t>(of.width()) * of.height(); };
+  const std::int64_t most = std::clamp<std::int64_t>(points(field) / points(part), 1, pool->threads());
+  return static_cast<int>(std::min<std::int64_t>(most, draws));
+}
+
+/// The values of each draw; which thread makes one does not change it.
+std::vector<Drawn> all_draws(const HeightField& still, const Region& inside, const MonteCarloSettings& settings,
+                             const ValuesOfField& values, int lanes, WorkerPool* pool) {
+  std::vector<Drawn> drawn(static_cast<std::size_t>(settings.draws));
+  const auto lane = [&](int first) {
+    HeightField disturbed = still.clone();
+    NoiseMaps noise(still, settings.seed);
+    for (int draw = first; draw < settings.draws; draw += lanes) {
+      noise.add_to_heights(static_cast<std::uint64_t>(draw), disturbed.z_um);
+      drawn[static_cast<std::size_t>(draw)] = values(disturbed, inside);
+    }
+  };
+  if (lanes == 1) {
+    lane(0);
+  } else {
+    pool->run(lanes, std::ref(lane));
+  }
+  return drawn;
+}
+
 }  // namespace
 
 std::optional<MonteCarlo> monte_carlo(const HeightField& field, const Region& region,
-                                      const MonteCarloSettings& settings, const ValuesOfField& values) {
+                                      const MonteCarloSettings& settings, const ValuesOfField& values,
+                                      WorkerPool* pool) {
   assert(settings.draws >= 2);
   if (!field.has_sigma()) return std::nullopt;
-  const Rectangle part = rectangle_of(field, region, settings.margin_px);
-  if (part.right <= part.left) return std::nullopt;
+  const RegionBounds part = rectangle_of(field, region, settings.margin_px);
+  if (part.empty()) return std::nullopt;
   const HeightField still{cut(field.z_um, part), cut(field.sigma_um, part), field.pitch_x_um, field.pitch_y_um,
                           field.kernel};
-  HeightField disturbed = still.clone();
   const Region inside = cut(region, part);
 
-  NoiseMaps noise(still, settings.seed);
   std::vector<Running> sums;
-  for (int draw = 0; draw < settings.draws; ++draw) {
-    noise.add_to_heights(static_cast<std::uint64_t>(draw), disturbed.z_um);
-    const std::vector<std::optional<double>> drawn = values(disturbed, inside);
-    if (draw == 0) sums.resize(drawn.size());
+  const int lanes = lanes_of(field, still, settings.draws, pool);
+  for (const Drawn& drawn : all_draws(still, inside, settings, values, lanes, pool)) {
+    if (sums.empty()) sums.resize(drawn.size());
     assert(drawn.size() == sums.size());
     for (std::size_t i = 0; i < drawn.size(); ++i) {
       if (drawn[i]) sums[i].add(*drawn[i]);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/metrology/height_field.hpp"
+#include "core/runtime/worker_pool.hpp"
 
 namespace fvd::metrology {
 
@@ -36,8 +37,10 @@ struct MonteCarlo {
 };
 
 /// JCGM 101:2008, with errors of the form of linear_noise(). Absent where the field has no sigma or the region no
-/// point. context: calls `values` on the caller's thread, `draws` times.
+/// point. context: calls `values` `draws` times, on the caller's thread; with a pool on several at once, and the result
+/// is the same.
 [[nodiscard]] std::optional<MonteCarlo> monte_carlo(const HeightField& field, const Region& region,
-                                                    const MonteCarloSettings& settings, const ValuesOfField& values);
+                                                    const MonteCarloSettings& settings, const ValuesOfField& values,
+                                                    WorkerPool* pool = nullptr);
 
 }  // namespace fvd::metrology

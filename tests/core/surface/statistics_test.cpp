@@ -1,6 +1,10 @@
 #include "core/surface/statistics.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -78,6 +82,48 @@ TEST(HeightSummary, CountsAPointWithTwoReasonsTwice) {
   EXPECT_EQ(summary.holes.edge_band, 1U);
   EXPECT_EQ(summary.holes.max_sigma, 1U);
   EXPECT_EQ(summary.valid, 10U);
+}
+
+TEST(HeightSummary, IsWhatSortingTells) {
+  std::mt19937 random(5);
+  for (const int points : {1, 2, 7, 1000, 4999, 5000}) {
+    Surface surface(points, 1);
+    std::vector<float> heights;
+    std::vector<float> errors;
+    double sum_m = 0.0;
+    for (int i = 0; i < points; ++i) {
+      const bool many_equal = i % 3 == 0;
+      surface.height_m.at(i, 0) = many_equal ? -1e-6F : (static_cast<float>(random() % 20001) - 10000.0F) * 1e-9F;
+      surface.sigma_m.at(i, 0) = static_cast<float>(random() % 1000) * 1e-9F;
+      if (points > 2 && i % 11 == 0) surface.make_hole(i, 0, mask_reason::kSaturated);
+      if (std::isnan(surface.height_m.at(i, 0))) continue;
+      heights.push_back(surface.height_m.at(i, 0));
+      errors.push_back(surface.sigma_m.at(i, 0));
+      sum_m += static_cast<double>(heights.back());
+    }
+    std::sort(heights.begin(), heights.end());
+    std::sort(errors.begin(), errors.end());
+    const auto um = [](float metres) { return static_cast<double>(metres) / kMetresPerMicrometer; };
+    const auto median_um = [um](const std::vector<float>& of) {
+      return (um(of[(of.size() - 1) / 2]) + um(of[of.size() / 2])) / 2;
+    };
+    const auto at = [&](double share) {
+      return um(heights[static_cast<std::size_t>(std::lround(share * static_cast<double>(heights.size() - 1)))]);
+    };
+
+    const HeightSummary summary = surface.summary();
+
+    ASSERT_TRUE(summary.height);
+    EXPECT_EQ(summary.valid, heights.size());
+    EXPECT_EQ(summary.height->min_um, um(heights.front()));
+    EXPECT_EQ(summary.height->max_um, um(heights.back()));
+    EXPECT_EQ(summary.height->median_um, median_um(heights));
+    EXPECT_EQ(summary.height->low_um, at(0.005));
+    EXPECT_EQ(summary.height->high_um, at(0.995));
+    EXPECT_EQ(summary.sigma_median_um, median_um(errors));
+    const double mean_um = sum_m / static_cast<double>(heights.size()) / kMetresPerMicrometer;
+    EXPECT_NEAR(summary.height->mean_um, mean_um, 1e-12 * std::abs(mean_um));
+  }
 }
 
 TEST(HeightSummary, HasNoHeightsWhereAllPointsAreHoles) {

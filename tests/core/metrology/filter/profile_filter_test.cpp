@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.hpp"
+#include "core/metrology/filter/gaussian_kernel.hpp"
 #include "tests/core/metrology/filter/local_fit_reference.hpp"
 
 namespace fvd::metrology {
@@ -53,6 +54,52 @@ TEST(ProfileFilter, IsTheLocalFitOfItsDefinitionBesideHolesAndBorders) {
     }
   }
   RecordProperty("filter_worst_profiles_with_holes", std::to_string(worst));
+}
+
+/// The local fit of the kernel as it is sampled, by normal equations in long double.
+long double fit_at(const std::vector<double>& z, int at, FilterMethod method, double nesting_px) {
+  const SampledGaussian kernel = sample_gaussian(method, nesting_px);
+  const int reach = static_cast<int>(kernel.weights.size()) - 1;
+  const int terms = method == FilterMethod::kGaussian ? 1 : (method == FilterMethod::kGaussianRegression1 ? 2 : 3);
+  long double a[3][4] = {};
+  for (int i = std::max(0, at - reach); i <= std::min(static_cast<int>(z.size()) - 1, at + reach); ++i) {
+    if (std::isnan(z[static_cast<std::size_t>(i)])) continue;
+    const long double weight = kernel.weights[static_cast<std::size_t>(std::abs(i - at))];
+    const long double x = static_cast<long double>(i - at) / kernel.deviation_px;
+    for (int row = 0; row < terms; ++row) {
+      for (int column = 0; column < terms; ++column) a[row][column] += weight * std::pow(x, row + column);
+      a[row][3] += weight * std::pow(x, row) * z[static_cast<std::size_t>(i)];
+    }
+  }
+  for (int k = terms - 1; k > 0; --k) {
+    for (int row = 0; row < k; ++row) {
+      const long double factor = a[row][k] / a[k][k];
+      for (int column = 0; column < k; ++column) a[row][column] -= factor * a[k][column];
+      a[row][3] -= factor * a[k][3];
+    }
+  }
+  return a[0][3] / a[0][0];
+}
+
+TEST(ProfileFilter, GivesTheSameFitFarFromHolesAndBesideThem) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  std::vector<double> z;
+  for (int i = 0; i < 330; ++i) z.push_back(noise(random) + 0.002 * i * i);
+  z[150] = kHole;  // between two runs longer than the kernel
+  for (const FilterMethod method :
+       {FilterMethod::kGaussian, FilterMethod::kGaussianRegression1, FilterMethod::kGaussianRegression2}) {
+    const FilteredProfile smooth =
+        filter_profile(z, 0.5, {.side = FilterSide::kS, .nesting_um = 8.0, .method = method});
+    int compared = 0;
+    for (int i = 0; i < 330; ++i) {
+      const double value = smooth.z_um[static_cast<std::size_t>(i)];
+      if (std::isnan(value)) continue;
+      EXPECT_NEAR(value, static_cast<double>(fit_at(z, i, method, 16.0)), 1e-11) << i;
+      ++compared;
+    }
+    EXPECT_GE(compared, 300);
+  }
 }
 
 TEST(ProfileFilter, KeepsParabolasUpToBordersAndHoles) {

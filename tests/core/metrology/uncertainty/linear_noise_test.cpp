@@ -108,6 +108,21 @@ TEST(LinearNoise, IsTheDoubleSumOverAllPairs) {
   }
 }
 
+TEST(LinearNoise, IsTheSameWhateverThreadsThereAreAndBandsItIsMadeIn) {
+  WorkerPool pool(3);
+  const HeightField field = uneven_field(40, 300, double_box(9, 5), true);
+  WeightMap map = uneven_weights(field, 2, 1, 37, 298, 0.003);
+  for (int row = 100; row < 160; ++row) std::fill_n(map.weights.row(row), map.weights.width(), 0.0);
+
+  const std::optional<LinearNoise> alone = linear_noise(field, map);
+  const std::optional<LinearNoise> shared = linear_noise(field, map, &pool);
+
+  ASSERT_TRUE(alone && shared);
+  EXPECT_EQ(alone->u, shared->u);
+  EXPECT_EQ(alone->points_as_one, shared->points_as_one);
+  EXPECT_NEAR(alone->u * alone->u / by_pairs(field, map, map), 1.0, 1e-12);
+}
+
 TEST(LinearNoise, OfABoxIsPointsTimesTheSquaredBoxMeans) {
   const HeightField field = uneven_field(31, 24, box(9), true);
   const WeightMap map = uneven_weights(field, 4, 2, 20, 19, -0.002);

@@ -86,6 +86,22 @@ TEST(MonteCarlo, GivesTheSameFiguresForTheSameSeed) {
   EXPECT_NE(first->values[0].u, other->values[0].u);
 }
 
+TEST(MonteCarlo, GivesTheSameFiguresWhateverThreadsThereAre) {
+  const HeightField field = uneven_field(60, 50, double_box(9, 5), true);
+  WorkerPool pool(3);
+  const Region part = rectangle(field, 3, 8, 20, 25);
+  const Region whole = rectangle(field, 0, 0, 60, 50);
+  for (const Region* chosen : {&part, &whole}) {
+    const Region& region = *chosen;
+    const std::optional<MonteCarlo> alone = monte_carlo(field, region, {20, 5, 0}, the_mean);
+    const std::optional<MonteCarlo> shared = monte_carlo(field, region, {20, 5, 0}, the_mean, &pool);
+
+    ASSERT_TRUE(alone && shared);
+    EXPECT_EQ(alone->values[0].u, shared->values[0].u);
+    EXPECT_EQ(alone->values[0].mean, shared->values[0].mean);
+  }
+}
+
 TEST(MonteCarlo, CutsTheFieldToTheRegionAndItsMargin) {
   HeightField field = uneven_field(40, 30, box(3), false);
   field.pitch_x_um = 0.5;
