@@ -128,19 +128,21 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
 
 }  // namespace
 
-Evaluation evaluate_surface(const Surface& surface, const EvaluationPlan& plan, const EvaluationContext& context,
-                            WorkerPool* pool) {
-  SurfaceChain chain(surface, plan, context, pool);
+Evaluation evaluate_surface(const SurfaceRef& surface, const EvaluationPlan& plan, const EvaluationContext& context,
+                            WorkerPool* pool, const KeptPagesPtr& pages) {
+  SurfaceChain chain(surface, plan, context, pool, pages);
   Evaluation evaluation;
   if (context.calibration) evaluation.calibration = context.calibration->id;
   evaluation.rule = plan.decision.rule;
   evaluation.probability = plan.decision.probability;
+  std::optional<SliceSensitivity> slices = slice_sensitivity_of(context);
   std::vector<Verdict> verdicts;
   for (const auto& [name, planned] : plan.measurements) {
     const SurfaceState& measured = chain.state(kMeasuredSurface);
     const SurfaceState& state = chain.state(planned.surface);
-    const MeasurementInput input{plan, planned, state, measured, context, surface.lateral_period_um.value_or(0.0),
-                                 name};
+    const MeasurementInput input{plan,     planned, state,
+                                 measured, context, surface.lateral_period_um.value_or(0.0),
+                                 name,     pool,    slices ? &*slices : nullptr};
     EvaluatedMeasurement made = finished(plc_id(name, planned), input);
     if (made.verdict) verdicts.push_back(*made.verdict);
     evaluation.measurements.emplace(name, std::move(made));

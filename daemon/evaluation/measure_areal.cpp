@@ -54,7 +54,7 @@ class ArealUncertainty {
  public:
   ArealUncertainty(const MeasurementInput& input, const Region& region, const metrology::ArealSettings& settings,
                    const std::vector<ArealParameter>& all)
-      : input_(input), region_(region), drawn_(drawn_parameters(input, all)) {
+      : input_(input), weights_(input.surface.field, region), drawn_(drawn_parameters(input, all)) {
     if (drawn_.empty() || !input.surface.field.has_sigma()) return;
     metrology::MonteCarloSettings monte_carlo;
     monte_carlo.seed = kSeed;
@@ -66,15 +66,15 @@ class ArealUncertainty {
       }
       return made;
     };
-    draws_ = metrology::monte_carlo(input.surface.field, region, monte_carlo, values);
+    draws_ = metrology::monte_carlo(input.surface.field, region, monte_carlo, values, input.pool);
   }
 
   void add_to(ValueInput& value, ArealParameter parameter) const {
     const HeightField& field = input_.surface.field;
-    if (const auto weights = metrology::height_weights(field, region_, parameter)) {
+    if (const auto weights = weights_.of(parameter)) {
       value.u_method = "linear";
-      add_noise(field.has_sigma() ? metrology::linear_noise(field, *weights) : std::nullopt, value.budget);
-      if (field.has_sigma()) add_slice_z(input_.context, input_.measured, *weights, value.budget);
+      add_noise(field.has_sigma() ? metrology::linear_noise(field, *weights, input_.pool) : std::nullopt, value.budget);
+      if (field.has_sigma()) add_slice_z(input_, *weights, value.budget);
       return;
     }
     const auto place = std::find(drawn_.begin(), drawn_.end(), parameter);
@@ -98,7 +98,7 @@ class ArealUncertainty {
 
  private:
   const MeasurementInput& input_;
-  const Region& region_;
+  metrology::HeightWeights weights_;
   std::vector<ArealParameter> drawn_;
   std::optional<metrology::MonteCarlo> draws_;
 };

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/focus/fit/slice_sensitivity.hpp"
 #include "core/metrology/height_field.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
@@ -20,8 +21,10 @@ struct MeasurementInput {
   const SurfaceState& surface;   ///< that was made
   const SurfaceState& measured;  ///< as the scan made it
   const EvaluationContext& context;
-  double lateral_period_um = 0.0;  ///< that the measured surface shows at half its amplitude; 0 = not known
-  std::string name = {};           ///< of the measurement in its plan
+  double lateral_period_um = 0.0;      ///< that the measured surface shows at half its amplitude; 0 = not known
+  std::string name = {};               ///< of the measurement in its plan
+  WorkerPool* pool = nullptr;          ///< null = everything on the caller's thread; the values are the same
+  SliceSensitivity* slices = nullptr;  ///< what errors of slices do; null = not known
 };
 
 /// Each never throws for data: what cannot be given is absent with a reason. context: one thread.

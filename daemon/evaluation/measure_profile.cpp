@@ -13,6 +13,7 @@
 #include "core/base/error.hpp"
 #include "core/metrology/operations/region.hpp"
 #include "core/metrology/profile/profile_evaluation.hpp"
+#include "core/metrology/region_bounds.hpp"
 #include "core/metrology/uncertainty/monte_carlo.hpp"
 #include "daemon/evaluation/instrument_budget.hpp"
 #include "daemon/evaluation/measure_kinds.hpp"
@@ -60,41 +61,28 @@ Region band_region(const HeightField& field, const ProfileLine& line) {
                                       width_um + 2.0 * field.pitch_x_um, height_um + 2.0 * field.pitch_y_um});
 }
 
-/// The line in a field that was cut to the first column and row of the region's rectangle.
-std::pair<int, int> first_pixel(const Region& region) {
-  int first_column = region.width();
-  int first_row = -1;
-  for (int row = 0; row < region.height(); ++row) {
-    for (int column = 0; column < first_column; ++column) {
-      if (region.at(column, row) == 0) continue;
-      if (first_row < 0) first_row = row;
-      first_column = column;
-    }
-  }
-  return {first_column, first_row};
-}
-
-std::optional<metrology::MonteCarlo> drawn(const HeightField& field, const ProfileLine& line,
+std::optional<metrology::MonteCarlo> drawn(const HeightField& field, const ProfileLine& line, const Region& region,
                                            const std::vector<ProfileParameter>& parameters,
-                                           const metrology::ProfileSettings& settings) {
+                                           const metrology::ProfileSettings& settings, WorkerPool* pool) {
   if (!field.has_sigma()) return std::nullopt;
-  const Region region = band_region(field, line);
-  const auto [column, row] = first_pixel(region);
+  // The line in a field that is cut to the region's rectangle.
+  const metrology::RegionBounds bounds = metrology::bounds_of(region, field.width(), field.height());
   ProfileLine moved = line;
-  moved.from_x_um -= column * field.pitch_x_um;
-  moved.to_x_um -= column * field.pitch_x_um;
-  moved.from_y_um -= row * field.pitch_y_um;
-  moved.to_y_um -= row * field.pitch_y_um;
+  moved.from_x_um -= bounds.left * field.pitch_x_um;
+  moved.to_x_um -= bounds.left * field.pitch_x_um;
+  moved.from_y_um -= bounds.top * field.pitch_y_um;
+  moved.to_y_um -= bounds.top * field.pitch_y_um;
   metrology::MonteCarloSettings monte_carlo;
   monte_carlo.seed = kSeed;
-  return metrology::monte_carlo(field, region, monte_carlo, [&](const HeightField& cut, const Region&) {
+  const auto values_of = [&](const HeightField& cut, const Region&) {
     std::vector<std::optional<double>> values;
     for (const auto& value :
          metrology::evaluate_profile(metrology::extract_profile(cut, moved), parameters, settings).values) {
       values.push_back(value.value);
     }
     return values;
-  });
+  };
+  return metrology::monte_carlo(field, region, monte_carlo, values_of, pool);
 }
 
 /// Whether the line with its band leaves the field.
@@ -176,13 +164,14 @@ EvaluatedMeasurement measure_profile(const MeasurementInput& input) {
   metrology::ProfileSettings settings;
   settings.nesting_um = input.planned.nesting_um;
   settings.sections = input.planned.sections;
-  const NoiseFloor floor = noise_floor(field, band_region(field, line));
+  const Region band = band_region(field, line);
+  const NoiseFloor floor = noise_floor(field, band);
   settings.noise_floor_um = floor.sq_um;
   std::vector<ProfileParameter> with_squares = parameters;
   std::transform(parameters.begin(), parameters.end(), std::back_inserter(with_squares), root_mean_square_of);
   const ProfileResult found = metrology::evaluate_profile(*profile, with_squares, settings);
   judge_points(input, found, made);
-  const auto draws = drawn(field, line, parameters, settings);
+  const auto draws = drawn(field, line, band, parameters, settings, input.pool);
   bool told_below_noise = false;
   made.not_evaluated = texture_not_evaluated(input);
   if (std::find(made.not_evaluated.begin(), made.not_evaluated.end(), "slice_z") == made.not_evaluated.end()) {

@@ -47,7 +47,7 @@ void add_height(const MeasurementInput& input, const std::string& key, const Ste
   value.u_method = "linear";
   add_noise(step.noise, value.budget);
   if (step.noise) {
-    add_slice_z(input.context, input.measured, step.weights, value.budget);
+    add_slice_z(input, step.weights, value.budget);
   } else {
     value.budget.not_evaluated.emplace_back("slice_z");  // alone it would pass for all of U
   }
@@ -205,8 +205,9 @@ EvaluatedMeasurement measure_step_between(const MeasurementInput& input) {
   const metrology::HeightField& field = input.surface.field;
   const metrology::Region lower = region_points(input.plan, input.planned.lower, field);
   const metrology::Region upper = region_points(input.plan, input.planned.upper, field);
-  const auto outcome = metrology::step_between(field, {input.planned.lower, &lower}, {input.planned.upper, &upper},
-                                               slope_of(input.planned.slope), input.planned.min_valid_fraction);
+  const auto outcome =
+      metrology::step_between(field, {input.planned.lower, &lower}, {input.planned.upper, &upper},
+                              slope_of(input.planned.slope), input.planned.min_valid_fraction, input.pool);
   if (const auto* refusal = std::get_if<metrology::StepRefusal>(&outcome)) {
     refuse(*refusal, made);
     return made;
@@ -243,7 +244,7 @@ EvaluatedMeasurement measure_levels(const MeasurementInput& input) {
     points.push_back(region_points(input.plan, name, field));
     named.push_back({name, &points.back()});
   }
-  const auto outcome = metrology::levels(field, named, input.planned.min_valid_fraction);
+  const auto outcome = metrology::levels(field, named, input.planned.min_valid_fraction, input.pool);
   if (const auto* refusal = std::get_if<metrology::StepRefusal>(&outcome)) {
     refuse(*refusal, made);
     return made;

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
+
+#include "core/metrology/region_bounds.hpp"
 
 namespace fvd {
 
@@ -18,16 +21,21 @@ struct Point {
 };
 
 Point centre_of(const metrology::HeightField& field, const metrology::Region& region) {
+  const metrology::RegionBounds bounds = metrology::bounds_of(region, region.width(), region.height());
   double columns = 0.0;
   double rows = 0.0;
   double count = 0.0;
-  for (int y = 0; y < region.height(); ++y) {
-    for (int x = 0; x < region.width(); ++x) {
-      if (region.at(x, y) == 0) continue;
-      columns += x + 0.5;
-      rows += y + 0.5;
-      ++count;
+  for (int y = bounds.top; y < bounds.bottom; ++y) {
+    const std::uint8_t* inside = region.row(y);
+    std::int64_t in_row = 0;
+    std::int64_t sum = 0;  // whole numbers: as exact as sums of halves
+    for (int x = bounds.left; x < bounds.right; ++x) {
+      in_row += inside[x] != 0 ? 1 : 0;
+      sum += inside[x] != 0 ? x : 0;
     }
+    columns += static_cast<double>(sum) + 0.5 * static_cast<double>(in_row);
+    rows += (y + 0.5) * static_cast<double>(in_row);
+    count += static_cast<double>(in_row);
   }
   return {columns / count * field.pitch_x_um, rows / count * field.pitch_y_um};
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
+
+#include "core/metrology/region_bounds.hpp"
 
 namespace fvd {
 
@@ -20,13 +23,17 @@ ordered_json number_or_null(std::optional<double> value) {
 
 NoiseFloor noise_floor(const metrology::HeightField& field, const metrology::Region& region) {
   if (!field.has_sigma()) return {};
+  const metrology::RegionBounds bounds = metrology::bounds_of(region, field.width(), field.height());
   double squares = 0.0;
   double points = 0.0;
-  for (int row = 0; row < field.height(); ++row) {
-    for (int column = 0; column < field.width(); ++column) {
-      if (field.is_hole(column, row) || !metrology::is_inside(region, column, row)) continue;
-      const auto sigma_um = static_cast<double>(field.sigma_um.at(column, row));
-      squares += sigma_um * sigma_um;
+  for (int row = bounds.top; row < bounds.bottom; ++row) {
+    const double* z = field.z_um.row(row);
+    const float* sigma_um = field.sigma_um.row(row);
+    const std::uint8_t* inside = region.empty() ? nullptr : region.row(row);
+    for (int column = bounds.left; column < bounds.right; ++column) {
+      if (std::isnan(z[column]) || (inside != nullptr && inside[column] == 0)) continue;
+      const auto here_um = static_cast<double>(sigma_um[column]);
+      squares += here_um * here_um;
       points += 1.0;
     }
   }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +11,7 @@
 #include "config/field_writer.hpp"
 #include "core/base/error.hpp"
 #include "core/base/units.hpp"
+#include "core/metrology/operations/bands.hpp"
 #include "daemon/evaluation/apply_operation.hpp"
 #include "daemon/evaluation/calibration_operation.hpp"
 #include "daemon/evaluation/evaluation_fields.hpp"
@@ -41,18 +42,54 @@ void note_filter(const PlannedOperation& step, SurfaceState& state) {
   }
 }
 
-/// What files may have and a field must not: heights that are no number, and heights whose standard error is none. The
-/// latter could not be weighed, and count as holes.
-void hide_unusable(metrology::HeightField& field) {
-  const std::span<double> heights = field.z_um.pixels();
-  const std::span<float> errors = field.sigma_um.pixels();
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    const bool usable =
-        std::isfinite(heights[i]) && (errors.empty() || (std::isfinite(errors[i]) && errors[i] >= 0.0F));
-    if (usable) continue;
-    heights[i] = std::nan("");
-    if (!errors.empty()) errors[i] = std::nanf("");
+float in_um(float metres) { return static_cast<float>(static_cast<double>(metres) / kMetresPerMicrometer); }
+
+/// The rows from first to end in um, with holes for what files may have and a field must not: heights that are no
+/// number, and heights whose standard error is none. The latter could not be weighed.
+void take_rows(const SurfaceRef& surface, int first, int end, metrology::HeightField& field) {
+  constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
+  const int width = field.width();
+  for (int row = first; row < end; ++row) {
+    const float* height_m = surface.height_m.row(row);
+    double* z_um = field.z_um.row(row);
+    if (!surface.has_sigma()) {
+      for (int x = 0; x < width; ++x) {
+        const double um = static_cast<double>(height_m[x]) / kMetresPerMicrometer;
+        z_um[x] = std::isfinite(um) ? um : kHole;
+      }
+      continue;
+    }
+    const float* sigma_m = surface.sigma_m.row(row);
+    float* sigma_um = field.sigma_um.row(row);
+    for (int x = 0; x < width; ++x) {
+      const double um = static_cast<double>(height_m[x]) / kMetresPerMicrometer;
+      const float error_um = in_um(sigma_m[x]);
+      const bool usable = std::isfinite(um) && std::isfinite(error_um) && error_um >= 0.0F;
+      z_um[x] = usable ? um : kHole;
+      sigma_um[x] = usable ? error_um : std::numeric_limits<float>::quiet_NaN();
+    }
   }
+}
+
+template <typename T>
+Plane<T> copy_of(const Plane<T>& plane, const EvaluationMeans& means) {
+  if (plane.empty()) return {};
+  Plane<T> copy = Plane<T>::unset(plane.width(), plane.height(), means.pages);
+  metrology::run_bands(means.pool, plane.height(), [&](int, int first, int end) {
+    std::copy(plane.row(first), plane.row(first) + static_cast<std::ptrdiff_t>(end - first) * plane.width(),
+              copy.row(first));
+  });
+  return copy;
+}
+
+metrology::HeightField copy_of(const metrology::HeightField& field, const EvaluationMeans& means) {
+  return {copy_of(field.z_um, means), copy_of(field.sigma_um, means), field.pitch_x_um, field.pitch_y_um, field.kernel};
+}
+
+Plane<MaskReasons> copy_of(const PlaneView<const MaskReasons>& mask) {
+  Plane<MaskReasons> copy = Plane<MaskReasons>::unset(mask.width, mask.height);
+  for (int row = 0; row < mask.height; ++row) std::copy_n(mask.row(row), mask.width, copy.row(row));
+  return copy;
 }
 
 bool asks_for_reasons(const EvaluationPlan& plan) {
@@ -79,9 +116,9 @@ metrology::OperationReport applied(const EvaluationPlan& plan, const PlannedOper
 
 }  // namespace
 
-SurfaceChain::SurfaceChain(const Surface& surface, const EvaluationPlan& plan, const EvaluationContext& context,
-                           WorkerPool* pool)
-    : surface_(surface), plan_(plan), context_(context), pool_(pool) {}
+SurfaceChain::SurfaceChain(SurfaceRef surface, const EvaluationPlan& plan, const EvaluationContext& context,
+                           WorkerPool* pool, KeptPagesPtr pages)
+    : surface_(std::move(surface)), plan_(plan), context_(context), means_{pool, std::move(pages)} {}
 
 const SurfaceState& SurfaceChain::state(const std::string& name) {
   if (const auto found = states_.find(name); found != states_.end()) return found->second;
@@ -92,15 +129,11 @@ const SurfaceState& SurfaceChain::state(const std::string& name) {
 SurfaceState SurfaceChain::measured() const {
   SurfaceState state;
   metrology::HeightField& field = state.field;
-  const auto in_um = [](const Plane<float>& metres, auto& plane) {
-    using Um = std::remove_cvref_t<decltype(plane.pixels()[0])>;
-    plane = std::remove_cvref_t<decltype(plane)>::unset(metres.width(), metres.height());
-    std::transform(metres.pixels().begin(), metres.pixels().end(), plane.pixels().begin(),
-                   [](float metre) { return static_cast<Um>(static_cast<double>(metre) / kMetresPerMicrometer); });
-  };
-  in_um(surface_.height_m, field.z_um);
-  if (surface_.has_sigma()) in_um(surface_.sigma_m, field.sigma_um);
-  hide_unusable(field);
+  const int width = surface_.height_m.width;
+  const int height = surface_.height_m.height;
+  field.z_um = Plane<double>::unset(width, height, means_.pages);
+  if (surface_.has_sigma()) field.sigma_um = Plane<float>::unset(width, height, means_.pages);
+  metrology::run_bands(means_.pool, height, [&](int, int first, int end) { take_rows(surface_, first, end, field); });
   field.pitch_x_um = surface_.pitch_x_um;
   field.pitch_y_um = surface_.pitch_y_um;
   field.kernel = surface_.kernel;
@@ -112,7 +145,7 @@ SurfaceState SurfaceChain::measured() const {
         {"op", "calibration"}, {"alpha_z", state.z_scale}, {"calibration", context_.calibration->id}};
     state.steps_json = ordered_json::array({step}).dump();
   }
-  if (surface_.has_mask() && asks_for_reasons(plan_)) state.reasons = surface_.mask.clone();
+  if (surface_.has_mask() && asks_for_reasons(plan_)) state.reasons = copy_of(surface_.mask);
   if (field.has_sigma() && !knows_window(field)) {
     state.warnings.push_back({"window_unknown",
                               "the focus window of the surface is not known: its points' errors are taken to be "
@@ -128,7 +161,7 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
   made.refused_code = source.refused_code;
   made.steps_json = source.steps_json;  // of which the last says why
   if (!made.refused.empty()) return made;
-  made.field = source.field.clone();
+  made.field = copy_of(source.field, means_);
   made.z_scale = source.z_scale;
   made.reasons = source.reasons.clone();
   made.reference_subtracted = source.reference_subtracted;
@@ -145,8 +178,9 @@ SurfaceState SurfaceChain::made(const PlannedSurface& planned) {
     ordered_json json = fields_to_json([&](Fields& fields) { describe(step, fields); });
     const std::string missing = missing_calibration(step, context_);
     Plane<MaskReasons>* const reasons = made.reasons.empty() ? nullptr : &made.reasons;
-    const metrology::OperationReport report =
-        missing.empty() ? applied(plan_, step, context_, pool_, reasons, made.field) : metrology::refusal(missing);
+    const metrology::OperationReport report = missing.empty()
+                                                  ? applied(plan_, step, context_, means_.pool, reasons, made.field)
+                                                  : metrology::refusal(missing);
     if (report.refused) {
       if (!missing.empty()) made.refused_code = evaluation_code::kCalibrationMissing;
       made.refused = step.op + ": " + *report.refused;

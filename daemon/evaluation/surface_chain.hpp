@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "core/base/large_array.hpp"
 #include "core/metrology/height_field.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "core/surface/surface.hpp"
+#include "core/surface/surface_ref.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
 #include "daemon/evaluation/evaluation_plan.hpp"
 #include "daemon/result/evaluation_result.hpp"
@@ -41,10 +43,17 @@ struct SurfaceState {
   return measured.kernel.weights.size() > 1;
 }
 
-/// surface, plan, context and pool outlive it; pool may be null. context: one thread.
+/// Where an evaluation computes, and in what memory.
+struct EvaluationMeans {
+  WorkerPool* pool = nullptr;    ///< null = on the caller's thread alone; the values are the same
+  KeptPagesPtr pages = nullptr;  ///< where the memory of surfaces comes from and goes to, if given
+};
+
+/// What surface refers to, plan, context and pool outlive it; pool may be null. context: one thread.
 class SurfaceChain {
  public:
-  SurfaceChain(const Surface& surface, const EvaluationPlan& plan, const EvaluationContext& context, WorkerPool* pool);
+  SurfaceChain(SurfaceRef surface, const EvaluationPlan& plan, const EvaluationContext& context, WorkerPool* pool,
+               KeptPagesPtr pages = nullptr);
 
   /// kMeasuredSurface or one of the plan's; the plan was checked.
   [[nodiscard]] const SurfaceState& state(const std::string& name);
@@ -53,10 +62,10 @@ class SurfaceChain {
   [[nodiscard]] SurfaceState measured() const;
   [[nodiscard]] SurfaceState made(const PlannedSurface& planned);
 
-  const Surface& surface_;
+  SurfaceRef surface_;
   const EvaluationPlan& plan_;
   const EvaluationContext& context_;
-  WorkerPool* pool_;
+  EvaluationMeans means_;
   std::map<std::string, SurfaceState> states_;
 };
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <sstream>
+#include <utility>
 #include <vector>
 
-#include "core/focus/fit/slice_sensitivity.hpp"
 #include "core/metrology/uncertainty/decision.hpp"
 #include "daemon/evaluation/value_names.hpp"
 
@@ -15,6 +16,7 @@ namespace fvd {
 namespace {
 
 constexpr std::size_t kLeastSamples = 3;
+constexpr int kBandRows = 256;
 
 /// A stage that stood still or went back between two samples has no curve that a derivative could be taken of.
 bool rise_or_fall(const std::vector<CurveSample>& samples) {
@@ -68,31 +70,47 @@ void add_noise(const std::optional<metrology::LinearNoise>& noise, metrology::Bu
   budget.entries.push_back(entry);
 }
 
-void add_slice_z(const EvaluationContext& context, const SurfaceState& measured, const metrology::WeightMap& map,
-                 metrology::Budget& budget) {
-  if (!are_known(context)) {
+std::optional<SliceSensitivity> slice_sensitivity_of(const EvaluationContext& context) {
+  if (!are_known(context)) return std::nullopt;
+  std::vector<double> z_um;
+  for (const CurveSample& sample : context.samples) z_um.push_back(sample.z_um);
+  return std::make_optional<SliceSensitivity>(z_um, context.curve_width_um);
+}
+
+void add_slice_z(const MeasurementInput& input, const metrology::WeightMap& map, metrology::Budget& budget) {
+  if (input.slices == nullptr) {
     budget.not_evaluated.emplace_back("slice_z");
     return;
   }
-  std::vector<double> z_um;
   std::vector<double> u_um;
-  for (const CurveSample& sample : context.samples) {
-    z_um.push_back(sample.z_um);
-    u_um.push_back(sample.u_um);
-  }
-  std::vector<WeightedHeight> heights;
-  heights.reserve(map.weights.pixels().size());
-  for (int row = 0; row < map.weights.height(); ++row) {
-    for (int column = 0; column < map.weights.width(); ++column) {
-      const double weight = map.weights.at(column, row);
-      const int x = map.left + column;
-      const int y = map.top + row;
-      if (weight == 0.0 || measured.field.is_hole(x, y)) continue;
-      // The slices' z are as the stage told them.
-      heights.push_back({measured.field.z_um.at(x, y) * measured.z_scale, weight / measured.z_scale});
+  for (const CurveSample& sample : input.context.samples) u_um.push_back(sample.u_um);
+  const metrology::HeightField& field = input.measured.field;
+  const double z_scale = input.measured.z_scale;  // the slices' z are as the stage told them
+  const int rows = map.weights.height();
+  const int bands = (rows + kBandRows - 1) / kBandRows;
+  std::vector<std::vector<double>> of_bands(static_cast<std::size_t>(bands));
+  const auto one_band = [&](int band) {
+    std::vector<double> weights(input.slices->bins() + 1, 0.0);  // the last: outside of the range
+    for (int row = band * kBandRows; row < std::min((band + 1) * kBandRows, rows); ++row) {
+      const double* weight = map.weights.row(row);
+      const double* z = field.z_um.row(map.top + row) + map.left;
+      for (int column = 0; column < map.weights.width(); ++column) {
+        if (weight[column] == 0.0 || std::isnan(z[column])) continue;
+        weights[input.slices->bin_of(z[column] * z_scale)] += weight[column];
+      }
     }
+    of_bands[static_cast<std::size_t>(band)] = std::move(weights);
+  };
+  if (input.pool != nullptr) {
+    input.pool->run(bands, std::ref(one_band));
+  } else {
+    for (int band = 0; band < bands; ++band) one_band(band);
   }
-  budget.entries.push_back(metrology::slice_z_entry(slice_sensitivities(z_um, context.curve_width_um, heights), u_um));
+  std::vector<double> weights(input.slices->bins(), 0.0);
+  for (const std::vector<double>& band : of_bands) {
+    for (std::size_t bin = 0; bin < weights.size(); ++bin) weights[bin] += band[bin] / z_scale;
+  }
+  budget.entries.push_back(metrology::slice_z_entry(input.slices->of(weights, input.pool), u_um));
 }
 
 void note_not_evaluated(const metrology::Budget& budget, EvaluatedMeasurement& made) {

@@ -95,10 +95,15 @@ std::string encode_height_tiff(const Plane<float>& height_m, const TiffTags& tag
                                                               close_nothing, file_size, nullptr, nullptr));
   if (!tiff) throw Error(ErrorCode::kInternal, "libtiff cannot write to memory");
   set_tags(tiff.get(), height_m, tags);
-  Plane<float> row(height_m.width(), 1);  // libtiff wants a row it may change
-  for (int y = 0; y < height_m.height(); ++y) {
-    std::copy_n(height_m.row(y), height_m.width(), row.row(0));
-    if (TIFFWriteScanline(tiff.get(), row.row(0), static_cast<std::uint32_t>(y), 0) != 1) {
+  // Strip by strip and not row by row: libtiff hands uncompressed strips on as they are, and does not change them.
+  std::uint32_t rows_a_strip = 0;
+  TIFFGetField(tiff.get(), TIFFTAG_ROWSPERSTRIP, &rows_a_strip);
+  const int step = static_cast<int>(rows_a_strip);
+  for (int y = 0; y < height_m.height(); y += step) {
+    const int rows = std::min(step, height_m.height() - y);
+    const auto bytes = static_cast<tmsize_t>(sizeof(float)) * rows * height_m.width();
+    auto* const strip = const_cast<float*>(height_m.row(y));
+    if (TIFFWriteEncodedStrip(tiff.get(), static_cast<std::uint32_t>(y / step), strip, bytes) != bytes) {
       throw Error(ErrorCode::kInternal, "libtiff refused row " + std::to_string(y) + " of the height map");
     }
   }

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <functional>
 #include <map>
 #include <numeric>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "core/base/error.hpp"
 #include "core/base/mutex.hpp"
+#include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/worker_pool.hpp"
+#include "daemon/export/picture_exporters.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/sha256.hpp"
 #include "daemon/result/evaluate.hpp"
@@ -40,6 +44,12 @@ std::vector<Task> tasks_of(std::span<const Exporter> exporters, const ExportInpu
     }
   }
   return tasks;
+}
+
+/// Whether its file shows what was measured, and not the surface alone.
+bool shows_evaluation(const Exporter& exporter) {
+  return exporter.need == ExportNeed::kEachSection || exporter.need == ExportNeed::kCuttingEdges ||
+         exporter.encode == report_file;
 }
 
 /// Indices of the tasks as they are begun.
@@ -122,31 +132,59 @@ class SharedDirectory {
   std::vector<WrittenBytes>* const kept_ FVD_PT_GUARDED_BY(mutex_);
 };
 
-/// Writes the files of the exporters, then the result.json that lists them, and behind them as pending those of
-/// `following`.
+/// The files of exporters, then the result.json that lists them, and behind them as pending those of the exporters that
+/// follow.
+class FilesInWork {
+ public:
+  FilesInWork(AtomicDirectory& directory, const ResultData& data, std::vector<WrittenBytes>* kept)
+      : directory_(directory),
+        data_(data),
+        input_(export_input(data)),
+        files_(listed(directory.files())),
+        shared_(directory, kept) {}
+
+  void make(std::span<const Exporter> exporters) {
+    const std::vector<Task> tasks = tasks_of(exporters, input_);
+    const std::vector<std::size_t> order = order_of(tasks);
+    const std::size_t before = files_.size();
+    files_.resize(before + tasks.size());
+    const auto write = [&](int turn) {
+      if (turn == static_cast<int>(order.size())) {
+        input_.summary.wait();  // result.json needs it
+        return;
+      }
+      const std::size_t index = order[static_cast<std::size_t>(turn)];
+      files_[before + index] = shared_.write(tasks[index]);
+    };
+    WorkerPool(kExportersAtOnce).run(static_cast<int>(order.size()) + 1, std::ref(write));
+  }
+
+  /// since: when somebody began to wait for the files.
+  Result finish(std::span<const Exporter> following, std::chrono::steady_clock::time_point since) {
+    for (const Task& task : tasks_of(following, input_)) {
+      files_.push_back({.name = task.name, .state = FileState::kPending});
+    }
+    Result result = evaluate(data_, input_.summary.get());
+    result.files = std::move(files_);
+    result.times.write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
+    directory_.add_file("result.json", result_json_text(result));
+    return result;
+  }
+
+ private:
+  AtomicDirectory& directory_;
+  const ResultData& data_;
+  ExportInput input_;
+  std::vector<ResultFile> files_;
+  SharedDirectory shared_;
+};
+
 Result write_files(AtomicDirectory& directory, const ResultData& data, const DividedExporters& exporters,
                    std::vector<WrittenBytes>* kept) {
   const auto start = std::chrono::steady_clock::now();
-  const ExportInput input = export_input(data);
-  const std::vector<Task> tasks = tasks_of(exporters.first, input);
-  const std::vector<std::size_t> order = order_of(tasks);
-  std::vector<ResultFile> files = listed(directory.files());
-  const std::size_t before = files.size();
-  files.resize(before + tasks.size());
-  SharedDirectory shared(directory, kept);
-  const auto write = [&](int turn) {
-    const std::size_t index = order[static_cast<std::size_t>(turn)];
-    files[before + index] = shared.write(tasks[index]);
-  };
-  WorkerPool(kExportersAtOnce).run(static_cast<int>(order.size()), std::ref(write));
-  for (const Task& task : tasks_of(exporters.following, input)) {
-    files.push_back({.name = task.name, .state = FileState::kPending});
-  }
-  Result result = evaluate(data, input.summary.get());
-  result.files = std::move(files);
-  result.times.write_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  directory.add_file("result.json", result_json_text(result));
-  return result;
+  FilesInWork work(directory, data, kept);
+  work.make(exporters.first);
+  return work.finish(exporters.following, start);
 }
 
 }  // namespace
@@ -169,6 +207,47 @@ Result write_result(const std::filesystem::path& final_dir, const ResultData& da
 bool FirstFiles::is_complete() const noexcept {
   return written.empty() && std::none_of(result.files.begin(), result.files.end(),
                                          [](const ResultFile& file) { return file.state == FileState::kPending; });
+}
+
+struct FirstFilesWriter::Impl {
+  Impl(AtomicDirectory& directory, const ResultData& data)
+      : exporters(divided(chosen_exporters(data.exports))), work(directory, data, &written) {
+    const auto late = std::stable_partition(exporters.first.begin(), exporters.first.end(),
+                                            [](const Exporter& exporter) { return !shows_evaluation(exporter); });
+    evaluated.assign(late, exporters.first.end());
+    exporters.first.erase(late, exporters.first.end());
+  }
+
+  DividedExporters exporters;
+  std::vector<Exporter> evaluated;  // of the first those that wait for the evaluation
+  std::vector<WrittenBytes> written;
+  FilesInWork work;
+  std::exception_ptr failure;
+  std::jthread thread;  // last: it uses everything above
+};
+
+FirstFilesWriter::FirstFilesWriter(AtomicDirectory& directory, const ResultData& data)
+    : impl_(std::make_unique<Impl>(directory, data)) {
+  impl_->thread = start_thread("fvd-files", [impl = impl_.get()](const std::stop_token&) {
+    try {
+      impl->work.make(impl->exporters.first);
+    } catch (...) {
+      impl->failure = std::current_exception();
+    }
+  });
+}
+
+FirstFilesWriter::~FirstFilesWriter() = default;
+
+FirstFiles FirstFilesWriter::finish() {
+  const auto start = std::chrono::steady_clock::now();
+  impl_->thread.join();
+  if (impl_->failure) std::rethrow_exception(impl_->failure);
+  if (!impl_->evaluated.empty()) impl_->work.make(impl_->evaluated);
+  FirstFiles files;
+  files.result = impl_->work.finish(impl_->exporters.following, start);
+  files.written = std::move(impl_->written);
+  return files;
 }
 
 FirstFiles write_first_files(AtomicDirectory& directory, const ResultData& data) {

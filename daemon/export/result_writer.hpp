@@ -3,6 +3,7 @@
 /// The result directory of a job: the files of the exporter table, and result.json.
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,5 +45,24 @@ struct FirstFiles {
 /// As write_result(), but of the files that data.exports names only those that a verdict waits for: see follows(). No
 /// digest is computed: of 5 million points they take as long as all else here.
 FirstFiles write_first_files(AtomicDirectory& directory, const ResultData& data);
+
+/// The same while the evaluation still runs, which these files do not show: encoding them and bringing them to the disk
+/// takes as long as it does. Destroyed without finish() it waits for what is under way.
+class FirstFilesWriter {
+ public:
+  /// Begins at once, on threads of its own. directory and data outlive it; nothing else may be added to the directory
+  /// before finish(), and of the data only `evaluation` and `times` may change.
+  FirstFilesWriter(AtomicDirectory& directory, const ResultData& data);
+  ~FirstFilesWriter();
+  FirstFilesWriter(const FirstFilesWriter&) = delete;
+  FirstFilesWriter& operator=(const FirstFilesWriter&) = delete;
+
+  /// Waits for the files and writes result.json. Once. Throws as write_result().
+  [[nodiscard]] FirstFiles finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace fvd

@@ -148,14 +148,18 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
     if (recorder) recorder->add(pixels, z_um);
     deps_.preview.offer(pixels, z_um);
   };
+  std::optional<FirstFilesWriter> files;
+  observer.on_maps = [&] {
+    if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
+    files.emplace(directory, acquired);  // while it is evaluated
+  };
   measure(recipe,
           {deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.pool, deps_.pages,
            static_cast<std::size_t>(deps_.config.compute.queue_slices), deps_.config.camera.time_offset},
           observer, acquired, stop);
   observer.on_phase("storing");
   remember_steps(acquired.steps);
-  if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
-  JobResult result = deps_.make_result(directory, acquired);
+  JobResult result = deps_.make_result(directory, acquired, files ? &*files : nullptr);
   if (!result.error) learn_width(recipe, acquired, deps_.store.curve_widths());
   return result;
 }

@@ -7,8 +7,8 @@
 
 namespace fvd {
 
-JobResult store_result(AtomicDirectory& directory, const ResultData& acquired) {
-  FirstFiles files = write_first_files(directory, acquired);
+JobResult store_result(AtomicDirectory& directory, const ResultData& acquired, FirstFilesWriter* begun) {
+  FirstFiles files = begun != nullptr ? begun->finish() : write_first_files(directory, acquired);
   directory.commit();
   JobResult result;
   result.directory = directory.final_dir().string();

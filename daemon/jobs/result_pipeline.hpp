@@ -23,11 +23,14 @@ struct JobResult {
   std::string message;
 };
 
-/// Gives a job's result for what it acquired, in a directory that may hold recorded slices already. Throws Error
-/// kStorageFull, kStorageWrite; nothing of the directory is left then.
-using ResultPipeline = std::function<JobResult(AtomicDirectory& directory, const ResultData& acquired)>;
+/// Gives a job's result for what it acquired, in a directory that may hold recorded slices already. begun: its files
+/// where they are on their way already, else null. Throws Error kStorageFull, kStorageWrite; nothing of the directory
+/// is left then.
+using ResultPipeline =
+    std::function<JobResult(AtomicDirectory& directory, const ResultData& acquired, FirstFilesWriter* begun)>;
 
 /// Judges, writes the files that a verdict waits for, commits the directory.
-[[nodiscard]] JobResult store_result(AtomicDirectory& directory, const ResultData& acquired);
+[[nodiscard]] JobResult store_result(AtomicDirectory& directory, const ResultData& acquired,
+                                     FirstFilesWriter* begun = nullptr);
 
 }  // namespace fvd

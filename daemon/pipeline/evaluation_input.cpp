@@ -138,6 +138,20 @@ EvaluationContext evaluation_context(const ResultData& data) {
   return context;
 }
 
+SurfaceRef surface_to_evaluate(const ResultData& data) {
+  Surface noted;  // no planes
+  noted.pitch_x_um = data.pixel_pitch_x_um.value_or(1.0);
+  noted.pitch_y_um = data.pixel_pitch_y_um.value_or(1.0);
+  Result::Focus focus;
+  focus.settings = data.focus;
+  note_window(focus, noted);
+  SurfaceRef surface(noted);
+  surface.height_m = data.map.height_m.view();
+  surface.sigma_m = data.map.sigma_m.view();
+  surface.mask = data.map.mask.view();
+  return surface;
+}
+
 void note_window(const Result::Focus& focus, Surface& surface) {
   surface.kernel = window_kernel(focus.settings);
   surface.lateral_period_um = lateral_period_px(focus.settings, {}) * std::max(surface.pitch_x_um, surface.pitch_y_um);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/surface/surface.hpp"
+#include "core/surface/surface_ref.hpp"
 #include "daemon/evaluation/evaluation_context.hpp"
 #include "daemon/result/result.hpp"
 #include "daemon/result/result_data.hpp"
@@ -13,6 +14,9 @@ namespace fvd {
 
 /// A copy of the measured heights, standard errors and reasons of holes, with pitch and window.
 [[nodiscard]] Surface evaluated_surface(const ResultData& data);
+
+/// The same without a copy: data outlives it, and its map does not change.
+[[nodiscard]] SurfaceRef surface_to_evaluate(const ResultData& data);
 
 /// The slices' z with their uncertainty: the scatter of the positions during the exposure and the encoder's resolution;
 /// none where neither is known. Rounded as the files of a result have them. With the constants, the temperature and the

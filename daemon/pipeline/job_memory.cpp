@@ -19,9 +19,8 @@ constexpr std::size_t kMapBytesPerPixel = 3 * sizeof(float) + sizeof(MaskReasons
 /// Heights, errors, reasons and image as files: their bytes are kept until the digests are made of them.
 constexpr std::size_t kEncodingBytesPerPixel = 2 * sizeof(float) + sizeof(MaskReasons) + sizeof(std::uint16_t);
 
-/// The measured surface as it was, with reasons, and in double precision, with its standard errors.
-constexpr std::size_t kMeasuredSurfaceBytesPerPixel =
-    2 * sizeof(float) + sizeof(MaskReasons) + sizeof(double) + sizeof(float);
+/// A surface that was read for its evaluation, with reasons; a job's is among its maps.
+constexpr std::size_t kStoredSurfaceBytesPerPixel = 2 * sizeof(float) + sizeof(MaskReasons);
 constexpr std::size_t kReferenceBytesPerPixel = sizeof(double) + sizeof(float);
 constexpr std::size_t kSurfaceBytesPerPixel = sizeof(double) + sizeof(float);
 /// While one measurement is made: regions, weights, sorted heights, draws of noise (41 bytes); with filters their
@@ -57,11 +56,11 @@ std::size_t weight_map_bytes(const EvaluationPlan& plan) {
 
 std::size_t evaluation_bytes(const EvaluationPlan& plan, std::size_t pixels) {
   if (plan.empty()) return 0;
-  std::size_t bytes = kMeasuredSurfaceBytesPerPixel + kSurfaceBytesPerPixel * plan.surfaces.size();
+  std::size_t bytes = kSurfaceBytesPerPixel * (1 + plan.surfaces.size());  // the measured one too
   std::size_t working = kMeasurementBytesPerPixel + weight_map_bytes(plan);
   if (has_step(plan, "filter")) working = std::max(working, kFilterBytesPerPixel);
   if (has_autocorrelation(plan)) working = std::max(working, kMeasurementBytesPerPixel + kAutocorrelationBytesPerPixel);
-  bytes += working + plan.masks.size();  // a byte a point each
+  bytes += working + plan.masks.size();                                            // a byte a point each
   if (has_step(plan, "flatness_reference")) bytes += 2 * kReferenceBytesPerPixel;  // as kept, and divided by alpha_z
   if (has_step(plan, "mask_reasons")) bytes += sizeof(MaskReasons) * (1 + plan.surfaces.size());
   return bytes * pixels;
@@ -110,8 +109,8 @@ void require_memory(const JobMemory& needed, int width, int height, std::size_t 
 
 void require_evaluation_memory(const Recipe& recipe, int width, int height, std::size_t budget_bytes) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  const std::size_t needed =
-      evaluation_bytes(recipe.evaluation, pixels) + pixels * (sizeof(MaskReasons) + kEncodingBytesPerPixel);
+  const std::size_t needed = evaluation_bytes(recipe.evaluation, pixels) +
+                             pixels * (kStoredSurfaceBytesPerPixel + sizeof(MaskReasons) + kEncodingBytesPerPixel);
   if (needed <= budget_bytes) return;
   std::ostringstream message;
   message << "the evaluation by recipe " << recipe.id << " needs " << mebibytes(needed) << " MiB for " << width << " x "

@@ -191,7 +191,8 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   books.settle(result);
   result.times.finish_ms = milliseconds_since(deps.clock, told);
   reconstruct_further(*stack, recipe, deps.pool, result);
-  evaluate_as_asked(recipe, deps.pool, result);
+  if (observer.on_maps) observer.on_maps();
+  evaluate_as_asked(recipe, deps.pool, result, deps.pages);
 }
 
 }  // namespace fvd

@@ -46,6 +46,8 @@ struct MeasurementObserver {
   std::function<void(const StepLog& steps)> on_earlier_scan = {};
   std::function<void()> on_acquired;  ///< all slices are taken
   FocusWorker::Tap tap;               ///< every slice, on the focus thread; may be empty
+  /// The result is there but for its evaluation: of it only `evaluation` and `times` change from now on. May be empty.
+  std::function<void()> on_maps = {};
 };
 
 /// Configures the camera, homes the stage if it has no reference, scans recipe.repeat times, and computes. Fills of the

@@ -127,10 +127,11 @@ void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultD
   data.warnings.push_back({"bins_unknown", text.str()});
 }
 
-void evaluate_as_asked(const Recipe& recipe, WorkerPool& pool, ResultData& data) {
+void evaluate_as_asked(const Recipe& recipe, WorkerPool& pool, ResultData& data, const KeptPagesPtr& pages) {
   if (recipe.evaluation.empty()) return;
   const auto start = std::chrono::steady_clock::now();
-  data.evaluation = evaluate_surface(evaluated_surface(data), recipe.evaluation, evaluation_context(data), &pool);
+  data.evaluation =
+      evaluate_surface(surface_to_evaluate(data), recipe.evaluation, evaluation_context(data), &pool, pages);
   data.times.evaluate_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -39,7 +39,8 @@ void reconstruct(const StreamingFocusStack& stack, const Recipe& recipe, ResultD
 /// The smoothed map where the recipe asks for it, and heights by each of recipe.extra_peaks, once.
 void reconstruct_further(const StreamingFocusStack& stack, const Recipe& recipe, WorkerPool& pool, ResultData& data);
 
-/// The measurements of the recipe's section evaluation, on data.map; nothing where it has none.
-void evaluate_as_asked(const Recipe& recipe, WorkerPool& pool, ResultData& data);
+/// The measurements of the recipe's section evaluation, on data.map; nothing where it has none. Writes data.evaluation
+/// and data.times.evaluate_ms alone. pages: as for evaluate_surface().
+void evaluate_as_asked(const Recipe& recipe, WorkerPool& pool, ResultData& data, const KeptPagesPtr& pages = nullptr);
 
 }  // namespace fvd

@@ -85,7 +85,8 @@ metrology::HeightField StudyJobs::field(const std::string& id, std::optional<dou
     plan.surfaces[name].steps.back().op = "filter";
     plan.surfaces[name].steps.back().nesting_um = *s_nesting_um;
   }
-  SurfaceChain chain(read.surface, plan, nullptr);
+  const EvaluationContext no_constants;  // as scanned: a study finds the constants
+  SurfaceChain chain(read.surface, plan, no_constants, nullptr);
   const SurfaceState& state = chain.state(name);
   if (!state.refused.empty()) refuse("job " + id + ": " + state.refused);
   return state.field.clone();

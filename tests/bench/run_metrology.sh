@@ -8,7 +8,7 @@ source "$here/../support/setup.sh"
 
 fvd_packages+=(admesh f3d gwyddion libgwyddion20-dev poppler-utils python3-numpy xauth xvfb)
 fvd_install_packages
-fvd_build fvdctl fvd-sim metrology_{areal,edge,filter,reference,step,study,uncertainty}_test surface_files_test system_test x3p_order_test
+fvd_build bench_verdict fvdctl fvd-sim metrology_{areal,edge,filter,reference,step,study,uncertainty}_test surface_files_test system_test x3p_order_test
 work=$(mktemp -d /tmp/fvd-metrology.XXXXXX)
 trap 'rm -rf "$work"' EXIT
 # Gwyddion's pkg-config file asks for GTK's headers, which its data fields do not need.

@@ -1,8 +1,9 @@
 #include "core/focus/fit/fit_reference.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
+#include <cstddef>
 
 #include <Eigen/Dense>
 
@@ -11,6 +12,14 @@
 namespace fvd {
 
 namespace {
+
+constexpr int kMostSamples = 5;
+
+// Of at most five samples, so that nothing is allocated.
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostSamples, 1>;
+using Design = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostSamples, 3>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostSamples, kMostSamples>;
+using Solution = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMostSamples>;
 
 /// What VertexBias says of a vertex at u between its neighbours.
 double bias_at(const VertexBias& bias, double u, double u_left, double u_right, double bend) {
@@ -24,10 +33,10 @@ double bias_at(const VertexBias& bias, double u, double u_left, double u_right, 
 }  // namespace
 
 std::optional<ReferencePeak> fit_reference(const ReferenceCurve& curve) {
-  std::vector<ReferenceSample> samples{curve.peak, curve.left, curve.right};
-  if (curve.left2) samples.push_back(*curve.left2);
-  if (curve.right2) samples.push_back(*curve.right2);
-  const auto count = static_cast<Eigen::Index>(samples.size());
+  std::array<ReferenceSample, kMostSamples> samples{curve.peak, curve.left, curve.right};
+  Eigen::Index count = 3;
+  if (curve.left2) samples[static_cast<std::size_t>(count++)] = *curve.left2;
+  if (curve.right2) samples[static_cast<std::size_t>(count++)] = *curve.right2;
   const double step_um =
       (std::abs(curve.left.z_um - curve.peak.z_um) + std::abs(curve.right.z_um - curve.peak.z_um)) / 2;
   const double floor = static_cast<double>(kFloorShare) * curve.minimum;
@@ -35,10 +44,10 @@ std::optional<ReferencePeak> fit_reference(const ReferenceCurve& curve) {
 
   // G = r^-1/2 = k0 + k1 u + k2 u^2 with the weights r^4, r the sample as a
   // share of the peak.
-  Eigen::MatrixXd design(count, 3);
-  Eigen::VectorXd root_weights(count);
-  Eigen::VectorXd values(count);
-  Eigen::VectorXd value_sigmas(count);
+  Design design(count, 3);
+  Column root_weights(count);
+  Column values(count);
+  Column value_sigmas(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const ReferenceSample& sample = samples[static_cast<std::size_t>(i)];
     const double u = (sample.z_um - curve.peak.z_um) / step_um;
@@ -51,9 +60,9 @@ std::optional<ReferencePeak> fit_reference(const ReferenceCurve& curve) {
   }
   // k = solution * G. The rows are scaled by the weights' roots, so that their
   // squares are least.
-  const Eigen::MatrixXd weighted = root_weights.asDiagonal() * design;
-  const Eigen::MatrixXd scale = root_weights.asDiagonal();
-  const Eigen::MatrixXd solution = weighted.colPivHouseholderQr().solve(scale);
+  const Design weighted = root_weights.asDiagonal() * design;
+  const Square scale = root_weights.asDiagonal();
+  const Solution solution = weighted.colPivHouseholderQr().solve(scale);
   const Eigen::Vector3d k = solution * values;
   if (!(k(2) > 0.0)) return std::nullopt;
   const double u = -k(1) / (2.0 * k(2));
@@ -61,8 +70,7 @@ std::optional<ReferencePeak> fit_reference(const ReferenceCurve& curve) {
   const double u_right = (curve.right.z_um - curve.peak.z_um) / step_um;
   if (u < std::min(u_left, u_right) || u > std::max(u_left, u_right)) return std::nullopt;
 
-  const Eigen::VectorXd by_value =
-      (-solution.row(1) / (2.0 * k(2)) + k(1) / (2.0 * k(2) * k(2)) * solution.row(2)).transpose();
+  const Column by_value = (-solution.row(1) / (2.0 * k(2)) + k(1) / (2.0 * k(2) * k(2)) * solution.row(2)).transpose();
   const double noise = by_value.cwiseProduct(value_sigmas).norm();
   const double bend = k(2) / (1.0 + 0.9 * k(2));
   return ReferencePeak{curve.peak.z_um + step_um * (u - bias_at(curve.bias, u, u_left, u_right, bend)),

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <optional>
 
@@ -15,7 +16,7 @@ namespace fvd {
 namespace {
 
 constexpr int kPartsOfAStep = 32;
-constexpr int kReach = 2;         ///< samples on each side of the peak that the fit takes
+constexpr int kReach = 2;         ///< as in the class
 constexpr double kMove = 1e-4;    ///< of a step: small against the curve, large against rounding
 constexpr double kNoise = 0.005;  ///< of full scale; the fit's weights hardly depend on it
 
@@ -51,14 +52,25 @@ std::optional<Window> window_about(std::span<const double> z_um, std::size_t cen
   return window;
 }
 
-/// Adds weight * derivative of the fit at this height.
-void add_derivatives(std::span<const double> z_um, double height_um, double weight, double width_um,
-                     std::vector<double>& sums) {
+}  // namespace
+
+SliceSensitivity::SliceSensitivity(std::span<const double> sample_z_um, double curve_width_um)
+    : z_um_(sample_z_um.begin(), sample_z_um.end()),
+      width_um_(curve_width_um),
+      lowest_um_(std::min(sample_z_um.front(), sample_z_um.back())),
+      derivatives_((sample_z_um.size() - 1) * kPartsOfAStep) {
+  assert(sample_z_um.size() >= 3 && curve_width_um > 0.0);
+  bin_um_ = std::abs(sample_z_um.back() - sample_z_um.front()) / static_cast<double>(bins());
+}
+
+SliceSensitivity::Derivatives SliceSensitivity::derivatives_at(double height_um) const {
+  Derivatives found;
+  found.known = true;
   const auto nearer = [height_um](double a, double b) { return std::abs(a - height_um) < std::abs(b - height_um); };
-  const auto centre = static_cast<std::size_t>(std::min_element(z_um.begin(), z_um.end(), nearer) - z_um.begin());
-  const auto window = window_about(z_um, centre, height_um, width_um);
-  if (!window) return;
-  const double move_um = kMove * std::abs(z_um[centre + 1] - z_um[centre]);
+  found.centre = static_cast<std::size_t>(std::min_element(z_um_.begin(), z_um_.end(), nearer) - z_um_.begin());
+  const auto window = window_about(z_um_, found.centre, height_um, width_um_);
+  if (!window) return found;
+  const double move_um = kMove * std::abs(z_um_[found.centre + 1] - z_um_[found.centre]);
   for (std::size_t i = 0; i < window->z_um.size(); ++i) {
     if (!window->exists[i]) continue;
     Window lower = *window;
@@ -67,33 +79,46 @@ void add_derivatives(std::span<const double> z_um, double height_um, double weig
     higher.z_um[i] += move_um;
     const auto below = lower.fitted_um();
     const auto above = higher.fitted_um();
-    if (below && above) sums[centre + i - kReach] += weight * (*above - *below) / (2.0 * move_um);
+    if (below && above) found.at[i] = (*above - *below) / (2.0 * move_um);
   }
+  return found;
 }
 
-}  // namespace
+std::vector<double> SliceSensitivity::of(std::span<const double> weights, WorkerPool* pool) {
+  assert(weights.size() == bins());
+  std::vector<std::size_t> wanted;
+  for (std::size_t bin = 0; bin < bins(); ++bin) {
+    if (weights[bin] != 0.0 && !derivatives_[bin].known) wanted.push_back(bin);
+  }
+  const auto make = [&](int index) {
+    const std::size_t bin = wanted[static_cast<std::size_t>(index)];
+    derivatives_[bin] = derivatives_at(lowest_um_ + (static_cast<double>(bin) + 0.5) * bin_um_);
+  };
+  if (pool != nullptr) {
+    pool->run(static_cast<int>(wanted.size()), std::ref(make));
+  } else {
+    for (std::size_t index = 0; index < wanted.size(); ++index) make(static_cast<int>(index));
+  }
+  std::vector<double> sums(z_um_.size(), 0.0);
+  for (std::size_t bin = 0; bin < bins(); ++bin) {
+    if (weights[bin] == 0.0) continue;
+    const Derivatives& here = derivatives_[bin];
+    for (std::size_t i = 0; i < here.at.size(); ++i) {
+      if (here.at[i] != 0.0) sums[here.centre + i - kReach] += weights[bin] * here.at[i];
+    }
+  }
+  return sums;
+}
 
 std::vector<double> slice_sensitivities(std::span<const double> sample_z_um, double curve_width_um,
                                         std::span<const WeightedHeight> heights) {
-  assert(sample_z_um.size() >= 3 && curve_width_um > 0.0);
-  const double lowest_um = std::min(sample_z_um.front(), sample_z_um.back());
-  const double range_um = std::abs(sample_z_um.back() - sample_z_um.front());
-  const std::size_t bins = (sample_z_um.size() - 1) * kPartsOfAStep;
-  const double bin_um = range_um / static_cast<double>(bins);
-  std::vector<double> weights(bins, 0.0);
+  SliceSensitivity sensitivity(sample_z_um, curve_width_um);
+  std::vector<double> weights(sensitivity.bins(), 0.0);
   for (const WeightedHeight& point : heights) {
-    const double place = (point.height_um - lowest_um) / bin_um;
-    if (!(place >= 0.0 && place < static_cast<double>(bins))) continue;
-    const auto bin = static_cast<std::size_t>(place);  // of the samples' mean step, which uneven ones make no worse
-    weights[bin] += point.weight;
+    const std::size_t bin = sensitivity.bin_of(point.height_um);
+    if (bin < weights.size()) weights[bin] += point.weight;
   }
-  std::vector<double> sums(sample_z_um.size(), 0.0);
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    if (weights[bin] == 0.0) continue;
-    const double height_um = lowest_um + (static_cast<double>(bin) + 0.5) * bin_um;
-    add_derivatives(sample_z_um, height_um, weights[bin], curve_width_um, sums);
-  }
-  return sums;
+  return sensitivity.of(weights, nullptr);
 }
 
 }  // namespace fvd

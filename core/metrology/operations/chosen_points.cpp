@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <limits>
+
+#include "core/metrology/region_bounds.hpp"
 
 namespace fvd::metrology {
 namespace {
@@ -23,12 +26,15 @@ Block block_of(const HeightField& field, const Region& region) {
     const auto is_chosen = [z, inside](int column) {
       return z[column] == z[column] && (inside == nullptr || inside[column] != 0);
     };
+    const int from = inside == nullptr ? 0 : region_bounds::first_inside(inside, field.width());
+    if (from == field.width()) continue;
+    const int to = inside == nullptr ? field.width() : region_bounds::end_inside(inside, field.width());
     std::size_t points = 0;
-    for (int column = 0; column < field.width(); ++column) points += is_chosen(column) ? 1U : 0U;
+    for (int column = from; column < to; ++column) points += is_chosen(column) ? 1U : 0U;
     if (points == 0) continue;
-    int first = 0;
+    int first = from;
     while (!is_chosen(first)) ++first;
-    int end = field.width();
+    int end = to;
     while (!is_chosen(end - 1)) --end;
     block.first_column = std::min(block.first_column, first);
     block.end_column = std::max(block.end_column, end);

@@ -19,10 +19,12 @@ OperationReport mask_sigma(HeightField& field, double max_sigma_um, Plane<MaskRe
   OperationReport report;
   report.values = {{"max_sigma_um", max_sigma_um, std::nullopt}};
   for (int row = 0; row < field.height(); ++row) {
+    const double* z = field.z_um.row(row);
+    const float* sigma_um = field.sigma_um.row(row);
     for (int column = 0; column < field.width(); ++column) {
-      if (field.is_hole(column, row)) continue;
+      if (z[column] != z[column]) continue;
       ++report.points_used;
-      if (static_cast<double>(field.sigma_um.at(column, row)) <= max_sigma_um) continue;
+      if (static_cast<double>(sigma_um[column]) <= max_sigma_um) continue;
       make_hole(field, column, row, reasons, mask_reason::kMaxSigma);
       ++report.points_removed;
     }

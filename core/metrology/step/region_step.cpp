@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "core/base/error.hpp"
+#include "core/metrology/region_bounds.hpp"
 #include "core/metrology/step/joint_levels.hpp"
 #include "core/metrology/step/step_parts.hpp"
 
@@ -25,71 +26,77 @@ struct GroupedRegions {
   std::vector<StepRegion> regions;
 };
 
-/// A rectangle of points, last included.
-struct Bounds {
-  int left = INT32_MAX;
-  int top = INT32_MAX;
-  int right = -1;
-  int bottom = -1;
-};
-
-Bounds bounds_of(const HeightField& field, std::span<const NamedRegion> regions) {
-  Bounds bounds;
+RegionBounds bounds_of_all(const HeightField& field, std::span<const NamedRegion> regions) {
+  RegionBounds bounds{field.width(), field.height(), 0, 0};
   for (const NamedRegion& region : regions) {
     assert(region.region != nullptr);
     const Region& mask = *region.region;
     assert(mask.empty() || (mask.width() == field.width() && mask.height() == field.height()));
-    for (int row = 0; row < field.height(); ++row) {
-      for (int column = 0; column < field.width(); ++column) {
-        if (!is_inside(mask, column, row)) continue;
-        bounds.left = std::min(bounds.left, column);
-        bounds.right = std::max(bounds.right, column);
-        bounds.top = std::min(bounds.top, row);
-        bounds.bottom = std::max(bounds.bottom, row);
-      }
-    }
+    const RegionBounds of_one = bounds_of(mask, field.width(), field.height());
+    if (of_one.empty()) continue;
+    bounds.left = std::min(bounds.left, of_one.left);
+    bounds.right = std::max(bounds.right, of_one.right);
+    bounds.top = std::min(bounds.top, of_one.top);
+    bounds.bottom = std::max(bounds.bottom, of_one.bottom);
   }
-  return bounds;
+  return bounds.empty() ? RegionBounds{} : bounds;
+}
+
+/// Numbers the points of one region in the groups; the number of a region that has one of them already, else 0.
+std::uint8_t number_points(const HeightField& field, const Region& region, std::uint8_t number, PointGroups& groups,
+                           StepRegion& counted) {
+  double sum = 0.0;
+  const int width = groups.group.width();
+  for (int y = 0; y < groups.group.height(); ++y) {
+    const std::uint8_t* inside = region.empty() ? nullptr : region.row(groups.top + y) + groups.left;
+    const int first = inside == nullptr ? 0 : region_bounds::first_inside(inside, width);
+    if (first == width) continue;
+    const double* z = field.z_um.row(groups.top + y) + groups.left;
+    std::uint8_t* group = groups.group.row(y);
+    // A row is summed by itself, so that the sum of millions of points keeps its digits.
+    double of_row = 0.0;
+    int asked = 0;
+    int points = 0;
+    for (int x = first; x < width; ++x) {
+      if (inside != nullptr && inside[x] == 0) continue;
+      if (group[x] != 0) return group[x];
+      group[x] = number;
+      ++asked;
+      const bool is_valid = z[x] == z[x];
+      points += is_valid ? 1 : 0;
+      of_row += is_valid ? z[x] : 0.0;
+    }
+    counted.asked += asked;
+    counted.points += points;
+    sum += of_row;
+  }
+  if (counted.points > 0) counted.mean_z_um = sum / counted.points;
+  return 0;
 }
 
 /// Numbers the regions' points; a refusal where one has none, two share some, or one has too few valid ones.
 StepOutcome<GroupedRegions> grouped(const HeightField& field, std::span<const NamedRegion> regions,
                                     double min_valid_fraction) {
-  Bounds bounds = bounds_of(field, regions);
-  if (bounds.right < 0) bounds = {0, 0, -1, -1};
+  const RegionBounds bounds = bounds_of_all(field, regions);
   GroupedRegions result;
   PointGroups& groups = result.groups;
   groups.left = bounds.left;
   groups.top = bounds.top;
   groups.count = static_cast<int>(regions.size());
-  groups.group = Plane<std::uint8_t>(bounds.right - bounds.left + 1, bounds.bottom - bounds.top + 1);
+  groups.group = Plane<std::uint8_t>(bounds.width(), bounds.height());
   for (std::size_t i = 0; i < regions.size(); ++i) {
     StepRegion counted{regions[i].name, 0, 0, 0.0};
-    double sum = 0.0;
-    for (int y = 0; y < groups.group.height(); ++y) {
-      for (int x = 0; x < groups.group.width(); ++x) {
-        const int column = groups.left + x;
-        const int row = groups.top + y;
-        if (!is_inside(*regions[i].region, column, row)) continue;
-        std::uint8_t& group = groups.group.at(x, y);
-        if (group != 0) {
-          return StepRefusal{
-              StepRefusalCode::kOverlap,
-              "the regions " + regions[group - std::size_t{1}].name + " and " + regions[i].name + " share points",
-              std::nullopt};
-        }
-        group = static_cast<std::uint8_t>(i + 1);
-        ++counted.asked;
-        if (field.is_hole(column, row)) continue;
-        ++counted.points;
-        sum += field.z_um.at(column, row);
-      }
+    const auto number = static_cast<std::uint8_t>(i + 1);
+    if (const std::uint8_t other = number_points(field, *regions[i].region, number, groups, counted); other != 0) {
+      return StepRefusal{
+          StepRefusalCode::kOverlap,
+          "the regions " + regions[other - std::size_t{1}].name + " and " + regions[i].name + " share points",
+          std::nullopt};
     }
     if (counted.asked == 0) {
       return StepRefusal{StepRefusalCode::kOutside, "region " + counted.name + " has no point of the surface",
                          std::nullopt};
     }
-    if (counted.points > 0) counted.mean_z_um = sum / counted.points;
     result.regions.push_back(std::move(counted));
   }
   if (auto refusal = refused_for_holes(result.regions, min_valid_fraction)) return std::move(*refusal);
@@ -106,7 +113,7 @@ constexpr int kUpper = 2;
 }  // namespace
 
 StepOutcome<RegionStep> step_between(const HeightField& field, const NamedRegion& lower, const NamedRegion& upper,
-                                     StepSlope slope, double min_valid_fraction) {
+                                     StepSlope slope, double min_valid_fraction, WorkerPool* pool) {
   const std::array both{lower, upper};
   StepOutcome<GroupedRegions> found = grouped(field, both, min_valid_fraction);
   if (auto* refusal = std::get_if<StepRefusal>(&found)) return std::move(*refusal);
@@ -130,7 +137,7 @@ StepOutcome<RegionStep> step_between(const HeightField& field, const NamedRegion
   step.lower = points.regions[0];
   step.upper = points.regions[1];
   step.value = perpendicular_step(field, points.groups, *levels, kUpper, kLower, axes, 1.0);
-  step.value.noise = linear_noise(field, step.value.weights);
+  step.value.noise = linear_noise(field, step.value.weights, pool);
   step.correlation_factor = levels->correlation_factor(kUpper, kLower);
   if (step.correlation_factor > kSuggestAbove) {
     step.suggestion = "the slope of " + whose + " is so uncertain over the distance of the regions that the step's " +
@@ -141,8 +148,8 @@ StepOutcome<RegionStep> step_between(const HeightField& field, const NamedRegion
   return step;
 }
 
-StepOutcome<Levels> levels(const HeightField& field, const std::vector<NamedRegion>& regions,
-                           double min_valid_fraction) {
+StepOutcome<Levels> levels(const HeightField& field, const std::vector<NamedRegion>& regions, double min_valid_fraction,
+                           WorkerPool* pool) {
   if (regions.size() < 2 || regions.size() > kMostRegions) {
     throw Error(ErrorCode::kBadInput,
                 "levels are measured between 2 to 200 regions, not " + std::to_string(regions.size()));
@@ -162,7 +169,7 @@ StepOutcome<Levels> levels(const HeightField& field, const std::vector<NamedRegi
       difference.lower = lower - 1;
       difference.upper = upper - 1;
       difference.value = perpendicular_step(field, points.groups, *fitted, upper, lower, SlopeAxes::kBoth, 1.0);
-      difference.value.noise = linear_noise(field, difference.value.weights);
+      difference.value.noise = linear_noise(field, difference.value.weights, pool);
       difference.correlation_factor = fitted->correlation_factor(upper, lower);
       result.differences.push_back(std::move(difference));
     }

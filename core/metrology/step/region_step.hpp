@@ -8,6 +8,7 @@
 
 #include "core/metrology/step/refusal.hpp"
 #include "core/metrology/step/step_height.hpp"
+#include "core/runtime/worker_pool.hpp"
 
 namespace fvd::metrology {
 
@@ -35,10 +36,11 @@ struct RegionStep {
   std::string suggestion;  ///< not empty where the factor is above 3
 };
 
-/// step_between. Own definition. Regions must not share points. context: pure, as the next.
+/// step_between. Own definition. Regions must not share points. With a pool the same values. context: pure, as the
+/// next.
 [[nodiscard]] StepOutcome<RegionStep> step_between(const HeightField& field, const NamedRegion& lower,
                                                    const NamedRegion& upper, StepSlope slope,
-                                                   double min_valid_fraction = 0.7);
+                                                   double min_valid_fraction = 0.7, WorkerPool* pool = nullptr);
 
 struct LevelDifference {
   int lower = 0;  ///< index into the regions as given
@@ -56,6 +58,6 @@ struct Levels {
 
 /// Stairs: two to 200 regions in order, one common plane, every difference. Throws Error(kBadInput) for another number.
 [[nodiscard]] StepOutcome<Levels> levels(const HeightField& field, const std::vector<NamedRegion>& regions,
-                                         double min_valid_fraction = 0.7);
+                                         double min_valid_fraction = 0.7, WorkerPool* pool = nullptr);
 
 }  // namespace fvd::metrology

@@ -115,6 +115,82 @@ TEST(ResultWriter, WritesFirstWhatAVerdictWaitsForAndListsTheRestAsPending) {
   }
 }
 
+/// Name and bytes of each file in a folder.
+std::map<std::string, std::string> bytes_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    files[entry.path().filename().string()] = test::read_text(entry.path());
+  }
+  return files;
+}
+
+TEST(FirstFilesWriter, WritesTheSameWhileTheEvaluationIsMade) {
+  const ScratchDir scratch;
+  ResultData data = test::sample_result();
+  Evaluation evaluation;
+  evaluation.verdict = Verdict::kFail;
+  AtomicDirectory begun(scratch / "begun");
+  FirstFilesWriter writer(begun, data);
+  data.evaluation = evaluation;
+  data.times.evaluate_ms = 7.0;
+  FirstFiles files = writer.finish();
+  begun.commit();
+  AtomicDirectory after(scratch / "after");
+  const FirstFiles expected = write_first_files(after, data);
+  after.commit();
+
+  EXPECT_EQ(files.result.verdict, Verdict::kFail);
+  ASSERT_EQ(files.result.files.size(), expected.result.files.size());
+  for (std::size_t i = 0; i < files.result.files.size(); ++i) {
+    EXPECT_EQ(files.result.files[i].name, expected.result.files[i].name);
+    EXPECT_EQ(files.result.files[i].state, expected.result.files[i].state);
+    EXPECT_EQ(files.result.files[i].size_bytes, expected.result.files[i].size_bytes);
+  }
+  EXPECT_EQ(files.written.size(), expected.written.size());
+  auto found = bytes_in(scratch / "begun");
+  auto wanted = bytes_in(scratch / "after");
+  EXPECT_NE(found.at("result.json").find("\"evaluate_ms\": 7"), std::string::npos);
+  found.erase("result.json");  // which tells how long it took
+  wanted.erase("result.json");
+  EXPECT_EQ(found, wanted);
+}
+
+TEST(FirstFilesWriter, MakesWhatShowsTheEvaluationAfterIt) {
+  const ScratchDir scratch;
+  ResultData data = test::sample_result();
+  data.exports = std::vector<std::string>{"report.pdf"};  // which has no heights to follow from
+  AtomicDirectory directory(scratch / "job");
+  FirstFilesWriter writer(directory, data);
+  data.evaluation.emplace();
+  const FirstFiles files = writer.finish();
+
+  ASSERT_EQ(files.result.files.size(), 1U);
+  EXPECT_EQ(files.result.files[0].name, "report.pdf");
+  EXPECT_EQ(files.result.files[0].state, FileState::kWritten);
+}
+
+TEST(FirstFilesWriter, TellsAFailureWhenItIsAskedForTheFiles) {
+  const ScratchDir scratch;
+  const ResultData data = test::sample_result();
+  AtomicDirectory directory(scratch / "job");
+  directory.add_file("height.tiff", "already here");
+
+  FirstFilesWriter writer(directory, data);
+
+  test::expect_error(ErrorCode::kStorageWrite, {"height.tiff"}, [&] { (void)writer.finish(); });
+}
+
+TEST(FirstFilesWriter, LeavesNothingWhereTheJobEndsBeforeItIsAsked) {
+  const ScratchDir scratch;
+  const ResultData data = test::sample_result();
+  {
+    AtomicDirectory directory(scratch / "job");
+    const FirstFilesWriter writer(directory, data);
+  }
+
+  EXPECT_THAT(scratch.entries(), testing::IsEmpty());
+}
+
 TEST(ResultWriter, LeavesNothingWhenTheTargetExists) {
   const ScratchDir scratch;
   std::filesystem::create_directory(scratch / "job");

@@ -159,12 +159,12 @@ TEST_F(AnEngine, AnswersACommandThatWaitedForADeviceThatIsMissing) {
 
 TEST_F(AnEngine, FailsAJobWhoseResultFindsTheDiskFullAndTakesTheNext) {
   std::atomic<int> results = 0;
-  open([&results](AtomicDirectory& directory, const ResultData& acquired) -> JobResult {
+  open([&results](AtomicDirectory& directory, const ResultData& acquired, FirstFilesWriter* begun) -> JobResult {
     if (results++ == 0) {
-      directory.add_file("height.tiff", "half of it");
+      (void)begun->finish();  // but for the directory's last step
       throw Error(ErrorCode::kStorageFull, "no space is left on the device");
     }
-    return store_result(directory, acquired);
+    return store_result(directory, acquired, begun);
   });
   ASSERT_TRUE(await_state(ScanState::kInitialized));
   const std::string first = jobs().start({1, "a", "part"}).job.job_id;
@@ -185,8 +185,8 @@ TEST_F(AnEngine, FailsAJobWhoseResultFindsTheDiskFullAndTakesTheNext) {
 class AnEngineThatCannotStoreAnEnd : public test::AnEngine {
  protected:
   void end_a_job() {
-    open([this](AtomicDirectory& directory, const ResultData& acquired) {
-      JobResult result = store_result(directory, acquired);
+    open([this](AtomicDirectory& directory, const ResultData& acquired, FirstFilesWriter* begun) {
+      JobResult result = store_result(directory, acquired, begun);
       if (!broken_) broken_.emplace(ENOSPC);
       return result;
     });

@@ -70,8 +70,8 @@ TEST_F(AStoreWithPendingFiles, LetsAJobGoOnThatIsStoppedWhileItWaitsForThem) {
 
 TEST_F(AnEngine, TellsAVerdictBeforeTheOtherFilesOfTheResult) {
   std::string first_text;
-  open([&first_text](AtomicDirectory& directory, const ResultData& acquired) {
-    JobResult result = store_result(directory, acquired);
+  open([&first_text](AtomicDirectory& directory, const ResultData& acquired, FirstFilesWriter* begun) {
+    JobResult result = store_result(directory, acquired, begun);
     first_text = result.text;
     return result;
   });
