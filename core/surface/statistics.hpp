@@ -52,7 +52,7 @@ struct HeightSummary {
 };
 
 /// height_m, sigma_m: metres, NaN exactly where mask != 0. mask: 0 valid, else mask_reason bits. All have the same
-/// shape [height][width]. Allocates 4 bytes per pixel for the time of the call. context: pure.
+/// shape [height][width]. Allocates a few MiB, whatever the size. context: pure.
 [[nodiscard]] HeightSummary summarize_heights(const Plane<float>& height_m, const Plane<float>& sigma_m,
                                               const Plane<MaskReasons>& mask);
 

@@ -13,7 +13,7 @@
 namespace fvd {
 
 /// summary: of data.map. The result lacks its files and how long they took. Heights of the further maps are counted
-/// here: 4 bytes per pixel for that time.
+/// here.
 [[nodiscard]] Result evaluate(const ResultData& data, const HeightSummary& summary);
 
 /// The worst of the map's values and of the evaluation; absent where neither is judged.
