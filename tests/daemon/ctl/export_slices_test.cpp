@@ -53,6 +53,7 @@ std::string pgm(int slice, PixelFormat format) {
 struct KeptJob {
   explicit KeptJob(PixelFormat format = PixelFormat::kMono12, ResultData data = test::sample_result()) {
     data.exposure_us = 750.0;
+    data.exports = {{"height.tiff"}};
     write_result(scratch / "job", data);
     fs::create_directory(scratch / "job" / "slices");
     for (int i = 0; i < 3; ++i) test::write_text(slice(i), pgm(i, format));
