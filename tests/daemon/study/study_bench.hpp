@@ -124,22 +124,24 @@ class AStudyDesk : public testing::Test {
     }
     return names;
   }
+  [[nodiscard]] StudySources sources(std::size_t memory_bytes = std::size_t{1} << 30U) {
+    return StudySources{[this](const std::string& id) {
+                          const auto found = jobs_.find(id);
+                          if (found == jobs_.end()) throw Error(ErrorCode::kUnknownJob, "no job " + id);
+                          return found->second;
+                        },
+                        [this](const std::string& id) {
+                          const auto found = recipes_.find(id);
+                          if (found == recipes_.end()) throw Error(ErrorCode::kUnknownRecipe, "no recipe " + id);
+                          return parse_recipe(found->second, id);
+                        },
+                        memory_bytes, calibrations_->folder()};
+  }
   void open_desk(bool simulated = true, std::size_t memory_bytes = std::size_t{1} << 30U) {
     desk_.reset();
     calibrations_.emplace(scratch_ / "calibration");
     studies_.emplace(scratch_ / "studies");
-    const StudySources sources{[this](const std::string& id) {
-                                 const auto found = jobs_.find(id);
-                                 if (found == jobs_.end()) throw Error(ErrorCode::kUnknownJob, "no job " + id);
-                                 return found->second;
-                               },
-                               [this](const std::string& id) {
-                                 const auto found = recipes_.find(id);
-                                 if (found == recipes_.end()) throw Error(ErrorCode::kUnknownRecipe, "no recipe " + id);
-                                 return parse_recipe(found->second, id);
-                               },
-                               memory_bytes};
-    desk_.emplace(sources, *studies_, *calibrations_, simulated);
+    desk_.emplace(sources(memory_bytes), *studies_, *calibrations_, simulated);
   }
   void SetUp() override { open_desk(); }
 
