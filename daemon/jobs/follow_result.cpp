@@ -181,6 +181,7 @@ class Follower {
   void make_files() {
     const auto is_pending = [](const ResultFile& file) { return file.state == FileState::kPending; };
     if (std::none_of(result_.files.begin(), result_.files.end(), is_pending)) return;
+    if (stop_.stop_requested()) return;  // before whole maps are read
     std::optional<FollowingExports> exports;
     try {
       exports.emplace(task_.folder, result_);

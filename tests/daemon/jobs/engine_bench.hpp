@@ -197,11 +197,15 @@ class AnEngine : public testing::Test {
   [[nodiscard]] bool await_answer(const DeviceTask& task) {
     return await([&task](const MachineStatus&) { return task.outcome().has_value(); });
   }
-  /// The state that came after the first kExecuting; nothing if none did.
+  /// The state that came after the first kExecuting; nothing if none does. A snapshot may show it before it is told.
   [[nodiscard]] std::optional<ScanState> state_behind_executing() {
-    const std::lock_guard lock(seen_mutex_);
-    const auto executing = std::find(seen_.begin(), seen_.end(), ScanState::kExecuting);
-    return seen_.end() - executing > 1 ? std::optional(*(executing + 1)) : std::nullopt;
+    std::unique_lock lock(seen_mutex_);
+    const auto behind = [this]() -> std::optional<ScanState> {
+      const auto executing = std::find(seen_.begin(), seen_.end(), ScanState::kExecuting);
+      return seen_.end() - executing > 1 ? std::optional(*(executing + 1)) : std::nullopt;
+    };
+    seen_changed_.wait_for(lock, std::chrono::seconds(10), [&behind] { return behind().has_value(); });
+    return behind();
   }
   void unplug_camera_for_good() {
     const std::lock_guard lock(bench_.mutex);

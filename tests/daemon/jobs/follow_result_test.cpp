@@ -122,6 +122,17 @@ TEST(FollowResult, LeavesTheRestPendingWhenItIsStoppedAndIsFinishedLater) {
   EXPECT_TRUE(fs::exists(scratch / "job/preview.png"));
 }
 
+TEST(FollowResult, ReadsNoMapWhenItIsStopped) {
+  const ScratchDir scratch;
+  std::stop_source stop;
+  stop.request_stop();
+  const ResultToFollow task = first_files(scratch / "job", test::sample_result());
+  fs::remove(scratch / "job/height.tiff");
+  const FollowedResult stopped = follow_result(task, stop.get_token());
+  EXPECT_TRUE(stopped.pending);
+  EXPECT_EQ(states_of(stopped.text)["preview.png"], FileState::kPending);
+}
+
 TEST(FollowResult, TellsWhyFilesCannotBeMadeAndWaitsForNobody) {
   const ScratchDir scratch;
   const ResultToFollow task = first_files(scratch / "job", test::sample_result());
