@@ -38,7 +38,7 @@ struct EvaluateParams {
   }
 };
 
-void describe_evaluated(Fields& fields) {
+void describe_new_record(Fields& fields) {
   const ResultFields result(fields);
   result.text("id", "of the new record, for result.get: the job's with -e1, -e2, ...");
   result.text("job_id", "whose surface was evaluated");
@@ -69,11 +69,11 @@ void add_result_methods(MethodTable& methods, const Services& services) {
                            .run = with<GetParams>([services](const Call&, const GetParams& params) {
                              return result_of(services, params.job.key(params.client), params.format);
                            })};
-  methods["result.evaluate"] = Method{
+  methods["result.evaluate"] = {
       .about = {.summary =
                     "Evaluates a stored result's surface by another recipe: a new record; the job's result stays",
                 .params = described<EvaluateParams>(),
-                .result = describe_evaluated,
+                .result = describe_new_record,
                 .errors = {kBusy, kUnknownJob, kUnknownRecipe, kBadRecipe, kBadInput, kSurfaceFile, kMemoryBudget,
                            kTimeout, kShuttingDown, kStorageFull, kStorageWrite, kDatabase},
                 .may_wait = true,
