@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/pipeline/measurement.hpp"
+#include "daemon/pipeline/reconstruct.hpp"
 #include "sim/fakes/fakes.hpp"
 
 namespace fvd {
