@@ -233,7 +233,7 @@ TEST_F(AnEngine, AnswersACommandThatWasPendingAtShutdown) {
 
 TEST_F(AnEngine, AbortsTheJobThatRunsAtShutdown) {
   std::promise<void> storing;
-  open([&](AtomicDirectory&, const ResultData&) -> JobResult {
+  open([&](AtomicDirectory&, const ResultData&, FirstFilesWriter*) -> JobResult {
     storing.set_value();
     const auto deadline = std::chrono::steady_clock::now() + seconds(10);
     while (machine().snapshot()->state != ScanState::kHalted && std::chrono::steady_clock::now() < deadline) {

@@ -233,7 +233,7 @@ TEST_F(AnObjective, KeepsTheAutofocusToItsSoftLimits) {
 TEST_F(AnObjective, StandsInTheResultBesideTheTemperature) {
   config_.temperature.file = folder_.path() / "absent";
   std::vector<ResultData> results;
-  open([&results](AtomicDirectory&, const ResultData& data) {
+  open([&results](AtomicDirectory&, const ResultData& data, FirstFilesWriter*) {
     results.emplace_back();
     results.back().objective = data.objective;
     results.back().temperature = data.temperature;

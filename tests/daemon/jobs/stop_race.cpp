@@ -75,7 +75,7 @@ class Race {
                                     {.camera = [this] { return std::make_unique<RaceCamera>(clock_); },
                                      .axis = [this] { return std::make_unique<sim::FakeAxis>(clock_); }},
                                     // The race is over when the job measures: no files, so that rounds are many.
-                                    [](AtomicDirectory&, const ResultData&) -> JobResult {
+                                    [](AtomicDirectory&, const ResultData&, FirstFilesWriter*) -> JobResult {
                                       throw Error(ErrorCode::kBadInput, "this job makes no result");
                                     }});
     engine_->start();
