@@ -83,10 +83,10 @@ TEST_F(AStepStudy, DoesNotAverageWhatAllScansShare) {
     ResultData data = job_data("c" + std::to_string(i));
     data.evaluation = test::evaluation_of(50.0, 0.05);
     data.evaluation->measurements["step"].values["height_um"].budget = {
-        {.source = "noise", .type = "A", .u = 0.02},
-        {.source = "slice_z", .type = "B", .u = 0.02},
-        {.source = "flatness", .type = "B", .u = std::sqrt(0.0017)},
-        {.source = "alpha_z", .type = "B", .u = 9.0}};
+        {.source = "noise", .type = "A", .u = 0.02, .dof = {}, .points_as_one = {}},
+        {.source = "slice_z", .type = "B", .u = 0.02, .dof = {}, .points_as_one = {}},
+        {.source = "flatness", .type = "B", .u = std::sqrt(0.0017), .dof = {}, .points_as_one = {}},
+        {.source = "alpha_z", .type = "B", .u = 9.0, .dof = {}, .points_as_one = {}}};
     know(data);
     request.steps.push_back(step_of(data.job_id, 50.0, 0.0));
   }
