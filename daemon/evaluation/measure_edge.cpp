@@ -298,6 +298,12 @@ EvaluatedMeasurement measure_edge(const MeasurementInput& input) {
   }
   if (!field.has_sigma()) made.not_evaluated.emplace_back("noise");
   made.not_evaluated.emplace_back("slice_z");
+  if (!edge.chipping.notches.empty()) {
+    made.not_evaluated.emplace_back("window_transfer");
+    made.warnings.push_back({"notch_depth_through_window",
+                             "the focus window averages notches, which read too shallow by a part that no U contains: "
+                             "keep a limit for their depth well above what is read"});
+  }
   made.details = details_json(edge).dump();
   made.cross_section = edge_section(edge, input.planned);
   if (made.cross_section) add_edge_fit(input, edge, *made.cross_section);

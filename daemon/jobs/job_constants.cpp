@@ -9,6 +9,14 @@ namespace fvd {
 void note_constants(const Recipe& recipe, const CalibrationBook& calibrations, const RepeatabilityOf& repeatability,
                     ResultData& result) {
   result.calibration = calibrations.current(result.objective.empty() ? recipe.objective : result.objective);
+  if (!result.calibration && !calibrations.versions().empty()) {
+    const std::string objective = result.objective.empty() ? recipe.objective : result.objective;
+    result.warnings.push_back(
+        {"calibration_of_others",
+         "there are constants, but none " +
+             (objective.empty() ? std::string("without an objective's name") : "of the objective " + objective) +
+             ": heights are as the axis gave them"});
+  }
   // As a whole: a version without some of its constants would be another one by the same name.
   if (!result.simulated && result.calibration && has_simulated(*result.calibration)) {
     result.warnings.push_back({"calibration_simulated", "constants of the calibration " + result.calibration->id +

@@ -23,7 +23,10 @@ std::string measurement_text(const EvaluatedMeasurement& measurement) {
   if (main.uncertainty != "-") text += " ± " + main.uncertainty.substr(0, main.uncertainty.find("  (k"));
   if (main.value != "-") text += unit;
   if (!main.limits.empty()) text += ", limits " + main.limits + unit;
-  if (measurement.verdict) text += std::string(", ") + verdict_word(*measurement.verdict);
+  if (main.verdict) text += std::string(", ") + verdict_word(*main.verdict);
+  if (measurement.verdict && measurement.verdict != main.verdict) {
+    text += std::string("; all values ") + verdict_word(*measurement.verdict);
+  }
   const std::string reason = measurement.reason.empty() ? main.reason : with_micro_sign(measurement.reason);
   return reason.empty() ? text : text + ": " + reason;
 }

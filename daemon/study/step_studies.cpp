@@ -107,6 +107,9 @@ void note_evaluated(const Request& request, StudyJobs& jobs, StudyDraft& draft) 
   for (const std::string& id : ids) jobs.require_calibration(id);
 }
 
+/// Of the reduced chi squared: residuals of ten times their standard uncertainty.
+constexpr double kMostUnexplained = 100.0;
+
 double coverage_of(const std::vector<KnownStep>& steps) {
   const bool stated = std::any_of(steps.begin(), steps.end(), [](const KnownStep& step) {
     return step.u_reference_um > 0.0 || step.u_measured_um > 0.0;
@@ -170,7 +173,11 @@ StudyDraft step_study(const StepRequest& request, Purpose purpose, StudyJobs& jo
   }
   warn_of_steps(request, z, k, purpose, steps.size(), draft);
   plot_residuals(steps, z, draft);
-  if (purpose == Purpose::kCalibrate) {
+  if (purpose == Purpose::kCalibrate && z.reduced_chi_squared > kMostUnexplained) {
+    draft.warn("nothing_proposed",
+               "residuals so far beyond the stated uncertainties are a mistake in the input, or a "
+               "stage to be mended: no constants are proposed");
+  } else if (purpose == Purpose::kCalibrate) {
     Calibration proposal;
     proposal.objective = draft.study.objective;
     ZConstants constants;
