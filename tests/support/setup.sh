@@ -2,7 +2,6 @@
 #
 # FVD_BUILD_DIR   build folder (default: build)
 # FVD_SANITIZE    sanitizers for every target, e.g. address,undefined or thread
-# FVD_CXX         compiler in place of the system's
 # FVD_FLAGS       flags of the compiler in place of those of the build type RelWithDebInfo (assertions stay on)
 
 FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -60,8 +59,7 @@ fvd_cmake() {
     launcher=ccache
   fi
   local flags=()
-  [ -z "${FVD_CXX:-}" ] || flags=(-DCMAKE_CXX_COMPILER="$FVD_CXX")
-  [ -z "${FVD_FLAGS:-}" ] || flags+=(-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$FVD_FLAGS")
+  [ -z "${FVD_FLAGS:-}" ] || flags=(-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$FVD_FLAGS")
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
     -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" "${flags[@]}"
 }
