@@ -14,8 +14,8 @@ namespace fvd {
 
 namespace {
 
-/// The least share of a processor that there is.
-constexpr int kNicest = 19;
+/// A tenth of a busy processor: less, and files stay pending as long as anything else computes.
+constexpr int kNice = 10;
 
 constexpr const char* kThread = "fvd-files";
 
@@ -90,7 +90,7 @@ void FollowingFiles::finish() {
 
 void FollowingFiles::run(const std::stop_token& stop) {
   // Of this thread alone, as Linux takes it. Where it is not allowed, files are made all the same.
-  (void)::setpriority(PRIO_PROCESS, 0, kNicest);
+  (void)::setpriority(PRIO_PROCESS, 0, kNice);
   while (true) {
     ResultToFollow next;
     {

@@ -74,7 +74,7 @@ class AMicroscope : public testing::Test {
 
   /// Waits until all files of the job's result are made: no verdict waits for the pictures.
   void await_files(std::int64_t seq) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);  // they give way to all else
     while (std::chrono::steady_clock::now() < deadline) {
       const auto files = ask("result.get", {{"seq", seq}, {"format", "complete"}})["result"]["files"];
       const auto is_pending = [](const nlohmann::json& file) { return file.value("state", "") == "pending"; };

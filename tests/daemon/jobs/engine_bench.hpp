@@ -177,7 +177,7 @@ class AnEngine : public testing::Test {
   template <typename Predicate>
   [[nodiscard]] bool await(Predicate predicate) {
     std::unique_lock lock(seen_mutex_);
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!predicate(*machine().snapshot())) {
       // A change between the look and the wait is told under seen_mutex_; the first states may come before the
       // listener.
