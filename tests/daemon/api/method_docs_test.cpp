@@ -42,16 +42,44 @@ class EveryMethod : public testing::Test {
   Dispatcher dispatcher_{all_methods(service_.services()), service_.services()};
 };
 
+/// A call, and where its answer is a task's what the task tells.
+struct Case {
+  const char* method;
+  json params;
+  std::string task_result = "";
+};
+
+std::vector<Case> study_cases() {
+  const std::string study = R"({"study":{},"directory":"/x","report":"/x/report.pdf"})";
+  const json jobs{{"jobs", {"a", "b"}}};
+  const json step{{"job", "a"}, {"measurement", "step"}, {"reference_um", 50}, {"u_reference_um", 0.02}};
+  const json at_z{{"job", "a"}, {"measurement", "step"}, {"z_um", 5}};
+  const json type1{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"reference", 50}, {"tolerance", 1}};
+  const json texture{{"jobs", {"a", "b"}}, {"measurement", "texture"}};
+  const json rr{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"parts", 2}, {"operators", 1}, {"trials", 2}};
+  return {Case{"verify.noise", jobs, study},
+          Case{"calibrate.noise", jobs, study},
+          Case{"verify.flatness", jobs, study},
+          Case{"calibrate.flatness", jobs, study},
+          Case{"verify.step", {{"steps", {step}}}, study},
+          Case{"calibrate.z", {{"steps", {step}}}, study},
+          Case{"verify.linearity", {{"steps", {at_z, at_z}}}, study},
+          Case{"calibrate.lateral", {{"job", "a"}, {"grid_pitch_um", 40}}, study},
+          Case{"verify.resolution", {{"job", "a"}, {"artefact", "star"}}, study},
+          Case{"verify.sphere", {{"job", "a"}, {"radius_um", 500}}, study},
+          Case{"verify.hysteresis", {{"up", "a"}, {"down", "b"}}, study},
+          Case{"verify.texture", texture, study},
+          Case{"calibrate.texture", texture, study},
+          Case{"gauge.type1", type1, study},
+          Case{"gauge.rr", rr, study},
+          Case{"gauge.capability", {{"type1", "study-0001"}, {"rr", "study-0002"}}, study}};
+}
+
 TEST_F(EveryMethod, AnswersAsItIsDescribed) {
   ASSERT_FALSE(result_of("job.start", {{"seq", 1}, {"part_id", "p"}}).is_null());
   const json nothing = json::object();
   const json one{{"seq", 1}};
   const std::string grey = R"({"min":0,"max":9})";
-  struct Case {
-    const char* method;
-    json params;
-    std::string task_result = "";
-  };
   std::vector<Case> cases{
       {"system.ping", {{"t", {1, "x"}}}},
       {"system.ping", nothing},
@@ -93,25 +121,7 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"study.get", {{"id", "study-0001"}}},
       {"calibration.get", nothing},
       {"calibrate.accept", {{"study", "study-0001"}, {"person", "anna"}, {"renew_by", "2027-11-29"}}}};
-  const std::string study = R"({"study":{},"directory":"/x","report":"/x/report.pdf"})";
-  const json jobs{{"jobs", {"a", "b"}}};
-  const json step{{"job", "a"}, {"measurement", "step"}, {"reference_um", 50}, {"u_reference_um", 0.02}};
-  const json at_z{{"job", "a"}, {"measurement", "step"}, {"z_um", 5}};
-  const json type1{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"reference", 50}, {"tolerance", 1}};
-  const json texture{{"jobs", {"a", "b"}}, {"measurement", "texture"}};
-  const json rr{{"jobs", {"a", "b"}}, {"measurement", "step"}, {"parts", 2}, {"operators", 1}, {"trials", 2}};
-  for (const Case& call :
-       {Case{"verify.noise", jobs, study}, Case{"calibrate.noise", jobs, study}, Case{"verify.flatness", jobs, study},
-        Case{"calibrate.flatness", jobs, study}, Case{"verify.step", {{"steps", {step}}}, study},
-        Case{"calibrate.z", {{"steps", {step}}}, study}, Case{"verify.linearity", {{"steps", {at_z, at_z}}}, study},
-        Case{"calibrate.lateral", {{"job", "a"}, {"grid_pitch_um", 40}}, study},
-        Case{"verify.resolution", {{"job", "a"}, {"artefact", "star"}}, study},
-        Case{"verify.sphere", {{"job", "a"}, {"radius_um", 500}}, study},
-        Case{"verify.hysteresis", {{"up", "a"}, {"down", "b"}}, study}, Case{"verify.texture", texture, study},
-        Case{"calibrate.texture", texture, study}, Case{"gauge.type1", type1, study}, Case{"gauge.rr", rr, study},
-        Case{"gauge.capability", {{"type1", "study-0001"}, {"rr", "study-0002"}}, study}}) {
-    cases.push_back(call);
-  }
+  for (const Case& call : study_cases()) cases.push_back(call);
   std::set<std::string> seen{"result.ack"};
   const auto check = [&](const Case& call) {
     seen.insert(call.method);

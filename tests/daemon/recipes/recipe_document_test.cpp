@@ -285,9 +285,9 @@ TEST(Recipe, DownwardsIsForScansInSteps) {
   const std::string scan = R"({"start_um": 0, "step_um": 1, "slices": 5, "direction": "down")";
   EXPECT_TRUE(parse_recipe(with_scan(scan + "}"), "r").downwards);
   EXPECT_FALSE(parse_recipe(kSmallest, "r").downwards) << "up unless it is said";
-  FVD_EXPECT_ERROR_SAYING(
-      kBadRecipe, (void)parse_recipe(with_scan(scan + R"(, "mode": "continuous", "speed_um_per_s": 5})"), "r"),
-      AllOf(HasSubstr("/acquire/scan/direction: down is for scan.mode step"), HasSubstr("lag")));
+  FVD_EXPECT_ERROR_SAYING(kBadRecipe,
+                          (void)parse_recipe(with_scan(scan + R"(, "mode": "continuous", "speed_um_per_s": 5})"), "r"),
+                          AllOf(HasSubstr("/acquire/scan/direction: down is for scan.mode step"), HasSubstr("lag")));
   FVD_EXPECT_ERROR_SAYING(
       kBadRecipe,
       (void)parse_recipe(with_scan(R"({"start_um": 0, "step_um": 1, "slices": 5, "direction": "left"})"), "r"),
