@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/support/setup.sh"
 fvd_packages+=(ccache mbpoll python3-pymodbus python3-serial python3-serial-asyncio aravis-tools)  # speed; peers that are not fvd's
 fvd_install_packages
 fvd_build
-fvd_build bench_accuracy bench_camera bench_focus bench_renderer bench_stage bench_structure  # not run here; they must not fall behind
+fvd_build bench_accuracy bench_camera bench_focus bench_renderer bench_stage bench_structure bench_verdict  # not run here; they must not fall behind
 # What leaks of libraries last for the life of the process; printing them would change what programs say.
 export LSAN_OPTIONS="suppressions=$FVD_ROOT/tests/lsan.supp print_suppressions=0 ${LSAN_OPTIONS:-}"
 # Only the thread sanitizer reads this: which libraries' locks it cannot see, and that a test's forked child starts threads.
