@@ -14,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
-
 /// Thrown out of the parser's callback; never leaves this file.
 struct Refused {
   std::string message;
@@ -75,7 +73,7 @@ std::optional<json> parse_strict_json(std::string_view text, Problems& problems,
   return std::nullopt;
 }
 
-std::string read_text_file(const std::filesystem::path& file) {
+std::string read_text_file(const std::filesystem::path& file, std::uintmax_t most_bytes) {
   const auto fail = [&file](const std::string& reason) {
     return Error(ErrorCode::kBadInput, "cannot read " + file.string() + ": " + reason);
   };
@@ -84,8 +82,8 @@ std::string read_text_file(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) throw fail(std::strerror(errno));
-  if (const auto size = std::filesystem::file_size(file, error); !error && size > kMaxFileBytes) {
-    throw fail("it is larger than 1 MiB");
+  if (const auto size = std::filesystem::file_size(file, error); !error && size > most_bytes) {
+    throw fail("it is larger than " + std::to_string(most_bytes >> 20U) + " MiB");
   }
   std::ostringstream text;
   text << in.rdbuf();

@@ -4,8 +4,6 @@
 #include <cassert>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -66,24 +64,13 @@ std::vector<Calibration> versions_in(const std::string& text, Problems& problems
   return std::move(document.versions);
 }
 
-/// Of any length: unlike a configuration it grows for as long as the instrument lives.
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in.is_open() || in.bad() || !fs::is_regular_file(file)) {
-    throw Error(ErrorCode::kBadInput, "cannot read " + file.string() + ": is it a file?");
-  }
-  return text.str();
-}
-
 std::vector<Calibration> read_versions(const fs::path& file) {
   std::error_code error;
   const bool is_there = fs::exists(file, error);
   if (error) throw Error(ErrorCode::kBadInput, "cannot look at " + file.string() + ": " + error.message());
   if (!is_there) return {};
   Problems problems;
-  std::vector<Calibration> versions = versions_in(text_of(file), problems);
+  std::vector<Calibration> versions = versions_in(read_text_file(file, kAnyLength), problems);
   if (!problems.empty()) {
     throw Error(ErrorCode::kBadInput, file.string() + ": " + problems.front().pointer + ": " +
                                           problems.front().message + "; put back the file of the last backup");

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "daemon/export/xml_text.hpp"
 #include "daemon/report/time_text.hpp"
 
 namespace fvd {
@@ -13,25 +14,6 @@ namespace {
 
 constexpr const char* kNamespace = "http://www.openmicroscopy.org/Schemas/OME/2016-06";
 
-/// Characters that XML 1.0 does not allow become blanks.
-std::string escaped(std::string_view text) {
-  std::string xml;
-  for (const char c : text) {
-    if (c == '<') {
-      xml += "&lt;";
-    } else if (c == '>') {
-      xml += "&gt;";
-    } else if (c == '&') {
-      xml += "&amp;";
-    } else if (c == '"') {
-      xml += "&quot;";
-    } else {
-      xml += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return xml;
-}
-
 std::string number_text(double number) {
   char text[32];
   return {std::begin(text), std::to_chars(std::begin(text), std::end(text), number).ptr};
@@ -39,7 +21,7 @@ std::string number_text(double number) {
 
 /// ' Name="text"'.
 std::string attribute(std::string_view name, std::string_view text) {
-  return " " + std::string(name) + "=\"" + escaped(text) + "\"";
+  return " " + std::string(name) + "=\"" + xml_attribute_text(text) + "\"";
 }
 std::string attribute(std::string_view name, int number) { return attribute(name, std::to_string(number)); }
 
@@ -78,7 +60,7 @@ std::string ome_xml(const OmeStack& stack) {
                     attribute("Creator", stack.software) + ">\n<Image" + attribute("ID", "Image:0") +
                     attribute("Name", stack.name) + ">\n<AcquisitionDate>" + iso_time_text(stack.acquired) +
                     "</AcquisitionDate>\n";
-  if (!stack.description.empty()) xml += "<Description>" + escaped(stack.description) + "</Description>\n";
+  if (!stack.description.empty()) xml += "<Description>" + xml_text(stack.description) + "</Description>\n";
   xml += pixels_head(stack) + "\n<Channel" + attribute("ID", "Channel:0:0") + attribute("SamplesPerPixel", 1) +
          "/>\n<TiffData" + attribute("IFD", 0) + attribute("FirstZ", 0) + attribute("FirstC", 0) +
          attribute("FirstT", 0) + attribute("PlaneCount", stack.slices()) + "/>\n";

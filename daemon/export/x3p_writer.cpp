@@ -7,6 +7,7 @@
 #include "daemon/export/length_text.hpp"
 #include "daemon/export/stored_zip.hpp"
 #include "daemon/export/surface_writers.hpp"
+#include "daemon/export/xml_text.hpp"
 
 namespace fvd {
 
@@ -43,24 +44,8 @@ void write_valid(const PlaneView<const float>& height_m, const ByteSink& sink) {
   bytes.flush();
 }
 
-std::string escaped(std::string_view text) {
-  std::string xml;
-  for (const char c : text) {
-    if (c == '<') {
-      xml += "&lt;";
-    } else if (c == '>') {
-      xml += "&gt;";
-    } else if (c == '&') {
-      xml += "&amp;";
-    } else {
-      xml += c;
-    }
-  }
-  return xml;
-}
-
 std::string element(const std::string& name, std::string_view text) {
-  return "<" + name + ">" + escaped(text) + "</" + name + ">";
+  return "<" + name + ">" + xml_text(text) + "</" + name + ">";
 }
 
 /// One JSON object in ASCII: what is not known is left out.

@@ -47,9 +47,10 @@ std::optional<double> number_in(std::string_view text) {
 double age_s(int file, const struct stat& status, std::chrono::system_clock::time_point now) {
   struct statfs system {};
   if (::fstatfs(file, &system) == 0 && system.f_type == SYSFS_MAGIC) return 0.0;
-  const double changed_s =
-      static_cast<double>(status.st_mtim.tv_sec) + 1e-9 * static_cast<double>(status.st_mtim.tv_nsec);
-  return std::chrono::duration<double>(now.time_since_epoch()).count() - changed_s;
+  // The difference of whole numbers: seconds since 1970 in a double are 0.2 us apart.
+  const std::chrono::nanoseconds changed =
+      std::chrono::seconds(status.st_mtim.tv_sec) + std::chrono::nanoseconds(status.st_mtim.tv_nsec);
+  return std::chrono::duration<double>(now.time_since_epoch() - changed).count();
 }
 
 std::string problem_of_age(double age_s, int max_age_s) {

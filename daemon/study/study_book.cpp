@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
+#include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/durable_file.hpp"
@@ -27,17 +26,6 @@ std::string id_of(int number) {
   char text[32];
   std::snprintf(text, sizeof text, "study-%04d", number);
   return text;
-}
-
-/// Of any length: a study of thousands of jobs is longer than a configuration may be.
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in.is_open() || in.bad() || !fs::is_regular_file(file)) {
-    throw Error(ErrorCode::kBadInput, "cannot read " + file.string() + ": is it a file?");
-  }
-  return text.str();
 }
 
 /// Of a folder's name; nothing for what is none of ours.
@@ -64,7 +52,7 @@ StudyBook::StudyBook(fs::path folder) : folder_(std::move(folder)) {
     last_ = std::max(last_, *number);
     const fs::path file = entry.path() / "study.json";
     try {
-      Study study = read_study_json(text_of(file), file.string());
+      Study study = read_study_json(read_text_file(file, kAnyLength), file.string());
       if (study.id != id_of(*number)) throw Error(ErrorCode::kBadInput, file.string() + ": /id: is " + study.id);
       studies_.emplace(*number, std::move(study));
     } catch (const Error& error) {
