@@ -5,7 +5,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../support/setup.sh"
 
 seconds=${1:-20}
-fvd_packages+=(ccache clang-14)
+fvd_packages+=(ccache clang-14 libclang-rt-14-dev)
 fvd_install_packages
 FVD_BUILD=${FVD_FUZZ_BUILD_DIR:-$FVD_ROOT/build-fuzz}
 mkdir -p "$FVD_BUILD"

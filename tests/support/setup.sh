@@ -2,7 +2,9 @@
 #
 # FVD_BUILD_DIR   build folder (default: build)
 # FVD_SANITIZE    sanitizers for every target, e.g. address,undefined or thread
+# FVD_CXX         compiler in place of the system's
 # FVD_FLAGS       flags of the compiler in place of those of the build type RelWithDebInfo (assertions stay on)
+# FVD_TEST_FLAGS  flags of what lies below tests, after those
 
 FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
@@ -59,7 +61,9 @@ fvd_cmake() {
     launcher=ccache
   fi
   local flags=()
-  [ -z "${FVD_FLAGS:-}" ] || flags=(-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$FVD_FLAGS")
+  [ -z "${FVD_CXX:-}" ] || flags=(-DCMAKE_CXX_COMPILER="$FVD_CXX")
+  [ -z "${FVD_FLAGS:-}" ] || flags+=(-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$FVD_FLAGS")
+  [ -z "${FVD_TEST_FLAGS:-}" ] || flags+=(-DFVD_TEST_FLAGS="$FVD_TEST_FLAGS")
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
     -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" "${flags[@]}"
 }
