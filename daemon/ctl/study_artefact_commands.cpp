@@ -58,7 +58,7 @@ int run_texture(const Desk& desk, const std::string& method) {
 
 void add_texture_command(CLI::App& parent, const Desk& desk, const std::string& method, const char* help) {
   CLI::App* sub = add_asked(parent, desk, "texture", help, [desk, method] { return run_texture(desk, method); });
-  add_job_options(*sub, desk.a, false);
+  add_job_options(*sub, desk.a);
   add_value_options(*sub, desk.a);
 }
 
@@ -67,21 +67,21 @@ void add_texture_command(CLI::App& parent, const Desk& desk, const std::string& 
 void add_verifying_artefacts(CLI::App& verify, const Desk& desk) {
   CLI::App* sub = add_asked(verify, desk, "resolution", "lateral resolution W_R and D_LIM, from a star or an edge",
                             [desk] { return run_resolution(desk); });
-  add_job_options(*sub, desk.a, false);
+  add_job_options(*sub, desk.a);
   sub->add_option("--artefact", desk.a.artefact, "star or edge")->required()->check(CLI::IsMember({"star", "edge"}));
   sub->add_option("--height-um", desk.a.height_um, "true height of a star's raised sectors");
   sub->add_option("--pairs", desk.a.pairs, "of a star's sectors; default: found");
   add_region_options(*sub, desk.a);
   sub = add_asked(verify, desk, "sphere", "probing errors P_F and P_S and the slope limit, from a sphere's cap",
                   [desk] { return run_sphere(desk); });
-  add_job_options(*sub, desk.a, false);
+  add_job_options(*sub, desk.a);
   sub->add_option("--radius-um", desk.a.radius_um, "of the sphere, by the certificate")->required();
   sub->add_option("--u-radius-um", desk.a.u_radius_um, "standard uncertainty of that radius");
   sub->add_flag("--bowl", desk.a.bowl, "the surface is the inner side");
   add_region_options(*sub, desk.a);
   sub = add_asked(verify, desk, "hysteresis", "what a scan downwards (second job) sees otherwise than one upwards",
                   [desk] { return run_hysteresis(desk); });
-  add_job_options(*sub, desk.a, false);
+  add_job_options(*sub, desk.a);
   add_region_options(*sub, desk.a);
   add_texture_command(verify, desk, "verify.texture", "reproducibility of a texture value, of one surface placed anew");
 }
@@ -90,7 +90,7 @@ void add_calibrating_artefacts(CLI::App& calibrate, const Desk& desk) {
   CLI::App* sub = add_asked(calibrate, desk, "lateral",
                             "propose pitch and shear, from a cross grid; a second job at another height adds the drift",
                             [desk] { return run_lateral(desk); });
-  add_job_options(*sub, desk.a, false);
+  add_job_options(*sub, desk.a);
   sub->add_option("--grid-pitch-um", desk.a.grid_pitch_um, "of the grid's lines, by the certificate")->required();
   sub->add_option("--u-grid-relative", desk.a.u_grid_relative, "standard uncertainty of that pitch, over the pitch");
   add_region_options(*sub, desk.a);

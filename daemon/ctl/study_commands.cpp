@@ -133,9 +133,10 @@ int run_accept(const Desk& desk) {
 void add_map_command(CLI::App& parent, const Desk& desk, const char* name, const std::string& method,
                      const char* help) {
   CLI::App* sub = add_asked(parent, desk, name, help, [desk, method] { return run_maps(desk, method); });
-  add_job_options(*sub, desk.a, true);
+  const bool flatness = std::string(name) == "flatness";
+  add_job_options(*sub, desk.a, ScanCounts{flatness ? 1 : 2, 20});
   add_region_options(*sub, desk.a);
-  if (std::string(name) == "flatness") {
+  if (flatness) {
     sub->add_option("--s-nesting-um", desk.a.s_nesting_um, "S-filter that each map is given to first");
   }
 }
@@ -154,7 +155,7 @@ void add_gauge_commands(CLI::App& app, const Desk& desk) {
   CLI::App* gauge = app.add_subcommand("gauge", "studies of the gauge");
   gauge->require_subcommand(1);
   CLI::App* sub = add_asked(*gauge, desk, "type1", "bias, Cg, Cgk of one part", [desk] { return run_type1(desk); });
-  add_job_options(*sub, desk.a, true);
+  add_job_options(*sub, desk.a, ScanCounts{2, 1000});
   add_value_options(*sub, desk.a);
   sub->add_option("--reference", desk.a.reference, "true value of the part")->required();
   sub->add_option("--tolerance", desk.a.tolerance, "upper less lower limit")->required();
@@ -163,7 +164,7 @@ void add_gauge_commands(CLI::App& app, const Desk& desk) {
   sub = add_asked(*gauge, desk, "rr",
                   "parts x operators x trials; without job ids it asks for each part and MOVES the stage",
                   [desk] { return run_rr(desk); });
-  add_job_options(*sub, desk.a, false);
+  add_job_options(*sub, desk.a);
   add_value_options(*sub, desk.a);
   sub->add_option("--parts", desk.a.parts, "how many")->required()->check(CLI::Range(2, 1000));
   sub->add_option("--operators", desk.a.operators, "how many")->required()->check(CLI::Range(1, 100));

@@ -88,14 +88,16 @@ CLI::App* add_asked(CLI::App& parent, const Desk& desk, const char* name, const 
   return sub;
 }
 
-void add_job_options(CLI::App& sub, StudyArguments& a, bool scans) {
+void add_job_options(CLI::App& sub, StudyArguments& a, std::optional<ScanCounts> scans) {
   sub.add_option("jobs", a.jobs, "job ids");
   sub.add_option("--folder", a.folders, "folders of results in place of jobs: without a daemon, nothing is kept")
       ->check(CLI::ExistingDirectory);
   add_calibration_option(sub, a);
   sub.add_option("--jobs-file", a.jobs_file, "file with a job id a line")->check(CLI::ExistingFile);
-  if (scans)
-    sub.add_option("--scans", a.scans, "start so many jobs first; MOVES the stage")->check(CLI::Range(1, 1000));
+  if (scans) {
+    sub.add_option("--scans", a.scans, "start so many jobs first; MOVES the stage")
+        ->check(CLI::Range(scans->least, scans->most));
+  }
   sub.add_option("--recipe", a.scan_recipe, "recipe of the jobs that are started; default: the prepared one");
   sub.add_option("--part", a.part, "part id of the jobs that are started");
 }

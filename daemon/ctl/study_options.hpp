@@ -42,8 +42,13 @@ void put_region(const StudyArguments& a, Json& params);
 CLI::App* add(CLI::App& parent, const Desk& desk, const char* name, const char* help, std::function<int()> run);
 CLI::App* add_asked(CLI::App& parent, const Desk& desk, const char* name, const char* help, std::function<int()> run);
 
-/// scans: jobs may be started for the study.
-void add_job_options(CLI::App& sub, StudyArguments& a, bool scans);
+/// How many jobs a study may start for itself, least and most: what it would refuse is refused before anything moves.
+struct ScanCounts {
+  int least = 1;
+  int most = 1000;
+};
+/// scans: nothing where the study starts no jobs.
+void add_job_options(CLI::App& sub, StudyArguments& a, std::optional<ScanCounts> scans = std::nullopt);
 void add_value_options(CLI::App& sub, StudyArguments& a);
 void add_region_options(CLI::App& sub, StudyArguments& a);
 /// For commands whose jobs stand in --step.

@@ -94,7 +94,8 @@ void add_objective_methods(MethodTable& methods, const Services& services) {
       .about = {.summary = "Says which objective is on the microscope; jobs of recipes that name another are refused",
                 .params = described<ConfirmParams>(),
                 .result = describe_confirmed,
-                .errors = {kBadInput, kBusy, kShuttingDown, kStorageFull, kDatabase}},
+                .errors = {kBadInput, kBusy, kShuttingDown, kStorageFull, kDatabase},
+                .needs_id = true},
       .run =
           with<ConfirmParams>([&objectives = services.objectives](const Call&, const ConfirmParams& params) -> Answer {
             return confirmation_json(objectives.confirm(params.name, checked_person(params)));

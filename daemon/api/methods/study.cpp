@@ -241,7 +241,8 @@ void add_study_methods(MethodTable& methods, const Services& services) {
                            "nothing",
                 .params = described<AcceptRequest>(),
                 .result = describe_accepted,
-                .errors = {kStudyRefused, kBadInput, kObjectiveMismatch, kSurfaceFile, kStorageFull, kStorageWrite}},
+                .errors = {kStudyRefused, kBadInput, kObjectiveMismatch, kSurfaceFile, kStorageFull, kStorageWrite},
+                .needs_id = true},
       .run = with<AcceptRequest>([&studies = services.studies](const Call&, const AcceptRequest& request) {
         return accept(studies, request);
       })};

@@ -48,6 +48,17 @@ TEST_F(ADispatcher, RefusesWhatIsNoConfirmation) {
   EXPECT_FALSE(service_.objectives.confirmed.has_value());
 }
 
+TEST_F(ADispatcher, TakesNoConfirmationWhoseAnswerNobodyReads) {
+  (void)dispatcher_.handle(
+      R"({"jsonrpc": "2.0", "method": "objective.confirm", "params": {"name": "50x", "person": "Anna"}})", caller_);
+  (void)dispatcher_.handle(R"({"jsonrpc": "2.0", "method": "calibrate.accept",
+                               "params": {"study": "study-0001", "person": "anna", "renew_by": "2027-11-29"}})",
+                           caller_);
+
+  EXPECT_FALSE(service_.objectives.confirmed.has_value());
+  EXPECT_FALSE(service_.studies.accepted.has_value());
+}
+
 TEST_F(ADispatcher, TakesATemperatureWithAJob) {
   result_of("job.start", {{"seq", 1}, {"part_id", "p"}, {"temperature_c", 20.1}});
   result_of("job.start", {{"seq", 2}, {"part_id", "p"}});

@@ -108,6 +108,11 @@ TEST_F(AStudyOfFolders, RefusesWithTheExitCodeOfItsReason) {
   EXPECT_EQ(code({"verify", "resolution", "--folder", flat, "--artefact", "stair"}), kExitUsage);
   EXPECT_EQ(code({"verify", "step", "--offline", "--step", flat + "=50,0.01"}), kExitBadData) << "it measured nothing";
   EXPECT_EQ(code({"gauge", "type1", "--folder", flat, flat, "--reference", "1", "--tolerance", "1"}), kExitBadData);
+  // Of as many scans as a study would refuse, none is begun.
+  EXPECT_EQ(code({"verify", "noise", "--part", "p", "--scans", "1"}), kExitUsage);
+  EXPECT_EQ(code({"verify", "noise", "--part", "p", "--scans", "21"}), kExitUsage);
+  EXPECT_EQ(code({"gauge", "type1", "--part", "p", "--scans", "1", "--reference", "1", "--tolerance", "1"}),
+            kExitUsage);
 }
 
 }  // namespace
