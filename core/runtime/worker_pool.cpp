@@ -4,7 +4,6 @@
 #include <exception>
 #include <stop_token>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "core/base/mutex.hpp"
@@ -12,47 +11,72 @@
 
 namespace fvd {
 
+namespace {
+
+/// One call of run(), in the frame of its caller. Everything is guarded by the pool's mutex.
+struct Loop {
+  const std::function<void(int)>& body;
+  int count = 0;
+  Loop* older = nullptr;  ///< the loop that was begun before it
+  int next = 0;
+  int running = 0;
+  std::exception_ptr failure = nullptr;
+
+  [[nodiscard]] bool has_more() const { return next < count; }
+  [[nodiscard]] bool is_done() const { return !has_more() && running == 0; }
+};
+
+}  // namespace
+
 struct WorkerPool::Impl {
   Mutex mutex;
   Condition work_arrived;
   Condition work_done;
-  const std::function<void(int)>* body FVD_GUARDED_BY(mutex) = nullptr;
-  int next FVD_GUARDED_BY(mutex) = 0;
-  int count FVD_GUARDED_BY(mutex) = 0;
-  int running FVD_GUARDED_BY(mutex) = 0;
-  std::exception_ptr failure FVD_GUARDED_BY(mutex);
-  std::vector<std::jthread> threads;  // last: they use everything above
+  Loop* newest FVD_GUARDED_BY(mutex) = nullptr;  // of those that are not done, linked by age
+  std::vector<std::jthread> threads;             // last: they use everything above
 
-  /// Runs indices until none is left; lets go of the mutex for each.
-  void work() FVD_REQUIRES(mutex) {
-    while (body != nullptr && next < count) {
-      const int index = next++;
-      const auto& task = *body;
-      ++running;
+  /// Runs a loop's indices until none is left; lets go of the mutex for each.
+  void work(Loop& loop) FVD_REQUIRES(mutex) {
+    while (loop.has_more()) {
+      const int index = loop.next++;
+      ++loop.running;
       mutex.unlock();
       std::exception_ptr thrown;
       try {
-        task(index);
+        loop.body(index);
       } catch (...) {
         thrown = std::current_exception();
       }
       mutex.lock();
-      --running;
+      --loop.running;
       if (thrown) {
-        if (!failure) failure = thrown;
-        next = count;
+        if (!loop.failure) loop.failure = thrown;
+        loop.next = loop.count;
       }
     }
-    if (running == 0) work_done.notify_all();
+    if (loop.is_done()) work_done.notify_all();
+  }
+
+  /// The newest first: another loop's index waits for it.
+  Loop* loop_with_more() const FVD_REQUIRES(mutex) {
+    Loop* loop = newest;
+    while (loop != nullptr && !loop->has_more()) loop = loop->older;
+    return loop;
+  }
+
+  void take_out(const Loop& loop) FVD_REQUIRES(mutex) {
+    Loop** link = &newest;
+    while (*link != &loop) link = &(*link)->older;
+    *link = loop.older;
   }
 
   void serve(std::stop_token stop) {
     MutexLock lock(mutex);
     const auto due = [this] {
       mutex.assert_held();
-      return body != nullptr && next < count;
+      return loop_with_more() != nullptr;
     };
-    while (work_arrived.wait(lock, stop, due)) work();
+    while (work_arrived.wait(lock, stop, due)) work(*loop_with_more());
   }
 };
 
@@ -69,18 +93,16 @@ int WorkerPool::threads() const noexcept { return static_cast<int>(impl_->thread
 
 void WorkerPool::run(int count, const std::function<void(int)>& body) {
   MutexLock lock(impl_->mutex);
-  impl_->body = &body;
-  impl_->next = 0;
-  impl_->count = count;
-  impl_->failure = nullptr;
+  Loop loop{body, count, impl_->newest};
+  impl_->newest = &loop;
   if (count > 1) impl_->work_arrived.notify_all();
-  impl_->work();
-  impl_->work_done.wait(lock, [this] {
+  impl_->work(loop);
+  impl_->work_done.wait(lock, [this, &loop] {
     impl_->mutex.assert_held();
-    return impl_->running == 0 && impl_->next >= impl_->count;
+    return loop.is_done();
   });
-  impl_->body = nullptr;
-  if (auto failure = std::exchange(impl_->failure, nullptr)) std::rethrow_exception(failure);
+  impl_->take_out(loop);
+  if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
 }  // namespace fvd

@@ -7,7 +7,7 @@
 
 namespace fvd {
 
-/// context: run() from one thread at a time.
+/// context: thread-safe; a body may itself call run().
 class WorkerPool {
  public:
   /// threads >= 1 in all, the caller's included: WorkerPool(1) runs everything in the caller.

@@ -87,7 +87,7 @@ OperationReport apply_operation(const EvaluationPlan& plan, const PlannedOperati
     if (reasons == nullptr) return metrology::refusal("the surface does not tell why its points are holes (mask.png)");
     return metrology::mask_reasons(field, *reasons, reason_bits(step.reasons));
   }
-  if (step.op == "mask_sigma") return metrology::mask_sigma(field, step.max_sigma_um, reasons);
+  if (step.op == "mask_sigma") return metrology::mask_sigma(field, step.max_sigma_um, reasons, pool);
   if (step.op == "outliers") {
     return metrology::remove_outliers(field, {step.window_px, step.limit}, reasons, pool);
   }

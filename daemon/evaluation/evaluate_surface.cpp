@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <exception>
+#include <functional>
 #include <new>
 #include <set>
 #include <string>
@@ -100,7 +103,7 @@ void invalidate(EvaluatedMeasurement& made) {
   }
 }
 
-EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& input) {
+EvaluatedMeasurement made_whole(const std::string& id, const MeasurementInput& input) {
   EvaluatedMeasurement made = measured_by_kind(input);
   made.id = id;
   made.kind = input.planned.kind;
@@ -126,6 +129,23 @@ EvaluatedMeasurement finished(const std::string& id, const MeasurementInput& inp
   return made;
 }
 
+/// As many at a time as memory is reserved for, whatever the number of threads.
+std::vector<EvaluatedMeasurement> all_made(const std::vector<MeasurementInput>& inputs, WorkerPool* pool) {
+  std::vector<EvaluatedMeasurement> made(inputs.size());
+  std::atomic<std::size_t> next{0};
+  const auto lane = [&](int) {
+    for (std::size_t i = next++; i < inputs.size(); i = next++) {
+      made[i] = made_whole(plc_id(inputs[i].name, inputs[i].planned), inputs[i]);
+    }
+  };
+  if (pool != nullptr) {
+    pool->run(kMeasurementsAtOnce, std::ref(lane));
+  } else {
+    lane(0);
+  }
+  return made;
+}
+
 }  // namespace
 
 Evaluation evaluate_surface(const SurfaceRef& surface, const EvaluationPlan& plan, const EvaluationContext& context,
@@ -136,16 +156,17 @@ Evaluation evaluate_surface(const SurfaceRef& surface, const EvaluationPlan& pla
   evaluation.rule = plan.decision.rule;
   evaluation.probability = plan.decision.probability;
   std::optional<SliceSensitivity> slices = slice_sensitivity_of(context);
-  std::vector<Verdict> verdicts;
+  const SurfaceState& measured = chain.state(kMeasuredSurface);
+  std::vector<MeasurementInput> inputs;
   for (const auto& [name, planned] : plan.measurements) {
-    const SurfaceState& measured = chain.state(kMeasuredSurface);
-    const SurfaceState& state = chain.state(planned.surface);
-    const MeasurementInput input{plan,     planned, state,
-                                 measured, context, surface.lateral_period_um.value_or(0.0),
-                                 name,     pool,    slices ? &*slices : nullptr};
-    EvaluatedMeasurement made = finished(plc_id(name, planned), input);
-    if (made.verdict) verdicts.push_back(*made.verdict);
-    evaluation.measurements.emplace(name, std::move(made));
+    inputs.push_back({plan, planned, chain.state(planned.surface), measured, context,
+                      surface.lateral_period_um.value_or(0.0), name, pool, slices ? &*slices : nullptr});
+  }
+  std::vector<Verdict> verdicts;
+  std::vector<EvaluatedMeasurement> finished = all_made(inputs, pool);
+  for (std::size_t i = 0; i < finished.size(); ++i) {
+    if (finished[i].verdict) verdicts.push_back(*finished[i].verdict);
+    evaluation.measurements.emplace(inputs[i].name, std::move(finished[i]));
   }
   const std::string measured_steps = chain.state(kMeasuredSurface).steps_json;
   if (measured_steps != "[]") evaluation.surfaces[kMeasuredSurface] = measured_steps;

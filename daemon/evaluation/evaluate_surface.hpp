@@ -12,6 +12,9 @@
 
 namespace fvd {
 
+/// So many measurements are made at a time, and need memory: those of a line's part on the two cores of its machine.
+inline constexpr int kMeasurementsAtOnce = 2;
+
 /// plan: checked, see check_plan(). pool may be null; the values do not depend on it. pages: where the memory of
 /// surfaces comes from and goes to, if given. Never throws for data: what cannot be measured is invalid, with a reason.
 /// context: pure.

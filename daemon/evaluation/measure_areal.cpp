@@ -53,8 +53,8 @@ std::vector<ArealParameter> drawn_parameters(const MeasurementInput& input, cons
 class ArealUncertainty {
  public:
   ArealUncertainty(const MeasurementInput& input, const Region& region, const metrology::ArealSettings& settings,
-                   const std::vector<ArealParameter>& all)
-      : input_(input), weights_(input.surface.field, region), drawn_(drawn_parameters(input, all)) {
+                   const std::vector<ArealParameter>& all, const metrology::HeightStatistics& statistics)
+      : input_(input), weights_(input.surface.field, region, statistics), drawn_(drawn_parameters(input, all)) {
     if (drawn_.empty() || !input.surface.field.has_sigma()) return;
     metrology::MonteCarloSettings monte_carlo;
     monte_carlo.seed = kSeed;
@@ -130,7 +130,7 @@ EvaluatedMeasurement measure_areal(const MeasurementInput& input) {
   const std::optional<double> sq_um = found.values.back().value;
   const bool below_noise = is_below_noise(sq_um, floor);
   made.not_evaluated = texture_not_evaluated(input);
-  const ArealUncertainty uncertainty(input, region, settings, parameters);
+  const ArealUncertainty uncertainty(input, region, settings, parameters, found.statistics);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string key = areal_value_key(input.planned.parameters[i]);
     ValueInput value;

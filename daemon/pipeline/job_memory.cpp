@@ -8,6 +8,7 @@
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/focus_worker.hpp"
+#include "daemon/evaluation/evaluate_surface.hpp"
 #include "daemon/pipeline/scan_average.hpp"
 
 namespace fvd {
@@ -58,8 +59,9 @@ std::size_t evaluation_bytes(const EvaluationPlan& plan, std::size_t pixels) {
   if (plan.empty()) return 0;
   std::size_t bytes = kSurfaceBytesPerPixel * (1 + plan.surfaces.size());  // the measured one too
   std::size_t working = kMeasurementBytesPerPixel + weight_map_bytes(plan);
-  if (has_step(plan, "filter")) working = std::max(working, kFilterBytesPerPixel);
   if (has_autocorrelation(plan)) working = std::max(working, kMeasurementBytesPerPixel + kAutocorrelationBytesPerPixel);
+  if (plan.measurements.size() > 1) working *= static_cast<std::size_t>(kMeasurementsAtOnce);
+  if (has_step(plan, "filter")) working = std::max(working, kFilterBytesPerPixel);
   bytes += working + plan.masks.size();                                            // a byte a point each
   if (has_step(plan, "flatness_reference")) bytes += 2 * kReferenceBytesPerPixel;  // as kept, and divided by alpha_z
   if (has_step(plan, "mask_reasons")) bytes += sizeof(MaskReasons) * (1 + plan.surfaces.size());

@@ -86,6 +86,20 @@ SliceSensitivity::Derivatives SliceSensitivity::derivatives_at(double height_um)
 
 std::vector<double> SliceSensitivity::of(std::span<const double> weights, WorkerPool* pool) {
   assert(weights.size() == bins());
+  make_known(weights, pool);
+  std::vector<double> sums(z_um_.size(), 0.0);
+  for (std::size_t bin = 0; bin < bins(); ++bin) {
+    if (weights[bin] == 0.0) continue;
+    const Derivatives& here = derivatives_[bin];
+    for (std::size_t i = 0; i < here.at.size(); ++i) {
+      if (here.at[i] != 0.0) sums[here.centre + i - kReach] += weights[bin] * here.at[i];
+    }
+  }
+  return sums;
+}
+
+void SliceSensitivity::make_known(std::span<const double> weights, WorkerPool* pool) {
+  MutexLock lock(making_);
   std::vector<std::size_t> wanted;
   for (std::size_t bin = 0; bin < bins(); ++bin) {
     if (weights[bin] != 0.0 && !derivatives_[bin].known) wanted.push_back(bin);
@@ -99,15 +113,6 @@ std::vector<double> SliceSensitivity::of(std::span<const double> weights, Worker
   } else {
     for (std::size_t index = 0; index < wanted.size(); ++index) make(static_cast<int>(index));
   }
-  std::vector<double> sums(z_um_.size(), 0.0);
-  for (std::size_t bin = 0; bin < bins(); ++bin) {
-    if (weights[bin] == 0.0) continue;
-    const Derivatives& here = derivatives_[bin];
-    for (std::size_t i = 0; i < here.at.size(); ++i) {
-      if (here.at[i] != 0.0) sums[here.centre + i - kReach] += weights[bin] * here.at[i];
-    }
-  }
-  return sums;
 }
 
 std::vector<double> slice_sensitivities(std::span<const double> sample_z_um, double curve_width_um,

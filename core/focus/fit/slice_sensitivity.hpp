@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/mutex.hpp"
 #include "core/runtime/worker_pool.hpp"
 
 namespace fvd {
@@ -19,7 +20,7 @@ struct WeightedHeight {
 
 /// What an error of each sample's z does to heights, by where the heights lie. Derivatives are made when a height needs
 /// them, and kept: those of one focus curve serve all values of an evaluation.
-/// context: one thread at a time; bin_of() and bins() from any.
+/// context: thread-safe.
 class SliceSensitivity {
  public:
   /// sample_z_um: of the focus curve, strictly rising or falling, at least 3. curve_width_um: full width at half
@@ -49,12 +50,15 @@ class SliceSensitivity {
     std::array<double, 2 * kReach + 1> at{};
   };
   [[nodiscard]] Derivatives derivatives_at(double height_um) const;
+  /// The derivatives of all bins that have a weight.
+  void make_known(std::span<const double> weights, WorkerPool* pool);
 
   std::vector<double> z_um_;
   double width_um_;
   double lowest_um_;
   double bin_um_ = 0.0;
-  std::vector<Derivatives> derivatives_;
+  Mutex making_;
+  std::vector<Derivatives> derivatives_;  // one that is known does not change any more; made with making_ held
 };
 
 /// The same for single heights and their weights. context: pure.

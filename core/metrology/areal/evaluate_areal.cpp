@@ -9,7 +9,7 @@
 
 #include "core/metrology/areal/autocorrelation.hpp"
 #include "core/metrology/areal/gradient.hpp"
-#include "core/metrology/areal/height_moments.hpp"
+#include "core/metrology/areal/height_statistics.hpp"
 #include "core/metrology/areal/material_ratio.hpp"
 #include "core/metrology/areal/region_heights.hpp"
 #include "core/metrology/areal/texture_direction.hpp"
@@ -34,20 +34,16 @@ ArealValue none(const Parts&... parts) {
 class Evaluator {
  public:
   Evaluator(const HeightField& field, const Region& region, const ArealSettings& settings)
-      : field_(field), region_(region), survey_(survey_region(field, region)), settings_(settings) {
-    if (survey_.points == 0) return;
-    heights_um_ = valid_heights_um(field, region, survey_);
-    mean_um_ = mean_height_um(heights_um_);
-    for (double& z_um : heights_um_) z_um -= mean_um_;
-    moments_ = height_moments(heights_um_);
-  }
+      : field_(field),
+        region_(region),
+        settings_(settings),
+        statistics_(height_statistics(field, region, heights_um_)),
+        moments_(statistics_.moments) {}
 
-  [[nodiscard]] const RegionSurvey& survey() const { return survey_; }
-
-  [[nodiscard]] double mean_um() const { return mean_um_; }
+  [[nodiscard]] const HeightStatistics& statistics() const { return statistics_; }
 
   ArealValue value_of(ArealParameter parameter) {
-    if (survey_.points == 0) return ArealValue::none(kNoPoints);
+    if (statistics_.survey.points == 0) return ArealValue::none(kNoPoints);
     switch (parameter) {
       case ArealParameter::kSa:
         return ArealValue::of(moments_.mean_absolute_um);
@@ -112,7 +108,8 @@ class Evaluator {
   ArealValue spatial(ArealParameter parameter) {
     if (moments_.root_mean_square_um < kFlatSqUm) return ArealValue::none(kFlat);
     if (parameter == ArealParameter::kStd) return texture_direction_deg(map());
-    if (!lengths_) lengths_ = autocorrelation_lengths(Autocorrelation(map(), mean_um_), settings_.acf_threshold);
+    if (!lengths_)
+      lengths_ = autocorrelation_lengths(Autocorrelation(map(), statistics_.mean_um), settings_.acf_threshold);
     const auto& [lengths, reason] = *lengths_;
     if (!lengths) return ArealValue::none(reason);
     return ArealValue::of(parameter == ArealParameter::kSal ? lengths->shortest_um
@@ -120,8 +117,9 @@ class Evaluator {
   }
 
   ArealValue core(ArealParameter parameter) {
-    if (survey_.points < settings_.min_points_core) {
-      return none("the region has ", survey_.points, " valid points, fewer than ", settings_.min_points_core);
+    if (statistics_.survey.points < settings_.min_points_core) {
+      return none("the region has ", statistics_.survey.points, " valid points, fewer than ",
+                  settings_.min_points_core);
     }
     if (!core_) core_ = curve().core();
     switch (parameter) {
@@ -179,13 +177,12 @@ class Evaluator {
 
   const HeightField& field_;
   const Region& region_;
-  RegionSurvey survey_;
   const ArealSettings& settings_;
   std::vector<double> heights_um_;  // about the mean; in descending order once it was asked for
+  HeightStatistics statistics_;
+  const HeightMoments& moments_;
   bool is_sorted_ = false;
   std::optional<RegionHeights> map_;  // where neighbours count
-  double mean_um_ = 0.0;
-  HeightMoments moments_;
   std::optional<MaterialRatioCurve> curve_;
   std::optional<CoreParameters> core_;
   std::optional<std::pair<std::optional<AutocorrelationLengths>, std::string>> lengths_;
@@ -197,9 +194,10 @@ ArealEvaluation evaluate_areal(const HeightField& field, const Region& region,
                                std::span<const ArealParameter> parameters, const ArealSettings& settings) {
   Evaluator evaluator(field, region, settings);
   ArealEvaluation evaluation;
-  evaluation.region_points = evaluator.survey().region_points;
-  evaluation.points = evaluator.survey().points;
-  evaluation.mean_um = evaluator.mean_um();
+  evaluation.statistics = evaluator.statistics();
+  evaluation.region_points = evaluation.statistics.survey.region_points;
+  evaluation.points = evaluation.statistics.survey.points;
+  evaluation.mean_um = evaluation.statistics.mean_um;
   evaluation.values.reserve(parameters.size());
   for (const ArealParameter parameter : parameters) evaluation.values.push_back(evaluator.value_of(parameter));
   return evaluation;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/metrology/areal/areal_parameters.hpp"
+#include "core/metrology/areal/height_statistics.hpp"
 #include "core/metrology/height_field.hpp"
 
 namespace fvd::metrology {
@@ -31,6 +32,7 @@ struct ArealEvaluation {
   std::size_t region_points = 0;   ///< points of the region, holes included
   std::size_t points = 0;          ///< valid points of the region: those that were used
   double mean_um = 0.0;            ///< their mean height, which was subtracted; 0 without points
+  HeightStatistics statistics;     ///< of them, for HeightWeights
 
   [[nodiscard]] double valid_fraction() const {
     return region_points == 0 ? 0.0 : static_cast<double>(points) / static_cast<double>(region_points);

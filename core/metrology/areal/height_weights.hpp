@@ -5,8 +5,7 @@
 #include <optional>
 
 #include "core/metrology/areal/areal_parameters.hpp"
-#include "core/metrology/areal/height_moments.hpp"
-#include "core/metrology/areal/region_heights.hpp"
+#include "core/metrology/areal/height_statistics.hpp"
 #include "core/metrology/height_field.hpp"
 #include "core/metrology/uncertainty/weight_map.hpp"
 
@@ -15,7 +14,9 @@ namespace fvd::metrology {
 /// Of one region's parameters. The field and the region outlive it. context: pure.
 class HeightWeights {
  public:
-  HeightWeights(const HeightField& field, const Region& region);
+  /// statistics: of the same field and region.
+  HeightWeights(const HeightField& field, const Region& region, const HeightStatistics& statistics)
+      : field_(field), region_(region), statistics_(statistics) {}
 
   /// Derivatives of Sa, Sq, Ssk, Sku, Sp, Sv or Sz to the heights of the region's valid points, with the mean that
   /// moves with them (first order, GUM 5.1.3): e.g. z / (N Sq) for Sq. Absent for other parameters, and where the
@@ -26,16 +27,11 @@ class HeightWeights {
  private:
   template <typename Derivative>
   [[nodiscard]] WeightMap mapped(const Derivative& derivative) const;
-  void add_at(double height_um, double weight, WeightMap& map) const;
+  void add_at_extreme(bool highest, double weight, WeightMap& map) const;
 
   const HeightField& field_;
   const Region& region_;
-  RegionSurvey survey_;
-  double mean_um_ = 0.0;
-  double mean_sign_ = 0.0;
-  double highest_um_ = 0.0;
-  double lowest_um_ = 0.0;
-  HeightMoments moments_;
+  HeightStatistics statistics_;
 };
 
 /// The same for one parameter.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/metrology/height_field.hpp"
+#include "core/runtime/worker_pool.hpp"
 
 namespace fvd::metrology {
 
@@ -24,6 +25,7 @@ struct ChosenPoints {
 };
 
 /// region: empty or of the shape of the field. context: pure.
-[[nodiscard]] ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma);
+[[nodiscard]] ChosenPoints choose_points(const HeightField& field, const Region& region, bool with_sigma,
+                                         WorkerPool* pool = nullptr);
 
 }  // namespace fvd::metrology

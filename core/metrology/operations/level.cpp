@@ -84,7 +84,7 @@ std::optional<Fit> fit_robust(const ChosenPoints& points, OperationReport& repor
 OperationReport level(HeightField& field, LevelMethod method, const Region& region, WorkerPool* pool) {
   const bool weighted = method == LevelMethod::kWeighted;
   if (weighted && !field.has_sigma()) return refusal("the surface has no standard errors to weigh its points by");
-  ChosenPoints points = choose_points(field, region, weighted);
+  ChosenPoints points = choose_points(field, region, weighted, pool);
   OperationReport report;
   if (weighted) {
     const std::size_t dropped = drop_without_sigma(points);

@@ -4,6 +4,7 @@
 
 #include "core/metrology/height_field.hpp"
 #include "core/metrology/operations/operation_report.hpp"
+#include "core/runtime/worker_pool.hpp"
 #include "core/surface/mask_reason.hpp"
 
 namespace fvd::metrology {
@@ -13,9 +14,9 @@ namespace fvd::metrology {
 void make_hole(HeightField& field, int column, int row, Plane<MaskReasons>* reasons, MaskReasons reason);
 
 /// Makes holes of the points whose standard error is larger than max_sigma_um (> 0), with reason kMaxSigma.
-/// Refused where the field has no sigma. context: pure.
-[[nodiscard]] OperationReport mask_sigma(HeightField& field, double max_sigma_um,
-                                         Plane<MaskReasons>* reasons = nullptr);
+/// Refused where the field has no sigma. pool: may be null. context: pure.
+[[nodiscard]] OperationReport mask_sigma(HeightField& field, double max_sigma_um, Plane<MaskReasons>* reasons = nullptr,
+                                         WorkerPool* pool = nullptr);
 
 /// Makes holes of the points that carry one of the reasons in `bits`; of the shape of the field, or it is refused.
 /// context: pure.

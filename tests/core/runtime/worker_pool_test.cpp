@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "gtest/gtest.h"
@@ -31,6 +32,49 @@ TEST(WorkerPool, ForwardsAnExceptionAndStaysUsable) {
   std::atomic<int> calls{0};
   pool.run(10, [&](int) { ++calls; });
   EXPECT_EQ(calls, 10);
+}
+
+TEST(WorkerPool, RunsLoopsInsideOfItsLoops) {
+  for (const int threads : {1, 2, 4}) {
+    WorkerPool pool(threads);
+    std::vector<std::atomic<int>> calls(60);
+    pool.run(6, [&](int outer) {
+      pool.run(10, [&, outer](int inner) { ++calls[static_cast<std::size_t>(10 * outer + inner)]; });
+    });
+    for (const std::atomic<int>& call : calls) EXPECT_EQ(call, 1);
+  }
+}
+
+TEST(WorkerPool, KeepsTheFailureOfAnInnerLoopFromItsNeighbour) {
+  WorkerPool pool(2);
+  std::atomic<int> failed{0};
+  std::atomic<int> calls{0};
+  pool.run(4, [&](int outer) {
+    try {
+      pool.run(5, [&, outer](int) {
+        if (outer == 2) throw std::runtime_error("inner");
+        ++calls;
+      });
+    } catch (const std::runtime_error&) {
+      ++failed;
+    }
+  });
+  EXPECT_EQ(failed, 1);
+  EXPECT_EQ(calls, 15);
+}
+
+TEST(WorkerPool, ServesSeveralThreadsAtOnce) {
+  WorkerPool pool(3);
+  std::atomic<int> calls{0};
+  {
+    std::vector<std::jthread> callers;
+    for (int i = 0; i < 3; ++i) {
+      callers.emplace_back([&] {
+        for (int run = 0; run < 200; ++run) pool.run(4, [&](int) { ++calls; });
+      });
+    }
+  }
+  EXPECT_EQ(calls, 3 * 200 * 4);
 }
 
 TEST(WorkerPool, SurvivesManyShortRuns) {
