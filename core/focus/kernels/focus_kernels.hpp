@@ -145,13 +145,13 @@ struct DiagonalRows {
 struct FocusKernels {
   std::string_view name;
 
-  /// Modified Laplacian of the row, from the rows `distance` above and below; columns within `distance` of an end are
-  /// left unchanged.
+  /// Modified Laplacian >> shift of the row, from the rows `distance` above and below; columns within `distance` of an
+  /// end are left unchanged.
   void (*laplacian_u16)(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
-                        int distance, std::uint32_t* out) noexcept;
-  /// The diagonal Laplacian, see sharpness_rows.hpp; ends as for the Laplacian.
-  void (*diagonal_u8)(const DiagonalRows<std::uint8_t>& rows, int width, std::uint32_t* out) noexcept;
-  void (*diagonal_u16)(const DiagonalRows<std::uint16_t>& rows, int width, std::uint32_t* out) noexcept;
+                        int distance, int shift, std::uint32_t* out) noexcept;
+  /// The diagonal Laplacian >> shift, see sharpness_rows.hpp; ends as for the Laplacian.
+  void (*diagonal_u8)(const DiagonalRows<std::uint8_t>& rows, int width, int shift, std::uint32_t* out) noexcept;
+  void (*diagonal_u16)(const DiagonalRows<std::uint16_t>& rows, int width, int shift, std::uint32_t* out) noexcept;
   /// (gx^2 + gy^2) >> shift of the Sobel gradients; ends as for the Laplacian.
   void (*tenengrad_u8)(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, int width,
                        int distance, int shift, std::uint32_t* out) noexcept;

@@ -13,13 +13,13 @@
 namespace fvd::FVD_KERNEL_NAMESPACE {
 
 void laplacian_u16(const std::uint16_t* above, const std::uint16_t* row, const std::uint16_t* below, int width,
-                   int distance, std::uint32_t* out) noexcept {
+                   int distance, int shift, std::uint32_t* out) noexcept {
   FVD_NO_ALIASING
   for (int x = distance; x < width - distance; ++x) {
     const int horizontal = 2 * row[x] - row[x - distance] - row[x + distance];
     const int vertical = 2 * row[x] - above[x] - below[x];
-    out[x] =
-        static_cast<std::uint32_t>((horizontal < 0 ? -horizontal : horizontal) + (vertical < 0 ? -vertical : vertical));
+    const int sum = (horizontal < 0 ? -horizontal : horizontal) + (vertical < 0 ? -vertical : vertical);
+    out[x] = static_cast<std::uint32_t>(sum) >> shift;
   }
 }
 
@@ -41,17 +41,18 @@ inline __attribute__((always_inline)) std::uint32_t diagonal_value(const Diagona
 }
 
 template <typename Pixel>
-inline __attribute__((always_inline)) void diagonal(const DiagonalRows<Pixel>& given, int width, std::uint32_t* out) {
+inline __attribute__((always_inline)) void diagonal(const DiagonalRows<Pixel>& given, int width, int shift,
+                                                    std::uint32_t* out) {
   const DiagonalRows<Pixel> rows = given;  // a copy that out cannot alias
   FVD_NO_ALIASING
-  for (int x = rows.distance; x < width - rows.distance; ++x) out[x] = diagonal_value(rows, x);
+  for (int x = rows.distance; x < width - rows.distance; ++x) out[x] = diagonal_value(rows, x) >> shift;
 }
 
-void diagonal_u8(const DiagonalRows<std::uint8_t>& rows, int width, std::uint32_t* out) noexcept {
-  diagonal(rows, width, out);
+void diagonal_u8(const DiagonalRows<std::uint8_t>& rows, int width, int shift, std::uint32_t* out) noexcept {
+  diagonal(rows, width, shift, out);
 }
-void diagonal_u16(const DiagonalRows<std::uint16_t>& rows, int width, std::uint32_t* out) noexcept {
-  diagonal(rows, width, out);
+void diagonal_u16(const DiagonalRows<std::uint16_t>& rows, int width, int shift, std::uint32_t* out) noexcept {
+  diagonal(rows, width, shift, out);
 }
 
 template <typename Pixel>

@@ -41,14 +41,15 @@ template <typename Pixel>
   const auto difference = [&](Pixel one, Pixel other) { return std::abs(2 * row[x] - one - other); };
   switch (op) {
     case FocusOperator::kModifiedLaplacian:
-      return static_cast<std::uint32_t>(difference(row[left], row[right]) + difference(above[x], below[x]));
+      return static_cast<std::uint32_t>(difference(row[left], row[right]) + difference(above[x], below[x])) >> shift;
     case FocusOperator::kDiagonalLaplacian: {
       const int near_left = column(x - rows.inner);
       const int near_right = column(x + rows.inner);
       return static_cast<std::uint32_t>(2 * (difference(row[left], row[right]) + difference(above[x], below[x])) +
                                         difference(above[left], below[right]) + difference(above[right], below[left]) +
                                         difference(rows.upper[near_left], rows.lower[near_right]) +
-                                        difference(rows.upper[near_right], rows.lower[near_left]));
+                                        difference(rows.upper[near_right], rows.lower[near_left])) >>
+             shift;
     }
     case FocusOperator::kTenengrad: {
       const int gx = (above[right] + 2 * row[right] + below[right] - above[left] - 2 * row[left] - below[left]) >>

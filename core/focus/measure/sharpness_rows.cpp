@@ -130,15 +130,15 @@ void SharpnessRows<Pixel>::compute_row(int y, std::uint32_t* out) noexcept {
       break;
     case FocusOperator::kDiagonalLaplacian:
       if constexpr (sizeof(Pixel) == 1) {
-        kernels_.diagonal_u8(rows, width_, out);
+        kernels_.diagonal_u8(rows, width_, code_.operator_shift, out);
       } else {
-        kernels_.diagonal_u16(rows, width_, out);
+        kernels_.diagonal_u16(rows, width_, code_.operator_shift, out);
       }
       break;
     case FocusOperator::kModifiedLaplacian:
       // Of 8 bits it always fits narrow sums.
       if constexpr (sizeof(Pixel) == 2) {
-        kernels_.laplacian_u16(rows.above, rows.row, rows.below, width_, distance_, out);
+        kernels_.laplacian_u16(rows.above, rows.row, rows.below, width_, distance_, code_.operator_shift, out);
       }
       break;
   }

@@ -63,7 +63,10 @@ auto three_rows(Kernel kernel) {
 
 TEST(FocusKernels, GiveTheSameLaplacian) {
   expect_same("laplacian_u16", three_rows<std::uint16_t, std::uint32_t>(
-                                   [](const FocusKernels& k, auto... arguments) { k.laplacian_u16(arguments...); }));
+                                   [](const FocusKernels& k, const std::uint16_t* above, const std::uint16_t* row,
+                                      const std::uint16_t* below, int width, int distance, std::uint32_t* out) {
+                                     k.laplacian_u16(above, row, below, width, distance, distance % 4, out);
+                                   }));
 }
 
 TEST(FocusKernels, GiveTheSameTenengrad) {

@@ -105,6 +105,31 @@ TYPED_TEST(SharpnessRowsOf, TellWhatShareOfEveryWindowIsAtFullScale) {
   }
 }
 
+/// A checkerboard is the strongest texture there is: the sum over a large window has more than 32 bits.
+TYPED_TEST(SharpnessRowsOf, DoNotOverflowWhateverTheWindow) {
+  constexpr int kSide = 90;
+  PaddedImage<TypeParam> image(kSide, kSide, 1);
+  const int full = sizeof(TypeParam) == 1 ? 255 : 65535;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) image.view.at(x, y) = static_cast<TypeParam>((x + y) % 2 == 0 ? full : 0);
+  }
+  const PixelFormat format = format_of(TypeParam{});
+  for (const auto& [op, factor] :
+       {std::pair{FocusOperator::kModifiedLaplacian, 4}, std::pair{FocusOperator::kDiagonalLaplacian, 8}}) {
+    for (const int window : {9, 17, 31, 63}) {
+      const FocusSettings settings{
+          .focus_operator = op, .window = FocusWindow::kBox, .window_px = window, .distance_px = 1};
+      const SharpnessCode code = sharpness_code(settings, format);
+      SharpnessRows<TypeParam> rows(kSide, settings, format);
+      rows.begin(image.view, kSide / 2);
+      rows.next();
+      const double expected = static_cast<double>(factor) * full * window * window;
+      EXPECT_NEAR(code.decode(rows.codes()[kSide / 2]) / expected, 1.0, 0.01)
+          << focus_operator_name(op) << " window " << window;
+    }
+  }
+}
+
 /// F of the reference at a pixel.
 double sharpness(const ImageView& image, const FocusSettings& settings, int x, int y) {
   return sharpness_code(settings, image.format).decode(sharpness_reference(image, settings).at(x, y));
