@@ -60,6 +60,7 @@ Coverage coverage(std::span<const CurveTuple> tuples, const std::vector<double>&
   const double high = ordered(places.size() - 1 - places.size() / 50);
   Coverage result;
   result.steps = high - low;
+  if (!(result.steps > 0.0)) return result;
   const int bins = std::max(1, static_cast<int>(result.steps * kFractionsPerStep));
   std::vector<int> counts(static_cast<std::size_t>(bins));
   for (const double place : places) {

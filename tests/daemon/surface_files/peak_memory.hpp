@@ -10,6 +10,19 @@
 
 namespace fvd::test {
 
+/// Whether this is a build that does not give back what is freed, so that a reader's buffers add up.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kKeepsWhatIsFreed = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+inline constexpr bool kKeepsWhatIsFreed = true;
+#else
+inline constexpr bool kKeepsWhatIsFreed = false;
+#endif
+#else
+inline constexpr bool kKeepsWhatIsFreed = false;
+#endif
+
 class PeakMemory {
  public:
   /// Begins anew, where the kernel lets a process do so; else the peak of the whole process counts.
