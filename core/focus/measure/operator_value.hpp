@@ -59,7 +59,7 @@ template <typename Pixel>
       return static_cast<std::uint32_t>(gx * gx + gy * gy) >> shift;
     }
     case FocusOperator::kIntensity:
-      return row[x];
+      return static_cast<std::uint32_t>(row[x]) >> shift;
   }
   return 0;
 }

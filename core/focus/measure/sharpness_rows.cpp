@@ -119,7 +119,8 @@ void SharpnessRows<Pixel>::compute_row(int y, std::uint32_t* out) noexcept {
   const auto rows = rows_about(image_, y, distance_);
   switch (operator_) {
     case FocusOperator::kIntensity:
-      std::copy_n(rows.row, width_, out);
+      std::transform(rows.row, rows.row + width_, out,
+                     [shift = code_.operator_shift](Pixel grey) { return static_cast<std::uint32_t>(grey) >> shift; });
       return;
     case FocusOperator::kTenengrad:
       if constexpr (sizeof(Pixel) == 1) {
