@@ -149,8 +149,10 @@ void window_sums_u32(const std::uint32_t* values, int window, int width, std::ui
 void root_code(const std::uint32_t* sums, float gain, int width, std::uint16_t* out) noexcept {
   FVD_NO_ALIASING
   for (int x = 0; x < width; ++x) {
-    // Through int: there is no vector instruction from unsigned to float before AVX-512.
-    const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sums[x])));
+    // Through int: there is no vector instruction from unsigned to float before AVX-512. Pixels with more bits than
+    // their format has may make more of a sum than it holds: they have no sharpness.
+    const auto word = static_cast<std::int32_t>(sums[x]);
+    const float root = std::sqrt(static_cast<float>(word < 0 ? 0 : word));
     // Not negative, and lround() is no vector instruction. NOLINTNEXTLINE(bugprone-incorrect-roundings)
     out[x] = static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
   }

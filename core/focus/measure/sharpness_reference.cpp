@@ -10,7 +10,9 @@ namespace {
 
 /// The root kernel's arithmetic, in its order and precision.
 std::uint16_t root_code(std::uint64_t sum, float gain) {
-  const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum)));
+  const auto word = static_cast<std::int32_t>(sum);
+  if (word < 0) return 0;  // as the kernel, of pixels with more bits than their format has
+  const float root = std::sqrt(static_cast<float>(word));
   // As the kernel rounds, whose values are not negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
   return static_cast<std::uint16_t>(static_cast<std::int32_t>(gain * root + 0.5F));
 }
