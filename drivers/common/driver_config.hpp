@@ -20,6 +20,8 @@ struct CameraConfig {
   std::string usb_mode = "sync";             ///< USB3 Vision: "sync", or "async", which Aravis 0.8.26 does not master
   std::chrono::microseconds time_offset{0};  ///< added to its time stamps where the stage's position is asked for
   int frame_margin_ms = 300;         ///< added to exposure and readout before a frame counts as missing, 10..10000
+  bool mirror_x = false;             ///< its picture comes with left and right exchanged
+  bool mirror_y = false;             ///< with top and bottom exchanged; both: turned by 180 degrees
   bool simulated = false;            ///< stamped into every result; a camera that calls itself simulated sets it too
   std::filesystem::path replay_dir;  ///< driver "replay": folder of recorded slices
 };
@@ -44,6 +46,7 @@ struct StageConfig {
   Micrometers take_up{20.0};  ///< overshoot below the first slice, >= 3x backlash
   double speed_um_per_s = 1000.0;
   double acceleration_um_per_s2 = 20000.0;
+  bool reversed = false;  ///< z grows where the drive's own position falls
   bool simulated = false;
   std::filesystem::path replay_dir;  ///< driver "replay": folder of recorded slices, the camera's
   double replay_start_um = 0.0;      ///< driver "replay": z of the first slice, and the step

@@ -70,16 +70,19 @@ std::optional<Integer> integer_of(const std::string& answer, int base) {
 
 class GcsPort final : public AxisPort {
  public:
-  explicit GcsPort(const StageConfig& config) : axis_(config.gcs_axis), line_(line_config(config)) {
+  explicit GcsPort(const StageConfig& config)
+      : axis_(config.gcs_axis), sign_(config.reversed ? -1.0 : 1.0), line_(line_config(config)) {
     traits_.name = identity();
     traits_.address = line_.description() + " axis " + axis_;
     traits_.feedback =
         config.gcs_feedback == "linear_scale" ? FeedbackSource::kLinearScale : FeedbackSource::kMotorEncoder;
-    traits_.steps_per_um = kStepsPerUm;
+    traits_.steps_per_um = sign_ * kStepsPerUm;
     traits_.feedback_resolution = Micrometers{1.0 / kStepsPerUm};
     traits_.sample_timeout = std::chrono::seconds(5) + 10 * config.response_timeout;
     find_axis();
-    traits_.limits = std::pair(travel_limit("TMN?"), travel_limit("TMX?"));
+    const Micrometers one = travel_limit("TMN?");
+    const Micrometers other = travel_limit("TMX?");
+    traits_.limits = std::pair(std::min(one, other), std::max(one, other));
   }
 
   [[nodiscard]] const AxisTraits& traits() const override { return traits_; }
@@ -106,7 +109,7 @@ class GcsPort final : public AxisPort {
     sample.enabled = *servo != 0.0;
     sample.homed = *referenced != 0.0;
     sample.in_position = *on_target != 0.0;
-    sample.position = Micrometers{*position_mm * kUmPerMm};
+    sample.position = Micrometers{sign_ * *position_mm * kUmPerMm};
     if (*code == kNoError && sample.enabled) alarm_ = kNoError;  // whoever switched the servo on has seen to it
     note_alarm(*code);
     sample.alarm_code = alarm_;
@@ -207,7 +210,7 @@ class GcsPort final : public AxisPort {
   Micrometers travel_limit(const char* question) {
     const auto limit = value_of(answer_to(ask(question)), axis_);
     if (!limit) refuse(std::string("gives no travel limit ") + question);
-    return Micrometers{*limit * kUmPerMm};
+    return Micrometers{sign_ * *limit * kUmPerMm};
   }
 
   CommandResult set_speed(double um_per_s) {
@@ -244,6 +247,7 @@ class GcsPort final : public AxisPort {
   }
 
   const std::string axis_;
+  const double sign_;  // of the controller's position as z grows
   TextLine line_;
   AxisTraits traits_;
   unsigned axis_index_ = 0;

@@ -27,11 +27,18 @@ CommandResult command_result(const SequenceResult& result) {
   return {CommandOutcome::kUnknown, result.error};
 }
 
+/// The profile, counting the way that this machine's stage is built.
+DriveProfile profile_for(const StageConfig& config) {
+  DriveProfile profile = load_drive_profile(config.profile);
+  if (config.reversed) profile.direction = -profile.direction;
+  return profile;
+}
+
 /// A drive that its profile describes. The calls of one motion come from one thread.
 class ModbusPort final : public AxisPort {
  public:
   explicit ModbusPort(const StageConfig& config)
-      : profile_(load_drive_profile(config.profile)), link_(modbus_link_config(config)) {
+      : profile_(profile_for(config)), link_(modbus_link_config(config)) {
     identify();
     describe(config);
   }

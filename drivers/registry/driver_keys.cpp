@@ -63,6 +63,8 @@ void describe_all_cameras(CameraConfig& camera, Fields& fields) {
   fields.integer("time_offset_us", offset_us, {-1000000, 1000000},
                  "continuous scans: stage's clock minus camera's, as two scans in opposite directions tell");
   camera.time_offset = std::chrono::microseconds(offset_us);
+  fields.boolean("mirror_x", camera.mirror_x, "its picture comes with left and right exchanged; it is turned round");
+  fields.boolean("mirror_y", camera.mirror_y, "with top and bottom exchanged; both keys: turned by 180 degrees");
   fields.boolean("simulated", camera.simulated, "stamped into every result");
 }
 
@@ -88,6 +90,9 @@ void describe_all_stages(StageConfig& stage, Fields& fields) {
                 "overshoot below the first slice that loads the backlash; at least 3 x backlash");
   fields.number("speed_um_per_s", stage.speed_um_per_s, positive(1e6), "speed of moves");
   fields.number("acceleration_um_per_s2", stage.acceleration_um_per_s2, positive(1e9), "acceleration of moves");
+  fields.boolean("reversed", stage.reversed,
+                 "z is to grow where the drive's position (with the profile's scale.direction) falls; z grows away from "
+                 "the part; not of replay");
   fields.boolean("simulated", stage.simulated, "stamped into every result");
   fields.choice("transport", stage.transport, {"tcp", "rtu", "serial"},
                 "how the drive is reached; rtu = Modbus on a serial line, serial = driver gcs on one");

@@ -4,6 +4,7 @@
 
 #include "core/base/error.hpp"
 #include "drivers/aravis/aravis_camera.hpp"
+#include "drivers/common/mirrored_camera.hpp"
 #include "drivers/gcs/gcs_axis.hpp"
 #include "drivers/modbus/modbus_axis.hpp"
 #include "drivers/registry/driver_keys.hpp"
@@ -97,7 +98,9 @@ Problems check_devices(const DeviceConfigs& devices, const Problems& read) {
   return found;
 }
 
-std::unique_ptr<Camera> open_camera(const CameraConfig& config) { return open(camera_drivers(), config, "camera"); }
+std::unique_ptr<Camera> open_camera(const CameraConfig& config) {
+  return upright(open(camera_drivers(), config, "camera"), {config.mirror_x, config.mirror_y});
+}
 std::unique_ptr<Axis> open_stage(const StageConfig& config) { return open(axis_drivers(), config, "stage"); }
 
 DeviceOpeners openers_of(const DeviceConfigs& devices) {

@@ -84,6 +84,7 @@ struct AxisModel::Impl {
     return load;
   }
 
+  /// The true position, counted the way that steps grow.
   [[nodiscard]] double true_um(HostTime at) const FVD_REQUIRES(mutex) {
     const Move& move = move_at(at);
     // What the motor does beyond its profile, the load does too.
@@ -238,7 +239,7 @@ double AxisModel::temperature_c(HostTime at) const {
 
 double AxisModel::true_position_um(HostTime at) const {
   const MutexLock lock(impl_->mutex);
-  return impl_->true_um(at);
+  return impl_->p.reversed ? -impl_->true_um(at) : impl_->true_um(at);
 }
 
 }  // namespace fvd::sim

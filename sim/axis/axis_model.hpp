@@ -37,6 +37,7 @@ struct AxisParameters {
   double start_latency_ms = 0.0;         ///< from command to motion; in_position() is stale meanwhile
   double home_position_um = 0.0;         ///< where homing ends
   double power_on_position_um = -200.0;  ///< true position before homing
+  bool reversed = false;                 ///< the true position falls as the drive's steps grow, about 0
   std::uint64_t seed = 1;
 };
 

@@ -15,7 +15,10 @@ std::unique_ptr<SliceRenderer> make_renderer(const WorldParameters& world, const
 }
 
 SimWorld::SimWorld(const WorldParameters& parameters, const AxisModel& axis)
-    : axis_(axis), surface_(make_surface(parameters)), renderer_(make_renderer(parameters, surface_)) {}
+    : axis_(axis),
+      mirror_{parameters.mirror_x, parameters.mirror_y},
+      surface_(make_surface(parameters)),
+      renderer_(make_renderer(parameters, surface_)) {}
 
 void SimWorld::render(const ExposureRequest& request, std::span<std::byte> out) {
   constexpr int kPositionSamples = 5;
@@ -24,7 +27,18 @@ void SimWorld::render(const ExposureRequest& request, std::span<std::byte> out) 
     z_um += axis_.true_position_um(request.start + (request.end - request.start) * i / (kPositionSamples - 1)) /
             kPositionSamples;
   }
-  renderer_->render(z_um, request, out);
+  // The part of the surface that a region of a mirrored sensor looks at lies on the other side.
+  ExposureRequest seen = request;
+  if (mirror_.x) seen.offset_x = sensor_width() - request.offset_x - request.width;
+  if (mirror_.y) seen.offset_y = sensor_height() - request.offset_y - request.height;
+  renderer_->render(z_um, seen, out);
+  if (bytes_per_pixel(request.format) == 1) {
+    auto* const pixels = reinterpret_cast<std::uint8_t*>(out.data());
+    mirror_in_place(PlaneView<std::uint8_t>{pixels, request.width, request.height, request.width}, mirror_);
+  } else {
+    auto* const pixels = reinterpret_cast<std::uint16_t*>(out.data());
+    mirror_in_place(PlaneView<std::uint16_t>{pixels, request.width, request.height, request.width}, mirror_);
+  }
 }
 
 }  // namespace fvd::sim

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/image/image.hpp"
+#include "core/image/mirror.hpp"
 #include "sim/axis/axis_model.hpp"
 #include "sim/world/frame_source.hpp"
 #include "sim/world/slice_renderer.hpp"
@@ -34,6 +35,7 @@ class SimWorld final : public FrameSource {
 
  private:
   const AxisModel& axis_;
+  const Mirror mirror_;  // of the camera against the surface
   Surface surface_;
   std::unique_ptr<SliceRenderer> renderer_;
 };

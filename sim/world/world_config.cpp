@@ -47,6 +47,8 @@ void describe(WorldParameters& world, Fields& fields) {
   world.texture = static_cast<TextureKind>(std::find(kTextures.begin(), kTextures.end(), texture) - kTextures.begin());
   fields.number("contrast", world.contrast, {0.0, 31.0}, "standard deviation of the texture in 8-bit grey levels");
   fields.number("poor_contrast", world.poor_contrast, {0.0, 1.0}, "contrast of the texture-poor patch, a fraction");
+  fields.boolean("mirror_x", world.mirror_x, "the camera shows left and right exchanged");
+  fields.boolean("mirror_y", world.mirror_y, "the camera shows top and bottom exchanged");
   fields.integer("seed", world.seed, {0, INT64_MAX}, "of texture, surface and noise");
   world.surface = static_cast<SurfaceKind>(std::find(kSurfaces.begin(), kSurfaces.end(), surface) - kSurfaces.begin());
   world.height_map_file = file;
@@ -77,6 +79,7 @@ void describe(AxisParameters& plant, Fields& fields) {
   fields.number("start_latency_ms", plant.start_latency_ms, {0.0, 1000.0}, "command to motion");
   fields.number("home_position_um", plant.home_position_um, {-1e6, 1e6}, "where homing ends");
   fields.number("power_on_position_um", plant.power_on_position_um, {-1e6, 1e6}, "where the axis stands at the start");
+  fields.boolean("reversed", plant.reversed, "the true position falls as the drive's steps grow");
   fields.integer("seed", plant.seed, {0, INT64_MAX}, "of all noise");
 }
 

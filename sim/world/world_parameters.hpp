@@ -71,6 +71,8 @@ struct WorldParameters {
   TextureKind texture = TextureKind::kGranite;
   double contrast = 28.0;       ///< standard deviation of the texture in 8-bit grey levels
   double poor_contrast = 0.03;  ///< of the texture-poor patch, as a fraction
+  bool mirror_x = false;        ///< the camera shows left and right exchanged
+  bool mirror_y = false;        ///< and top and bottom
   std::uint64_t seed = 1;       ///< of texture, surface and noise
 };
 
