@@ -11,6 +11,7 @@
 #include "config/nearest_name.hpp"
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/ctl/device_commands.hpp"
 #include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/export_command.hpp"
@@ -21,6 +22,7 @@
 #include "daemon/ctl/recipe_commands.hpp"
 #include "daemon/ctl/report_command.hpp"
 #include "daemon/ctl/rpc_client.hpp"
+#include "daemon/ctl/setup_command.hpp"
 #include "daemon/ctl/stage_command.hpp"
 #include "daemon/ctl/study_commands.hpp"
 #include "daemon/ctl/suggest_command.hpp"
@@ -50,6 +52,8 @@ struct Arguments {
   std::string suggest_source;
   StackChoice suggest_choice;
   StageArguments stage;
+  DevicesArguments devices;
+  SetupArguments setup;
   RecipeArguments recipe;
   ObjectiveArguments objective;
   StudyArguments study;
@@ -282,6 +286,8 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_report_options(*sub, a.report);
 
   add_stage_commands(app, a.stage, terminal, chosen);
+  add_device_commands(app, a.devices, terminal, chosen);
+  add_setup_command(app, a.setup, terminal, chosen);
   add_recipe_commands(
       app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
   add_study_commands(

@@ -13,6 +13,7 @@ struct Terminal {
   std::ostream& err;
   bool out_is_terminal = false;
   bool err_is_terminal = false;
+  int in_fd = -1;  ///< where answers come from; -1 = nowhere
 };
 
 /// Runs one command; arguments without the program's name. Returns the exit code (exit_codes.hpp); never throws.

@@ -1,21 +1,18 @@
 #include "daemon/ctl/stage_command.hpp"
 
 #include <algorithm>
-#include <csignal>
-#include <ctime>
 #include <iomanip>
 #include <optional>
 #include <sstream>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.hpp"
-#include "core/runtime/guarded_thread.hpp"
 #include "core/stage/stage_report.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_command.hpp"
+#include "daemon/ctl/stop_on_signal.hpp"
 #include "daemon/export/stage_report_files.hpp"
 #include "drivers/modbus/drive_check.hpp"
 #include "drivers/modbus/modbus_axis.hpp"
@@ -118,36 +115,6 @@ std::string text_of(const DriveCheck& check, const DriveProfile& profile, const 
   }
   return text.str();
 }
-
-/// Ctrl-C halts the axis instead of leaving it in motion.
-class StopOnSignal {
- public:
-  StopOnSignal() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-    watcher_ = start_thread("fvdctl-signals", [this](const std::stop_token& ended) {
-      constexpr timespec kPollInterval{0, 100'000'000};
-      while (!ended.stop_requested()) {
-        if (sigtimedwait(&signals_, nullptr, &kPollInterval) > 0) source_.request_stop();
-      }
-    });
-  }
-  ~StopOnSignal() {
-    watcher_ = {};
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  StopOnSignal(const StopOnSignal&) = delete;
-  StopOnSignal& operator=(const StopOnSignal&) = delete;
-  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
-
- private:
-  sigset_t signals_{};
-  sigset_t before_{};
-  std::stop_source source_;
-  std::jthread watcher_;
-};
 
 void print_report(std::ostream& out, const Json& report, const std::filesystem::path& folder) {
   out << report.dump(2) << "\nfiles in " << folder.string() << std::endl;

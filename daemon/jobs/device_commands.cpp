@@ -12,7 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/focus/grey_statistics.hpp"
-#include "core/scan/slice_capture.hpp"
+#include "core/scan/still.hpp"
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/image_png.hpp"
 #include "daemon/export/preview_hub.hpp"
@@ -25,11 +25,7 @@ namespace {
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr int kFrameRetries = 3;
 constexpr std::size_t kSnapsKept = 100;
-constexpr int kMostExposureLooks = 8;
-/// The exposure is right when the factor that would correct it differs from 1 by no more.
-constexpr double kExposureTolerance = 0.05;
 
 struct Shot {
   Frame frame;
@@ -58,15 +54,8 @@ class RestoredSettings {
 
 /// A frame exposed from now on.
 Shot shoot(const Devices& devices, const CameraSettings& settings, const std::stop_token& stop) {
-  Shot shot;
-  shot.settings = devices.camera.configure(settings);
-  FrameLedger ledger;
-  auto captured = SliceCapture(devices.camera, devices.clock, ledger).capture(devices.clock.now(), kFrameRetries, stop);
-  if (!captured) {
-    throw Error(ErrorCode::kCameraFramesLost,
-                "the camera sent no good frame for " + std::to_string(1 + kFrameRetries) + " triggers: check its link");
-  }
-  shot.frame = std::move(captured->frame);
+  Still still = take_still(devices.camera, devices.clock, settings, stop);
+  Shot shot{std::move(still.frame), std::move(still.settings)};
   shot.z_um = devices.stage.mean_position(shot.frame.exposure_start, shot.frame.exposure_end).mean.value;
   return shot;
 }
@@ -146,20 +135,13 @@ DeviceTask::Work preview_work(const CameraSettings& settings) {
 
 DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
   return [asked, target](const Devices& devices, const std::stop_token& stop) {
-    CameraSettings settings = asked;
-    ordered_json result;
     const RestoredSettings restored(devices.camera, asked);
-    for (int look = 1; look <= kMostExposureLooks; ++look) {
-      const Shot shot = shoot(devices, settings, stop);
-      const GreyStatistics grey = grey_statistics(shot.frame.image);
-      const double factor = exposure_factor(grey, shot.frame.image.format, target);
-      const bool reached = std::abs(factor - 1.0) <= kExposureTolerance;
-      result = {
-          {"exposure_us", shot.settings.exposure_us}, {"reached", reached}, {"looks", look}, {"grey", grey_json(grey)}};
-      if (reached) break;
-      settings.exposure_us = shot.settings.exposure_us * factor;
-    }
-    return result.dump();
+    const ExposureFound found = find_exposure(devices.camera, devices.clock, asked, target, stop);
+    return ordered_json{{"exposure_us", found.exposure_us},
+                        {"reached", found.reached},
+                        {"looks", found.looks},
+                        {"grey", grey_json(found.grey)}}
+        .dump();
   };
 }
 

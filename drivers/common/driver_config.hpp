@@ -24,6 +24,8 @@ struct CameraConfig {
   bool mirror_y = false;             ///< with top and bottom exchanged; both: turned by 180 degrees
   bool simulated = false;            ///< stamped into every result; a camera that calls itself simulated sets it too
   std::filesystem::path replay_dir;  ///< driver "replay": folder of recorded slices
+
+  bool operator==(const CameraConfig&) const = default;
 };
 
 struct StageConfig {
@@ -53,6 +55,8 @@ struct StageConfig {
   double replay_step_um = 10.0;
   std::filesystem::path replay_z_file;  ///< driver "replay": z of each slice, one number a line; takes the step's place
   std::string replay_z_unit = "um";     ///< unit of that file: um, mm or m
+
+  bool operator==(const StageConfig&) const = default;
 };
 
 }  // namespace fvd

@@ -1,0 +1,49 @@
+#include "core/scan/still.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/base/error.hpp"
+#include "core/scan/slice_capture.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr int kFrameRetries = 3;
+constexpr int kMostExposureLooks = 8;
+/// The exposure is right when the factor that would correct it differs from 1 by no more.
+constexpr double kExposureTolerance = 0.05;
+
+}  // namespace
+
+Still take_still(Camera& camera, Clock& clock, const CameraSettings& settings, std::stop_token stop) {
+  Still still;
+  still.settings = camera.configure(settings);
+  FrameLedger ledger;
+  auto captured = SliceCapture(camera, clock, ledger).capture(clock.now(), kFrameRetries, std::move(stop));
+  if (!captured) {
+    throw Error(ErrorCode::kCameraFramesLost,
+                "the camera sent no good frame for " + std::to_string(1 + kFrameRetries) + " triggers: check its link");
+  }
+  still.frame = std::move(captured->frame);
+  return still;
+}
+
+ExposureFound find_exposure(Camera& camera, Clock& clock, CameraSettings settings, double target,
+                            std::stop_token stop) {
+  ExposureFound found;
+  while (found.looks < kMostExposureLooks && !found.reached) {
+    const Still still = take_still(camera, clock, settings, stop);
+    found.grey = grey_statistics(still.frame.image);
+    found.exposure_us = still.settings.exposure_us;
+    ++found.looks;
+    const double factor = exposure_factor(found.grey, still.frame.image.format, target);
+    found.reached = std::abs(factor - 1.0) <= kExposureTolerance;
+    settings.exposure_us = found.exposure_us * factor;
+  }
+  return found;
+}
+
+}  // namespace fvd

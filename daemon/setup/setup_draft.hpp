@@ -1,0 +1,27 @@
+#pragma once
+
+/// What was decided so far. Copied at every step, so that an answer can be taken back.
+
+#include <optional>
+
+#include "core/hw/camera.hpp"
+#include "drivers/registry/driver_table.hpp"
+
+namespace fvd {
+
+/// Range of the trial scan, um.
+struct TrialRange {
+  double start_um = 0.0;
+  double step_um = 5.0;  ///< > 0
+  int slices = 0;        ///< >= 3
+};
+
+struct SetupDraft {
+  DeviceConfigs devices;
+  CameraSettings picture;                ///< exposure and format
+  std::optional<double> pixel_pitch_um;  ///< absent = nobody measured it
+  std::optional<double> focus_um;        ///< z at which the surface was seen sharply
+  std::optional<TrialRange> trial;       ///< of the last scan that succeeded
+};
+
+}  // namespace fvd

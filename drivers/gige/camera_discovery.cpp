@@ -1,0 +1,182 @@
+#include "drivers/gige/camera_discovery.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <list>
+#include <optional>
+#include <span>
+#include <tuple>
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+
+#include "core/base/error.hpp"
+#include "drivers/gige/gvcp_socket.hpp"
+
+namespace fvd {
+
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr std::uint32_t kEverybody = 0xFFFFFFFFU;
+constexpr std::uint8_t kAcknowledge = 0x01;
+/// A camera in another subnet has no way to answer but to everybody.
+constexpr std::uint8_t kAcknowledgeToEverybody = 0x10;
+/// Length of the answer: the bootstrap registers from 0x0000 on.
+constexpr std::size_t kAnswerBytes = 0xF8;
+constexpr std::uint32_t kAnyControl = 0x3;  // exclusive, or with others reading
+
+std::uint32_t host_order(const sockaddr* address) {
+  return address == nullptr ? 0 : ntohl(reinterpret_cast<const sockaddr_in*>(address)->sin_addr.s_addr);
+}
+
+std::string text_at(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t size) {
+  const auto field = bytes.subspan(at, size);
+  std::string text;
+  for (const std::uint8_t byte : field) {
+    if (byte == 0) break;
+    text += byte < 0x20 || byte == 0x7F ? ' ' : static_cast<char>(byte);
+  }
+  return text;
+}
+
+std::string mac_text(std::span<const std::uint8_t> bytes) {
+  std::array<char, 18> text{};
+  std::snprintf(text.data(), text.size(), "%02x:%02x:%02x:%02x:%02x:%02x", bytes[10], bytes[11], bytes[12], bytes[13],
+                bytes[14], bytes[15]);
+  return text.data();
+}
+
+/// The camera that a discovery's acknowledge tells of; nothing for an answer that is too short.
+std::optional<FoundCamera> camera_of(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kAnswerBytes) return std::nullopt;
+  FoundCamera camera;
+  camera.mac = mac_text(bytes);
+  camera.ip_configuration = gvcp::get32(bytes, 0x14) & 0x7U;
+  camera.address = gvcp::address_text(gvcp::get32(bytes, 0x24));
+  camera.mask = gvcp::address_text(gvcp::get32(bytes, 0x34));
+  camera.gateway = gvcp::address_text(gvcp::get32(bytes, 0x44));
+  camera.vendor = text_at(bytes, 0x48, 32);
+  camera.model = text_at(bytes, 0x68, 32);
+  camera.firmware = text_at(bytes, 0x88, 32);
+  camera.serial = text_at(bytes, 0xD8, 16);
+  camera.user_name = text_at(bytes, 0xE8, 16);
+  return camera;
+}
+
+void ask_control(GvcpSocket& socket, FoundCamera& camera) {
+  const auto address = gvcp::address_of(camera.address);
+  const auto privilege = address ? socket.read_register(*address, gvcp::kControlPrivilege) : std::nullopt;
+  if (!privilege) return;
+  camera.control = (*privilege & kAnyControl) != 0 ? CameraControl::kControlled : CameraControl::kFree;
+  if (camera.control != CameraControl::kControlled) return;
+  const auto controller = socket.read_register(*address, gvcp::kControllerAddress);
+  const auto port = socket.read_register(*address, gvcp::kControllerPort);
+  if (!controller || *controller == 0 || !port) return;
+  camera.controller = gvcp::address_text(*controller) + ":" + std::to_string(*port & 0xFFFFU);
+}
+
+/// Answers to one discovery, each camera once.
+void collect(GvcpSocket& socket, std::uint16_t request, SteadyClock::time_point until,
+             std::vector<FoundCamera>& found) {
+  while (const auto ack = socket.receive(gvcp::kDiscovery, request, until)) {
+    auto camera = ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
+    const bool known = camera && std::any_of(found.begin(), found.end(), [&](const FoundCamera& other) {
+                         return other.mac == camera->mac && other.address == camera->address;
+                       });
+    if (camera && !known) found.push_back(std::move(*camera));
+  }
+}
+
+/// Both must see each other as neighbours, or there is no way back for the pictures.
+bool fits(const NetworkInterface& interface, const FoundCamera& camera) {
+  const auto address = gvcp::address_of(camera.address);
+  const auto mask = gvcp::address_of(camera.mask);
+  if (!address || !mask) return false;
+  return (*address & interface.mask) == (interface.address & interface.mask) &&
+         (*address & *mask) == (interface.address & *mask);
+}
+
+struct Asked {
+  explicit Asked(const NetworkInterface& interface)
+      : interface(interface), socket(interface.address, interface.index) {}
+  NetworkInterface interface;
+  GvcpSocket socket;
+  std::uint16_t request = 0;
+};
+
+}  // namespace
+
+std::vector<NetworkInterface> network_interfaces(const std::string& named) {
+  ifaddrs* first = nullptr;
+  std::vector<NetworkInterface> interfaces;
+  if (::getifaddrs(&first) != 0) return interfaces;
+  for (const ifaddrs* at = first; at != nullptr; at = at->ifa_next) {
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET || (at->ifa_flags & IFF_UP) == 0) continue;
+    const NetworkInterface interface {
+      at->ifa_name, static_cast<int>(::if_nametoindex(at->ifa_name)), host_order(at->ifa_addr),
+          host_order(at->ifa_netmask)
+    };
+    const bool loopback = (at->ifa_flags & IFF_LOOPBACK) != 0;
+    const bool wanted =
+        named.empty() ? !loopback : named == interface.name || named == gvcp::address_text(interface.address);
+    if (wanted) interfaces.push_back(interface);
+  }
+  ::freeifaddrs(first);
+  if (interfaces.empty() && !named.empty()) {
+    throw Error(ErrorCode::kBadInput, "there is no network interface '" + named +
+                                          "' with an IPv4 address that is up; see: ip -brief address");
+  }
+  return interfaces;
+}
+
+std::vector<FoundCamera> discover_cameras(const std::vector<NetworkInterface>& interfaces, milliseconds patience) {
+  std::list<Asked> asked;
+  std::string reason;
+  for (const NetworkInterface& interface : interfaces) {
+    try {
+      Asked& one = asked.emplace_back(interface);
+      one.request = one.socket.send(kEverybody, gvcp::kDiscovery, kAcknowledge | kAcknowledgeToEverybody, {});
+    } catch (const Error& error) {
+      reason = interface.name + ": " + error.what();
+      if (!asked.empty() && asked.back().request == 0) asked.pop_back();
+    }
+  }
+  if (asked.empty() && !reason.empty()) throw Error(ErrorCode::kCameraDisconnected, reason);
+  const auto until = SteadyClock::now() + patience;  // the same for all: they answer at once
+  std::vector<FoundCamera> all;
+  for (Asked& one : asked) {
+    std::vector<FoundCamera> found;
+    collect(one.socket, one.request, until, found);
+    for (FoundCamera& camera : found) {
+      camera.interface = one.interface.name;
+      camera.interface_address = gvcp::address_text(one.interface.address);
+      camera.subnet_fits = fits(one.interface, camera);
+      if (camera.subnet_fits) ask_control(one.socket, camera);
+      all.push_back(std::move(camera));
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const FoundCamera& a, const FoundCamera& b) {
+    return std::tie(a.interface, a.address, a.mac) < std::tie(b.interface, b.address, b.mac);
+  });
+  return all;
+}
+
+std::vector<FoundCamera> discover_camera_at(std::uint32_t address, milliseconds patience) {
+  GvcpSocket socket;
+  const std::uint16_t request = socket.send(address, gvcp::kDiscovery, kAcknowledge, {});
+  std::vector<FoundCamera> found;
+  const auto ack = socket.receive(gvcp::kDiscovery, request, SteadyClock::now() + patience);
+  auto camera = ack && ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
+  if (!camera) return found;
+  ask_control(socket, *camera);
+  found.push_back(std::move(*camera));
+  return found;
+}
+
+}  // namespace fvd

@@ -1,0 +1,145 @@
+/// The questions of the setup: what is refused, what is taken back, and that nothing moves but on an answer that says
+/// so.
+
+#include "daemon/setup/setup.hpp"
+
+#include "gtest/gtest.h"
+#include "tests/support/scratch_dir.hpp"
+#include "tests/support/set_up_station.hpp"
+
+namespace fvd {
+namespace {
+
+class ASetup : public testing::Test {
+ protected:
+  ASetup() : setup_({folder_ / "fvd.json", FVD_SOURCE_DIR "/config/drives", folder_.path(), true, {}}, {}) {}
+
+  void answer(const std::string& text) {
+    const bool moves = moves_the_axis(setup_.question(), text);
+    setup_.answer(text);
+    audit_.note(moves);
+  }
+  /// Answers as the operator would until that step is asked.
+  void come_to(const std::string& step) {
+    for (int i = 0; i < 40 && setup_.question().step != step; ++i) answer(person_.answer(setup_.question()));
+    ASSERT_EQ(setup_.question().step, step) << setup_.question().note;
+  }
+  [[nodiscard]] std::string step() const { return setup_.question().step; }
+  [[nodiscard]] std::string note() const { return setup_.question().note; }
+  /// The answer is refused with these words, the question stays open, and nothing has moved.
+  void expect_refused(const std::string& text, const std::string& words) {
+    const std::string before = step();
+    const int moves = plant_.drive().moves();
+    answer(text);
+    EXPECT_EQ(step(), before) << text;
+    EXPECT_NE(note().find(words), std::string::npos) << text << ": " << note();
+    EXPECT_EQ(plant_.drive().moves(), moves) << text;
+  }
+
+  test::ScratchDir folder_;
+  sim::Plant plant_{test::letter_f_station({})};
+  test::MotionAudit audit_{plant_};
+  test::SimulatedOperator person_{plant_, FVD_SOURCE_DIR "/config/drives/oriental-az.json",
+                                  test::letter_f_world().artefacts.letter_f};
+  Setup setup_;
+};
+
+TEST_F(ASetup, BeginsWithTheCameraAndKnowsNoWayBackFromThere) {
+  EXPECT_EQ(step(), "camera");
+  for (const SetupChoice& choice : setup_.question().choices) EXPECT_NE(choice.word, "back");
+  expect_refused("back", "first question");
+}
+
+TEST_F(ASetup, SaysWhyADeviceCannotBeHad) {
+  expect_refused("127.0.0.254", "127.0.0.254");
+  come_to("line");
+  expect_refused("tcp host:0", "'0' is no port");
+  expect_refused("carrier pigeon", "none of the answers");
+  expect_refused("serial /dev/x 115200 odd-ish", "no parity");
+  come_to("profile");
+  expect_refused("/nonexistent.json", "there is no file");
+  come_to("unit");
+  expect_refused("248", "1 to 247");
+}
+
+TEST_F(ASetup, RefusesADriveThatIsNotTheProfiles) {
+  come_to("profile");
+  answer(FVD_SOURCE_DIR "/config/drives/leadshine-pr.json");
+  expect_refused("1", "is not what the profile");
+  answer("back");
+  EXPECT_EQ(step(), "profile");
+}
+
+TEST_F(ASetup, MovesNothingBeforeItIsTold) {
+  come_to("reference");
+  expect_refused("keep", "has no reference");
+  expect_refused("", "nothing was answered");
+  expect_refused("yes", "none of the answers");
+  expect_refused("home now", "none of the answers");
+  EXPECT_EQ(audit_.unattended(), 0);
+  answer("home");
+  EXPECT_EQ(step(), "jog");
+}
+
+TEST_F(ASetup, RefusesMovesThatAreTooLongOrLeaveTheTravel) {
+  come_to("upper_limit");
+  expect_refused("up 1001", "expected a number from 0.01 to 1000");
+  expect_refused("down 201", "expected a number");
+  expect_refused("up -5", "expected a number");
+  expect_refused("up nan", "expected a number");
+  expect_refused("up 1000", "outside the stage's limits");
+  expect_refused("at 1001", "position within the travel");
+  expect_refused("at -1000", "leaves no travel");
+}
+
+TEST_F(ASetup, TakesAnAnswerBack) {
+  come_to("towards");
+  answer("yes");
+  EXPECT_EQ(step(), "jog") << "turned round: it has to be seen again";
+  answer("jog");
+  answer("yes");
+  answer("jog");
+  answer("no");
+  EXPECT_EQ(step(), "upper_limit");
+  answer("at 100");
+  EXPECT_EQ(step(), "lower_limit");
+  answer("back");
+  EXPECT_EQ(step(), "upper_limit");
+  answer("at 400");
+  EXPECT_EQ(note(), "upper limit 400 um");
+  answer("back");
+  answer("back");
+  EXPECT_EQ(step(), "towards");
+  answer("back");
+  EXPECT_EQ(step(), "jog");
+  EXPECT_EQ(audit_.unattended(), 0);
+}
+
+TEST_F(ASetup, TurnsPicturesUntilTheLetterIsUpright) {
+  come_to("orientation");
+  answer("mirrored");
+  EXPECT_EQ(step(), "orientation");
+  EXPECT_EQ(person_.answer(setup_.question()), "mirrored") << "that was wrong, and is seen";
+  answer("mirrored");
+  EXPECT_EQ(person_.answer(setup_.question()), "upright");
+  expect_refused("sideways", "none of the answers");
+}
+
+TEST_F(ASetup, ComputesThePitchFromAScale) {
+  come_to("pixel_pitch");
+  expect_refused("100 50 104 53 10", "less than 10 pixels apart");
+  expect_refused("100 50 400", "none of the answers");
+  answer("100 50 400 450 250");
+  EXPECT_EQ(note(), "a pixel is 0.5 um");
+}
+
+TEST_F(ASetup, RefusesATrialThatCannotBe) {
+  come_to("trial");
+  expect_refused("ok", "nothing was scanned yet");
+  expect_refused("scan 0 120", "none of the answers");
+  expect_refused("scan 0 1 5", "1 slices");
+  expect_refused("scan -45 120 5", "take-up");
+}
+
+}  // namespace
+}  // namespace fvd
