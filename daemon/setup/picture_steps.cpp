@@ -1,5 +1,6 @@
 /// What the camera shows: bright enough, sharp, the right way round, and how large a pixel is.
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -53,6 +54,7 @@ SetupNext take_exposure(SetupContext& context, const SetupAnswer& answer) {
     draft.picture.exposure_us = std::round(found.exposure_us);
     if (!found.reached) context.note = "the exposure was not reached within eight pictures: change the light";
   } else if (!answer.is("picture")) {
+    if (answer.size() != 1) refuse_answer(answer);
     draft.picture.exposure_us = answer.number(0, 1.0, 1e7, "exposure in us");
   }
   look(context);
@@ -125,8 +127,8 @@ SetupNext take_orientation(SetupContext& context, const SetupAnswer& answer) {
   if (!answer.is("mirrored") && !answer.is("flipped") && !answer.is("turned") && !answer.is("picture")) {
     refuse_answer(answer);
   }
-  camera.mirror_x ^= answer.is("mirrored") || answer.is("turned");
-  camera.mirror_y ^= answer.is("flipped") || answer.is("turned");
+  camera.mirror_x = camera.mirror_x != (answer.is("mirrored") || answer.is("turned"));
+  camera.mirror_y = camera.mirror_y != (answer.is("flipped") || answer.is("turned"));
   if (!answer.is("picture")) context.note = "pictures are turned round from now on; the F must be upright in this one";
   look(context);
   return SetupNext::kStay;

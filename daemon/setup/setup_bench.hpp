@@ -7,6 +7,7 @@
 #include <memory>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include "core/base/clock.hpp"
 #include "core/scan/still.hpp"

@@ -2,7 +2,6 @@
 
 /// The steps of the setup as rows of a table: what each asks, and what it does with an answer. Inside this folder only.
 
-#include <functional>
 #include <stop_token>
 #include <string>
 #include <string_view>
