@@ -182,11 +182,14 @@ int run_set_ip(const DevicesArguments& arguments, const Terminal& terminal) {
 void add_devices(CLI::App& app, DevicesArguments& a, const Terminal& terminal, std::function<int()>& chosen) {
   CLI::App* sub = app.add_subcommand(
       "devices", "list cameras and, asked with a range of units, drives that answer; reads only, nothing moves");
-  sub->add_option("--interface", a.interfaces, "look for cameras through this network interface or address only");
-  sub->add_option("--at", a.at, "ask for a camera at this address, e.g. behind a router; others only with --interface");
+  sub->add_option("--interface", a.interfaces, "look for cameras through this network interface or address only")
+      ->allow_extra_args(false);
+  sub->add_option("--at", a.at, "ask for a camera at this address, e.g. behind a router; others only with --interface")
+      ->allow_extra_args(false);
   sub->add_option("--units", a.units, "look for Modbus units too: N or N-M; lists the serial ports");
-  sub->add_option("--tcp", a.tcp, "HOST or HOST:PORT whose units are asked");
-  sub->add_option("--serial", a.serial, "serial port whose units are asked: whatever is on it gets bytes sent");
+  sub->add_option("--tcp", a.tcp, "HOST or HOST:PORT whose units are asked")->allow_extra_args(false);
+  sub->add_option("--serial", a.serial, "serial port whose units are asked: whatever is on it gets bytes sent")
+      ->allow_extra_args(false);
   sub->add_option("--baud", a.line.serial_baud, "bit rate of the serial ports")->capture_default_str();
   sub->add_option("--parity", a.line.serial_parity, "parity of the serial ports")
       ->check(CLI::IsMember({"none", "even", "odd"}))
@@ -215,7 +218,8 @@ void add_device_commands(CLI::App& app, DevicesArguments& a, const Terminal& ter
   sub->add_option("--mask", a.mask, "its subnet; default: that of the interface");
   sub->add_option("--gateway", a.gateway, "its gateway; 0.0.0.0 = none")->capture_default_str();
   sub->add_flag("--persistent", a.persistent, "for good; without it until the camera is switched off");
-  sub->add_option("--interface", a.interfaces, "look for it through this network interface or address only");
+  sub->add_option("--interface", a.interfaces, "look for it through this network interface or address only")
+      ->allow_extra_args(false);
   sub->add_flag("--json", a.json, "print JSON");
   sub->callback([&] { chosen = [&] { return run_set_ip(a, terminal); }; });
 }

@@ -111,6 +111,7 @@ void add_setup_command(CLI::App& app, SetupArguments& a, const Terminal& termina
       ->capture_default_str();
   CLI::Option* interface =
       sub->add_option("--interface", a.interfaces, "look for cameras through this network interface or address only");
+  interface->allow_extra_args(false);
   sub->add_flag("--no-search", a.no_search, "look for no cameras; the address is known")->excludes(interface);
   sub->add_flag("--simulated", a.simulated, "say in the configuration that camera and stage are simulated");
   sub->add_flag("--json", a.json, "print each question as a line of JSON, for programs that answer");

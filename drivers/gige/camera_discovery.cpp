@@ -103,8 +103,7 @@ bool fits(const NetworkInterface& interface, const FoundCamera& camera) {
 }
 
 struct Asked {
-  explicit Asked(const NetworkInterface& interface)
-      : interface(interface), socket(interface.address, interface.index) {}
+  explicit Asked(const NetworkInterface& through) : interface(through), socket(through.address, through.index) {}
   NetworkInterface interface;
   GvcpSocket socket;
   std::uint16_t request = 0;
