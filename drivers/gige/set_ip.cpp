@@ -33,10 +33,9 @@ std::array<std::uint8_t, 6> mac_of(const std::string& text) {
 /// GigE Vision's layout: two bytes of nothing before the MAC, and twelve before each address.
 std::vector<std::uint8_t> force_ip_payload(const FoundCamera& camera, const CameraAddress& wanted) {
   std::vector<std::uint8_t> payload(2, 0);
-  const auto mac = mac_of(camera.mac);
-  payload.insert(payload.end(), mac.begin(), mac.end());
+  for (const std::uint8_t byte : mac_of(camera.mac)) payload.push_back(byte);
   for (const std::uint32_t value : {wanted.address, wanted.mask, wanted.gateway}) {
-    payload.insert(payload.end(), 12, 0);
+    payload.resize(payload.size() + 12, 0);
     gvcp::put32(payload, value);
   }
   return payload;
