@@ -165,6 +165,9 @@ void check_gcs(const StageConfig& stage, Problems& problems) {
       {"/stage/gcs_axis", "'" + stage.gcs_axis + "' is no name of an axis; expected one such as 1 or A"});
 }
 
-void check_replay(const StageConfig& /*stage*/, Problems& /*problems*/) {}
+void check_replay(const StageConfig& stage, Problems& problems) {
+  if (!stage.reversed) return;
+  problems.push_back({"/stage/reversed", "true does not go with driver 'replay': recorded slices tell their own z"});
+}
 
 }  // namespace fvd
