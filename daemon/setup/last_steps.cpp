@@ -51,8 +51,8 @@ std::string heights_text(const HeightMap& map) {
   if (heights_m.empty()) return "no point is valid: the surface lies outside of the scan, or has no texture";
   std::sort(heights_m.begin(), heights_m.end());
   const auto at = [&](double share) {
-    return heights_m[static_cast<std::size_t>(share * static_cast<double>(heights_m.size() - 1))] /
-           kMetresPerMicrometer;
+    const float height_m = heights_m[static_cast<std::size_t>(share * static_cast<double>(heights_m.size() - 1))];
+    return static_cast<double>(height_m) / kMetresPerMicrometer;
   };
   std::ostringstream text;
   text.precision(4);

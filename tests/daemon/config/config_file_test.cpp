@@ -288,6 +288,9 @@ TEST_F(AUsableConfig, ReplaysOnBothSidesOrNone) {
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/stage/driver", "both")));
   config_.stage.driver = "replay";
   EXPECT_THAT(check_config(config_), IsEmpty());
+  config_.stage.reversed = true;
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/stage/reversed", "tell their own z")));
+  config_.stage.reversed = false;
   config_.camera.replay_dir = folder_.path() / "absent";
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/replay_dir", "absent")));
 }
