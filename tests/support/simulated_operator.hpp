@@ -23,7 +23,7 @@ class SimulatedOperator {
   SimulatedOperator(sim::Plant& plant, std::string profile, sim::LetterF letter)
       : plant_(plant), profile_(std::move(profile)), letter_(letter) {}
 
-  /// What he says to a question; each step once in the expected order, "back" never.
+  /// What he says to a question; what failed is tried again, "back" never said.
   std::string answer(const SetupQuestion& question) {
     const std::string& step = question.step;
     if (step == "camera") return plant_.camera_address();
@@ -40,20 +40,27 @@ class SimulatedOperator {
     if (step == "towards") return lens_um() < before_um_ ? "yes" : "no";
     if (step == "upper_limit") return lens_um() < 195.0 ? "up 200" : "here";
     if (step == "lower_limit") return "at -50";
-    if (step == "exposure") return next(exposure_, {"auto", "ok"});
-    // A letter and its land that are equally blurred look alike: beyond the sharpest place they do not.
-    if (step == "focus") return next(focus_, {"auto", "up 15", "ok"});
+    if (step == "exposure") return tells(question, "exposure") ? "ok" : "auto";
+    if (step == "focus") return focus(question);
     if (step == "orientation") return orientation(question.picture.string());
     if (step == "pixel_pitch") return "100 50 400 50 300";
-    if (step == "trial") return next(trial_, {"scan 0 120 5", "ok"});
+    if (step == "trial") return tells(question, "points are valid") ? "ok" : "scan 0 120 5";
     return "write";
   }
 
  private:
   [[nodiscard]] double lens_um() { return plant_.axis().true_position_um(HostClock::now()); }
 
-  static std::string next(std::size_t& asked, const std::vector<std::string>& answers) {
-    return answers.at(std::min(asked++, answers.size() - 1));
+  static bool tells(const SetupQuestion& question, const char* words) {
+    return question.note.find(words) != std::string::npos;
+  }
+
+  /// A letter and its land that are equally blurred look alike: beyond the sharpest place they do not. What failed is
+  /// tried again.
+  std::string focus(const SetupQuestion& question) {
+    if (tells(question, "sharpest at")) focused_ = true;
+    if (!focused_) return "auto";
+    return tells(question, "the axis stands at") ? "ok" : "up 15";
   }
 
   /// Where the picture has fine structure is where it is sharper: the letter's strokes, in one of four positions.
@@ -100,9 +107,7 @@ class SimulatedOperator {
   const std::string profile_;
   const sim::LetterF letter_;
   double before_um_ = 0.0;
-  std::size_t exposure_ = 0;
-  std::size_t focus_ = 0;
-  std::size_t trial_ = 0;
+  bool focused_ = false;
 };
 
 }  // namespace fvd::test
