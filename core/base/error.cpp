@@ -38,6 +38,7 @@ constexpr std::array kNames{
     NamedCode{kStageNotHomed, "stage_not_homed"},
     NamedCode{kStagePosition, "stage_position"},
     NamedCode{kStageAlarm, "stage_alarm"},
+    NamedCode{kStageTaken, "stage_taken"},
     NamedCode{kBadSlice, "bad_slice"},
     NamedCode{kSliceLost, "slice_lost"},
     NamedCode{kFocusRange, "focus_range_insufficient"},

@@ -33,6 +33,7 @@ enum class ErrorCode {
   kStageNotHomed,
   kStagePosition,  ///< the axis did not settle at its target
   kStageAlarm,     ///< the drive raised an alarm
+  kStageTaken,     ///< another program or another master has the drive
   kBadSlice,       ///< slice of another size, format or with an unusable z
   kSliceLost,      ///< the slice queue refused a slice: computation fell behind
   kFocusRange,     ///< the surface is not inside the scanned range

@@ -19,7 +19,7 @@ namespace fvd {
 enum class FeedbackSource { kNone, kMotorEncoder, kLinearScale };
 
 struct StageInfo {
-  std::string name;     ///< the drive profile's name
+  std::string name;     ///< the drive profile's name, and by what numbers this one is known
   std::string address;  ///< e.g. "127.0.0.1:502 unit 1"
   FeedbackSource feedback = FeedbackSource::kNone;
   Micrometers step_quantum;             ///< smallest commandable step
@@ -63,6 +63,7 @@ struct StageLinkStats {
   std::uint64_t reconnects = 0;
   std::uint64_t discarded_bytes = 0;  ///< bytes of late or garbled answers
   std::uint64_t implausible = 0;      ///< positions that no axis could have reached, and that were read again
+  std::uint64_t put_off = 0;          ///< requests that the drive, or a gateway before it, was too busy for
   double latency_p50_us = 0.0;        ///< request to answer: median, 99th percentile, maximum
   double latency_p99_us = 0.0;
   double latency_max_us = 0.0;

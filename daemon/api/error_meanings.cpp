@@ -85,6 +85,8 @@ std::string_view device_meaning(ErrorCode code) noexcept {
       return "the axis did not settle at its target: look for what blocks it, or allow it more time";
     case ErrorCode::kStageAlarm:
       return "the drive raised an alarm: see its manual, clear it, then home";
+    case ErrorCode::kStageTaken:
+      return "another program or another master has the drive: end it, see to the part, then measure again";
     case ErrorCode::kBadSlice:
       return "a slice has another size or format than the first";
     case ErrorCode::kSliceLost:

@@ -39,6 +39,7 @@ constexpr std::array kCodes{
     CodeOnWire{kStageNotHomed, {1113, false}},
     CodeOnWire{kStagePosition, {1114, false}},
     CodeOnWire{kStageAlarm, {1115, false}},
+    CodeOnWire{kStageTaken, {1116, false}},
     CodeOnWire{kFocusRange, {1121, false}},
     CodeOnWire{kTooFewValid, {1122, false}},
     CodeOnWire{kBadSlice, {1123, false}},

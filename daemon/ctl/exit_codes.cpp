@@ -30,6 +30,7 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kStageNotHomed:
     case ErrorCode::kStagePosition:
     case ErrorCode::kStageAlarm:
+    case ErrorCode::kStageTaken:
       return kExitUnavailable;
     case ErrorCode::kAborted:
     case ErrorCode::kJobFailed:

@@ -185,6 +185,9 @@ CLI::Option* add_line_options(CLI::App& sub, StageArguments& a) {
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
   sub.add_option("--unit", a.stage.unit, "Modbus unit id")->check(CLI::Range(1, 247))->capture_default_str();
+  sub.add_option("--response-timeout-ms", a.response_timeout_ms, "longest wait for the drive's answer")
+      ->check(CLI::Range(10, 10000))
+      ->capture_default_str();
   return profile;
 }
 

@@ -26,6 +26,7 @@ using Json = nlohmann::ordered_json;
 
 void resolve_endpoint(StageArguments& arguments) {
   StageConfig& stage = arguments.stage;
+  stage.response_timeout = std::chrono::milliseconds(arguments.response_timeout_ms);
   const bool is_gcs = !arguments.gcs_axis.empty();
   if (!is_gcs && stage.profile.empty()) throw UsageError("give the drive's profile, or --gcs-axis");
   if (is_gcs) {
@@ -77,6 +78,7 @@ Json json_of(const DriveCheck& check, const DriveProfile& profile, const std::st
   json["link"] = {{"requests", check.link.transactions},
                   {"unanswered", check.link.unknown},
                   {"refused", check.link.rejected},
+                  {"put_off", check.link.later},
                   {"latency_p50_us", check.link.latency_p50_us},
                   {"latency_max_us", check.link.latency_max_us}};
   json["disagreements"] = check.disagreements;
@@ -170,8 +172,8 @@ int run_stage_accuracy(StageArguments arguments, const Terminal& terminal) {
   print_report(terminal.out, Json::parse(stage_report_json(report, header)), arguments.out);
   if (const auto link = stage->link_stats()) {
     terminal.err << "link: " << link->requests << " requests, " << link->retries << " retries, " << link->unanswered
-                 << " unanswered, p50 " << link->latency_p50_us / 1000.0 << " ms, p99 " << link->latency_p99_us / 1000.0
-                 << " ms" << std::endl;
+                 << " unanswered, " << link->put_off << " put off, p50 " << link->latency_p50_us / 1000.0 << " ms, p99 "
+                 << link->latency_p99_us / 1000.0 << " ms" << std::endl;
   }
   return kExitOk;
 }

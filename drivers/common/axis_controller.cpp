@@ -11,6 +11,7 @@
 #include "core/scan/settle_detector.hpp"
 #include "drivers/common/axis_poller.hpp"
 #include "drivers/common/axis_stopper.hpp"
+#include "drivers/common/commanded.hpp"
 #include "drivers/common/disable_watch.hpp"
 #include "drivers/common/rest_detector.hpp"
 
@@ -25,18 +26,8 @@ constexpr milliseconds kSampleAge{50};
 /// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
 constexpr Micrometers kSweepWindow{5.0};
 constexpr milliseconds kSweepGrace{3000};
-
-/// What the axis is commanded to do, for as long as it is.
-class Commanded {
- public:
-  Commanded(std::atomic<AxisState>& state, AxisState now) : state_(state) { state_ = now; }
-  ~Commanded() { state_ = AxisState::kReady; }
-  Commanded(const Commanded&) = delete;
-  Commanded& operator=(const Commanded&) = delete;
-
- private:
-  std::atomic<AxisState>& state_;
-};
+/// How often a motion is asked for of a drive that says "later"; each time it is looked at first.
+constexpr int kBusyAttempts = 6;
 
 class AxisController final : public Axis {
  public:
@@ -44,10 +35,9 @@ class AxisController final : public Axis {
       : settings_(settings),
         port_(std::move(port)),
         traits_(checked(port_->traits(), settings)),
-        poller_(*port_, settings.limits.speed_um_per_s),
+        poller_(*port_, settings.limits.speed_um_per_s, settings.min, settings.max),
         stopper_(*port_, poller_, settings.limits) {
     come_to_rest();
-    enable({});
   }
 
   /// An axis is not left moving when nobody watches it any more.
@@ -74,13 +64,15 @@ class AxisController final : public Axis {
   void home(std::stop_token stop) override {
     const AxisSample before = poller_.sample_after(HostClock::now(), stop);
     require_homing_possible(*port_, before);
-    if (!before.enabled) enable(stop);
+    require_sole_master(true);
+    prepared_ = false;  // the drive may have been restarted
+    make_ready(before, stop);
     require_wanted(stop);
     const Commanded homing(state_, AxisState::kHoming);
     target_.reset();
     poller_.remember_homed(false);
     halting_on_error([&] {
-      const CommandResult sent = port_->home(settings_.limits, stop);
+      const CommandResult sent = send_home(before, stop);
       require_wanted(stop);
       require_done(traits_, sent, "home");
       wait_until_homed(HostClock::now(), stop);
@@ -135,12 +127,32 @@ class AxisController final : public Axis {
                                                "; stop it by its emergency stop");
   }
 
-  void enable(const std::stop_token& stop) {
+  /// Settings once, and torque where there is none; a drive that has to be enabled may have forgotten its settings.
+  /// Nothing is written to a drive that is not what fvd takes it for.
+  void make_ready(const AxisSample& sample, const std::stop_token& stop) {
+    if (prepared_ && sample.enabled) return;
+    if (!checked_) require_agreement(*port_);
+    checked_ = true;
+    const CommandResult prepared = port_->prepare(settings_.limits, stop);
+    require_wanted(stop);
+    require_done(traits_, prepared, "prepare");
+    prepared_ = true;
+    if (sample.enabled) return;
     const CommandResult enabled = port_->enable(settings_.limits, stop);
     require_wanted(stop);
     require_done(traits_, enabled, "enable");
     disabled_.enabled();
     changed_ = HostClock::now();
+  }
+
+  /// look: asks the drive now, instead of trusting the looks that are taken all the time.
+  void require_sole_master(bool look) {
+    const auto foreign = poller_.foreign_write(look);
+    if (!foreign) return;
+    if (!traits_.tells_homed) poller_.remember_homed(false);  // its memory of the last target is no longer ours
+    target_.reset();
+    throw Error(ErrorCode::kStageTaken, "another master writes to the drive at " + traits_.address + ": " + *foreign +
+                                            "; fvd moves nothing: end that program, see to the part, then home");
   }
 
   void require_enabled(const AxisSample& sample) {
@@ -171,29 +183,9 @@ class AxisController final : public Axis {
   }
 
   [[nodiscard]] StageStatus status_of(const AxisSample& sample) const {
-    StageStatus status;
-    status.enabled = sample.enabled;
-    status.homed = sample.homed;
-    status.moving = sample.moving;
-    status.in_position = sample.in_position;
-    status.alarm = sample.alarm;
-    status.alarm_code = sample.alarm_code;
-    if (sample.alarm) status.alarm_text = port_->alarm_text(sample.alarm_code);
-    status.position = sample.position;
-    status.temperatures = poller_.temperatures();
-    status.state = state_of(sample);
+    StageStatus status = stage_status(*port_, sample, poller_.temperatures());
+    status.state = poller_.connected() ? axis_state(sample, state_) : AxisState::kCommLost;
     return status;
-  }
-
-  [[nodiscard]] AxisState state_of(const AxisSample& sample) const {
-    if (!poller_.connected()) return AxisState::kCommLost;
-    if (sample.alarm || sample.emergency_stop) return AxisState::kAlarm;
-    const AxisState commanded = state_;
-    if (commanded == AxisState::kHoming) return commanded;
-    if (!sample.reports_rest()) return AxisState::kMoving;
-    if (commanded == AxisState::kMoving) return AxisState::kSettling;
-    if (!sample.enabled) return AxisState::kDisabled;
-    return sample.homed ? AxisState::kReady : AxisState::kNotHomed;
   }
 
   /// Runs a motion. An exception that leaves it first halts the axis; what of that failed is added to its message.
@@ -207,6 +199,7 @@ class AxisController final : public Axis {
     } catch (const Error& error) {
       code = error.code();
       message = error.what();
+      if (code == ErrorCode::kStagePosition || code == ErrorCode::kTimeout) blame_other_master(code, message);
     } catch (const std::exception& error) {
       message = error.what();
     }
@@ -214,6 +207,30 @@ class AxisController final : public Axis {
     const std::string failure = stopper_.halt();
     changed_ = HostClock::now();
     throw Error(code, failure.empty() ? message : message + "; " + failure);
+  }
+
+  /// An axis that does not arrive may have been sent elsewhere.
+  void blame_other_master(ErrorCode& code, std::string& message) {
+    try {
+      require_sole_master(true);
+    } catch (const Error& error) {
+      code = error.code();
+      message += std::string("; ") + error.what();
+    }
+  }
+
+  /// A drive that was busy may have begun all the same: it is looked at before it is asked again.
+  CommandResult send_home(const AxisSample& before, const std::stop_token& stop) {
+    for (int attempt = 1;; ++attempt) {
+      CommandResult result = port_->home(settings_.limits, stop);
+      if (!result.later || attempt == kBusyAttempts || stop.stop_requested()) return result;
+      spdlog::warn("the drive at {} puts off its homing: {}", traits_.address, result.error);
+      for (HostTime last = HostClock::now(), asked = last; last - asked <= traits_.start_within;) {
+        const AxisSample sample = poller_.sample_after(last, stop);
+        last = sample.begun;
+        if (sample.moving || (before.homed && traits_.tells_homed && !sample.homed)) return {};
+      }
+    }
   }
 
   void wait_until_homed(HostTime started, const std::stop_token& stop) {
@@ -255,7 +272,8 @@ class AxisController final : public Axis {
     if (!before.homed) {
       throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + traits_.address + " before it is homed");
     }
-    if (!before.enabled) enable(stop);  // halted by our own stop: this is a new command
+    require_sole_master(true);  // the move would write over what another one left
+    make_ready(before, stop);   // disabled by our own stop: this is a new command
     require_reference(before);
     require_wanted(stop);
     const Commanded moving(state_, AxisState::kMoving);
@@ -293,16 +311,11 @@ class AxisController final : public Axis {
         }
         return;
       }
-      if (attempt == 2) {
-        throw Error(ErrorCode::kStageDisconnected, "the drive at " + traits_.address + " answers no move command");
+      if (attempt >= (result.later ? kBusyAttempts : 2)) {
+        throw Error(ErrorCode::kStageDisconnected,
+                    "the drive at " + traits_.address + " answers no move command: " + result.error);
       }
     }
-  }
-
-  [[nodiscard]] static bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& before,
-                                  const SettleCriterion& criterion) {
-    return sample.moving || abs(sample.position - move.target_quantised) <= criterion.window ||
-           abs(sample.position - before.position) > criterion.window;
   }
 
   bool has_begun(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
@@ -322,7 +335,7 @@ class AxisController final : public Axis {
     require_off_limits(traits_, sample);
     require_enabled(sample);
     if (begun && sample.target) require_reference(sample);
-    if (sample.homed) return;
+    if (sample.homed) return require_sole_master(false);
     throw Error(ErrorCode::kStageNotHomed, "the drive at " + traits_.address +
                                                " lost its reference in the move, as after a power cut; home again");
   }
@@ -355,11 +368,7 @@ class AxisController final : public Axis {
         return;
       }
       if (sample.time - move.started > criterion.timeout) {
-        std::ostringstream message;
-        message << "the axis did not settle within " << criterion.window.value << " um of "
-                << move.target_quantised.value << " um in " << criterion.timeout.count() << " ms; it was at "
-                << sample.position.value << " um";
-        throw Error(ErrorCode::kStagePosition, message.str());
+        throw Error(ErrorCode::kStagePosition, not_settled_text(move, sample, criterion));
       }
     }
   }
@@ -370,7 +379,9 @@ class AxisController final : public Axis {
   std::atomic<AxisState> state_{AxisState::kReady};
   mutable DisableWatch disabled_;
   std::atomic<HostTime> changed_{HostTime{}};  // by fvd: older samples do not tell what the drive is like now
-  std::optional<std::int64_t> target_;         // steps, last one sent since homing
+  bool checked_ = false;                       // the mover's thread only, as the next
+  bool prepared_ = false;
+  std::optional<std::int64_t> target_;  // steps, last one sent since homing
   AxisPoller poller_;
   AxisStopper stopper_;
 };

@@ -15,11 +15,12 @@ namespace fvd {
 [[nodiscard]] AxisSettings axis_settings(const StageConfig& config);
 
 /// Samples the axis for as long as it lives: fast while something moves or is measured, slowly otherwise. An axis that
-/// moves is halted first; then it is enabled. Every way out of a motion - arrival, timeout, alarm, lost line, stop
+/// moves is halted at once; nothing else is written to it before the first motion: then it is enabled, where it is not.
+/// Every way out of a motion - arrival, timeout, alarm, lost line, stop
 /// request - ends at a standstill that was measured, or in an error that contains "standstill was not confirmed".
 /// A controller that stops answering makes every call throw kStageDisconnected; the object is dead then.
 /// Throws Error kStageDisconnected, kStageLimit (the controller's own limits are narrower than the configured ones),
-/// kStagePosition (it cannot be stopped, or does not let itself be enabled).
+/// kStagePosition (it cannot be stopped).
 [[nodiscard]] std::unique_ptr<Axis> make_axis(std::unique_ptr<AxisPort> port, const AxisSettings& settings);
 
 }  // namespace fvd

@@ -20,11 +20,16 @@ constexpr milliseconds kFastPeriod{2};
 constexpr milliseconds kIdlePeriod{50};
 constexpr milliseconds kFastDuration{1000};  ///< sampling stays fast this long after the last call that needed it
 constexpr milliseconds kTemperaturePeriod{1000};
+constexpr milliseconds kLookPeriod{200};  ///< for what another master writes
+/// So long after the last write of another master he may still be there.
+constexpr std::chrono::seconds kForeignTime{10};
 constexpr std::size_t kLoggedSamples = 8192;
 
 /// A position is believed at once if it lies within the reach of this multiple of the commanded speed, and this margin.
 constexpr double kSpeedFactor = 2.0;
 constexpr double kPositionMargin_um = 50.0;
+/// A position is far outside the limits if it lies beyond them by as much as they are apart, and by this at least.
+constexpr double kFar_um = 1000.0;
 /// How often a position is read until two readings agree.
 constexpr int kReadings = 5;
 /// A poll that takes longer hangs: this multiple of the longest time between two samples of a line that is alive.
@@ -42,8 +47,8 @@ std::string text_of(const std::exception_ptr& failure) {
 
 }  // namespace
 
-AxisPoller::AxisPoller(AxisPort& port, double max_speed_um_per_s)
-    : port_(port), max_speed_um_per_s_(max_speed_um_per_s), log_(kLoggedSamples) {
+AxisPoller::AxisPoller(AxisPort& port, double max_speed_um_per_s, Micrometers min, Micrometers max)
+    : port_(port), max_speed_um_per_s_(max_speed_um_per_s), min_(min), max_(max), log_(kLoggedSamples) {
   {
     const MutexLock polling(polling_);
     poll_once();
@@ -69,6 +74,7 @@ void AxisPoller::run(const std::stop_token& stop) {
       const MutexLock polling(polling_);
       poll_once();
       read_temperatures();
+      look_for_others();
     }
     MutexLock lock(mutex_);
     const HostTime now = HostClock::now();
@@ -96,6 +102,11 @@ bool AxisPoller::reachable(const AxisSample& from, const AxisSample& to) const {
   return std::abs((to.position - from.position).value) <= reach_um;
 }
 
+bool AxisPoller::far_outside(const AxisSample& sample) const {
+  const Micrometers far = std::max(max_ - min_, Micrometers{kFar_um});
+  return sample.position < min_ - far || sample.position > max_ + far;
+}
+
 namespace {
 
 /// The third lies on the way from the first to the second: an axis that is faster than it is commanded to be, because
@@ -115,7 +126,12 @@ bool AxisPoller::publish(const AxisSample& sample, const std::optional<AxisSampl
   const MutexLock lock(mutex_);
   const auto last = log_.latest();
   const bool agrees = doubtful && (reachable(*doubtful, sample) || (last && continues(*last, *doubtful, sample)));
-  if (last && !reachable(*last, sample) && !agrees) return false;
+  const bool is_doubtful = last ? !reachable(*last, sample) : far_outside(sample);
+  if (is_doubtful && !agrees) return false;
+  if (!last && is_doubtful) {
+    spdlog::warn("the first position of the axis at {}, {} um, lies far outside the limits of {}..{} um{}",
+                 port_.traits().address, sample.position.value, min_.value, max_.value, port_.traits().doubt_hint);
+  }
   log_.add(sample);
   sampled_.notify_all();
   return true;
@@ -123,6 +139,7 @@ bool AxisPoller::publish(const AxisSample& sample, const std::optional<AxisSampl
 
 void AxisPoller::poll_once() {
   std::string error;
+  std::optional<AxisSample> before;
   std::optional<AxisSample> doubtful;
   for (int reading = 0; reading < kReadings; ++reading) {
     const auto sample = read_sample(error);
@@ -134,10 +151,11 @@ void AxisPoller::poll_once() {
     if (publish(*sample, doubtful)) return;
     ++implausible_;
     spdlog::debug("stage: a position of {} um cannot have been reached; reading again", sample->position.value);
-    doubtful = sample;
+    before = std::exchange(doubtful, sample);
   }
-  if (lose("its positions contradict one another, the last is " + std::to_string(doubtful->position.value) +
-           " um: check the line and the encoder")) {
+  if (lose("its positions contradict one another, the last two are " + std::to_string(before->position.value) +
+           " um and " + std::to_string(doubtful->position.value) + " um: check the line and the encoder" +
+           port_.traits().doubt_hint)) {
     stop_lost_axis();
   }
 }
@@ -169,6 +187,29 @@ void AxisPoller::read_temperatures() {
   std::vector<StageTemperature> read = port_.temperatures();
   const MutexLock lock(mutex_);
   temperatures_ = std::move(read);
+}
+
+void AxisPoller::look_for_others() {
+  const HostTime now = HostClock::now();
+  if (!connected() || now - others_looked_for_ < kLookPeriod) return;
+  others_looked_for_ = now;
+  auto found = port_.foreign_write();
+  if (!found) return;
+  spdlog::warn("another master writes to the drive at {}: {}", port_.traits().address, *found);
+  const MutexLock lock(mutex_);
+  foreign_ = std::move(*found);
+  foreign_seen_ = now;
+}
+
+std::optional<std::string> AxisPoller::foreign_write(bool look) {
+  if (look) {
+    const MutexLock polling(polling_);
+    others_looked_for_ = {};
+    look_for_others();
+  }
+  const MutexLock lock(mutex_);
+  if (foreign_.empty() || HostClock::now() - foreign_seen_ > kForeignTime) return std::nullopt;
+  return foreign_;
 }
 
 std::vector<StageTemperature> AxisPoller::temperatures() const {

@@ -18,13 +18,14 @@ namespace fvd {
 
 /// A controller that stops answering is lost for good: everything throws kStageDisconnected from then on, and if the
 /// axis moved it is told to stop, once. A position that the axis cannot have reached since the last sample is
-/// believed when another reading agrees, or lies further on the same way; five that contradict one another are a loss.
-/// context: thread-safe.
+/// believed when another reading agrees, or lies further on the same way; so is a first one far outside the limits.
+/// Five that contradict one another are a loss. What another master writes is looked for five times a second. context:
+/// thread-safe.
 class AxisPoller {
  public:
-  /// Takes the first sample. max_speed_um_per_s: what the axis is commanded to; homing may be faster. The port
-  /// outlives the poller. Throws Error kStageDisconnected.
-  AxisPoller(AxisPort& port, double max_speed_um_per_s);
+  /// Takes the first sample. max_speed_um_per_s: what the axis is commanded to; homing may be faster. min, max: the
+  /// axis' limits. The port outlives the poller. Throws Error kStageDisconnected.
+  AxisPoller(AxisPort& port, double max_speed_um_per_s, Micrometers min, Micrometers max);
   AxisPoller(const AxisPoller&) = delete;
   AxisPoller& operator=(const AxisPoller&) = delete;
 
@@ -38,6 +39,9 @@ class AxisPoller {
   [[nodiscard]] PositionMean mean(HostTime from, HostTime to) const;
   [[nodiscard]] PositionMean line(HostTime at, std::chrono::microseconds reach) const;
   [[nodiscard]] std::vector<StageTemperature> temperatures() const;
+
+  /// What another master wrote within the last ten seconds. look: looks now, too.
+  [[nodiscard]] std::optional<std::string> foreign_write(bool look);
 
   /// Runs the action between two samples: on a slow line they would come between the frames of a start.
   void pause(const std::function<void()>& action);
@@ -58,9 +62,13 @@ class AxisPoller {
   bool lose(const std::string& error);
   void stop_lost_axis() noexcept;
   void read_temperatures() FVD_REQUIRES(polling_);
+  void look_for_others() FVD_REQUIRES(polling_);
+  [[nodiscard]] bool far_outside(const AxisSample& sample) const;
 
   AxisPort& port_;
   const double max_speed_um_per_s_;
+  const Micrometers min_;
+  const Micrometers max_;
   Mutex polling_;  // held for the length of a poll; taken before mutex_
   mutable Mutex mutex_;
   Condition sampled_;
@@ -70,7 +78,10 @@ class AxisPoller {
   bool connected_ FVD_GUARDED_BY(mutex_) = true;
   std::string loss_ FVD_GUARDED_BY(mutex_);
   std::vector<StageTemperature> temperatures_ FVD_GUARDED_BY(mutex_);
+  std::string foreign_ FVD_GUARDED_BY(mutex_);
+  HostTime foreign_seen_ FVD_GUARDED_BY(mutex_){};
   HostTime temperatures_read_ FVD_GUARDED_BY(polling_){};
+  HostTime others_looked_for_ FVD_GUARDED_BY(polling_){};
   std::atomic<bool> homed_{false};
   std::atomic<std::uint64_t> implausible_{0};
   std::jthread thread_;  // last

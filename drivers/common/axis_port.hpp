@@ -25,13 +25,15 @@ enum class CommandOutcome {
 
 struct CommandResult {
   CommandOutcome outcome = CommandOutcome::kDone;
-  std::string error;  ///< empty if kDone
+  std::string error;   ///< empty if kDone
+  bool later = false;  ///< of kUnknown: the controller was busy; the line is sound
 };
 
 /// What is known of the controller and its axis once the port is open.
 struct AxisTraits {
-  std::string name;     ///< of the drive
-  std::string address;  ///< of the line, e.g. "127.0.0.1:502 unit 1"
+  std::string name;          ///< of the drive
+  std::string address;       ///< of the line, e.g. "127.0.0.1:502 unit 1"
+  std::string doubt_hint{};  ///< said with a position that cannot be: what may be wrong beside line and encoder
   FeedbackSource feedback = FeedbackSource::kNone;
   double steps_per_um = 1.0;                                    ///< of targets; negative where steps fall as z grows
   Micrometers feedback_resolution;                              ///< smallest step of the measured position
@@ -60,8 +62,14 @@ class AxisPort {
   /// State and position now; nothing, and why, when the controller does not answer.
   [[nodiscard]] virtual std::optional<AxisSample> sample(std::string& error) = 0;
 
-  /// Makes the controller ready for moves: torque on where it is off - where it is on it stays on - and settings.
-  /// The axis rests.
+  /// What the controller says otherwise than it must, read without moving or writing anything; asked before the first
+  /// motion. Throws Error kStageDisconnected.
+  [[nodiscard]] virtual std::vector<std::string> disagreements() { return {}; }
+
+  /// Settings, before the first motion and whenever the axis has to be enabled; torque stays as it is. The axis rests.
+  [[nodiscard]] virtual CommandResult prepare(const MotionLimits& /*limits*/, std::stop_token /*stop*/) { return {}; }
+
+  /// Torque on; not asked for where it is on. The axis rests.
   [[nodiscard]] virtual CommandResult enable(const MotionLimits& limits, std::stop_token stop) = 0;
 
   /// Starts the search for the reference. May return before it has ended; the samples tell.
@@ -75,6 +83,9 @@ class AxisPort {
 
   /// Halts the axis ahead of all else that waits for the line; sent once.
   [[nodiscard]] virtual CommandResult stop() = 0;
+
+  /// What another master wrote since the last look; each time it is told once. Nothing where that cannot be seen.
+  [[nodiscard]] virtual std::optional<std::string> foreign_write() { return std::nullopt; }
 
   /// The target of the last move as the controller remembers it, steps; for controllers that do not tell whether they
   /// are homed. Nothing if it cannot be read.

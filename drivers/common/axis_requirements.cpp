@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "core/base/error.hpp"
 
@@ -35,8 +36,68 @@ StageInfo stage_info(const AxisTraits& traits, const AxisSettings& settings) {
   return info;
 }
 
+StageStatus stage_status(const AxisPort& port, const AxisSample& sample, std::vector<StageTemperature> temperatures) {
+  StageStatus status;
+  status.enabled = sample.enabled;
+  status.homed = sample.homed;
+  status.moving = sample.moving;
+  status.in_position = sample.in_position;
+  status.alarm = sample.alarm;
+  status.alarm_code = sample.alarm_code;
+  if (sample.alarm) status.alarm_text = port.alarm_text(sample.alarm_code);
+  status.position = sample.position;
+  status.temperatures = std::move(temperatures);
+  return status;
+}
+
+AxisState axis_state(const AxisSample& sample, AxisState commanded) {
+  if (sample.alarm || sample.emergency_stop) return AxisState::kAlarm;
+  if (commanded == AxisState::kHoming) return commanded;
+  if (!sample.reports_rest()) return AxisState::kMoving;
+  if (commanded == AxisState::kMoving) return AxisState::kSettling;
+  if (!sample.enabled) return AxisState::kDisabled;
+  return sample.homed ? AxisState::kReady : AxisState::kNotHomed;
+}
+
+bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& before,
+           const SettleCriterion& criterion) {
+  return sample.moving || abs(sample.position - move.target_quantised) <= criterion.window ||
+         abs(sample.position - before.position) > criterion.window;
+}
+
+std::string not_settled_text(const MoveRecord& move, const AxisSample& sample, const SettleCriterion& criterion) {
+  std::ostringstream message;
+  message << "the axis did not settle within " << criterion.window.value << " um of " << move.target_quantised.value
+          << " um in " << criterion.timeout.count() << " ms; ";
+  const double off_um = std::abs((sample.position - move.target_quantised).value);
+  if (off_um > criterion.window.value) {
+    message << "it was at " << sample.position.value << " um";
+    return message.str();
+  }
+  message << "it stands where it should, " << off_um << " um off, but ";
+  if (sample.moving) {
+    message << "the drive reports motion: does its servo hunt?";
+  } else if (!sample.in_position) {
+    message << "the drive does not report 'in position': widen its own window, or see to what makes it swing";
+  } else {
+    message << "it was not there for " << criterion.samples << " readings and " << criterion.dwell.count()
+            << " ms in a row, of " << move.polls
+            << " readings in all: the line is slow, or the axis swings; allow more time, or a wider window";
+  }
+  return message.str();
+}
+
 void require_wanted(const std::stop_token& stop) {
   if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
+}
+
+void require_agreement(AxisPort& port) {
+  std::string all;
+  for (const std::string& one : port.disagreements()) all += (all.empty() ? "" : "; ") + one;
+  if (all.empty()) return;
+  throw Error(ErrorCode::kBadConfig, "the drive at " + port.traits().address + " disagrees with its profile '" +
+                                         port.traits().name + "': " + all +
+                                         ". Nothing was moved; 'fvdctl stage check' shows all that it reads");
 }
 
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings) {

@@ -18,8 +18,22 @@ struct AxisSettings {
 /// What is said of the axis to whoever uses it.
 [[nodiscard]] StageInfo stage_info(const AxisTraits& traits, const AxisSettings& settings);
 
+/// What a sample says, without the state.
+[[nodiscard]] StageStatus stage_status(const AxisPort& port, const AxisSample& sample,
+                                       std::vector<StageTemperature> temperatures);
+/// Where a connected axis stands. commanded: what it is told to do, kReady if nothing.
+[[nodiscard]] AxisState axis_state(const AxisSample& sample, AxisState commanded);
+/// The axis moves, or stands where the move leads, or no longer where it stood before it.
+[[nodiscard]] bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& before,
+                         const SettleCriterion& criterion);
+/// Why a move whose time is over did not end: where the axis stands, and what is missing if that is where it should.
+[[nodiscard]] std::string not_settled_text(const MoveRecord& move, const AxisSample& sample,
+                                           const SettleCriterion& criterion);
+
 /// Throws Error kAborted if a stop was requested: nothing begins to move for a caller that does not want it any more.
 void require_wanted(const std::stop_token& stop);
+/// Throws Error kBadConfig if the controller is not what the port takes it for, with every reason.
+void require_agreement(AxisPort& port);
 /// Throws Error kStageLimit if the configured limits reach beyond the controller's own.
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings);
 /// Throws Error kStageLimit if the target is beyond the controller's counter.

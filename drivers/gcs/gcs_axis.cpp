@@ -11,6 +11,7 @@
 
 #include "core/base/error.hpp"
 #include "drivers/common/axis_controller.hpp"
+#include "drivers/common/drive_lock.hpp"
 #include "drivers/common/text_line.hpp"
 
 namespace fvd {
@@ -71,7 +72,7 @@ std::optional<Integer> integer_of(const std::string& answer, int base) {
 class GcsPort final : public AxisPort {
  public:
   explicit GcsPort(const StageConfig& config)
-      : axis_(config.gcs_axis), sign_(config.reversed ? -1.0 : 1.0), line_(line_config(config)) {
+      : lock_(config), axis_(config.gcs_axis), sign_(config.reversed ? -1.0 : 1.0), line_(line_config(config)) {
     traits_.name = identity();
     traits_.address = line_.description() + " axis " + axis_;
     traits_.feedback =
@@ -118,12 +119,16 @@ class GcsPort final : public AxisPort {
   }
 
   /// Controllers that cannot set an acceleration have one of their own.
-  [[nodiscard]] CommandResult enable(const MotionLimits& limits, std::stop_token /*stop*/) override {
+  [[nodiscard]] CommandResult prepare(const MotionLimits& limits, std::stop_token /*stop*/) override {
     speed_um_per_s_ = 0.0;
     for (const char* const command : {"ACC", "DEC"}) {
       CommandResult set = run(command, millimetres(limits.acceleration_um_per_s2), {kUnknownCommand});
       if (set.outcome != CommandOutcome::kDone) return set;
     }
+    return {};
+  }
+
+  [[nodiscard]] CommandResult enable(const MotionLimits& /*limits*/, std::stop_token /*stop*/) override {
     return run("SVO", "1");
   }
 
@@ -246,6 +251,7 @@ class GcsPort final : public AxisPort {
     return {CommandOutcome::kRefused, command + ": error " + std::to_string(*code)};
   }
 
+  const DriveLock lock_;  // first: nothing is sent without it
   const std::string axis_;
   const double sign_;  // of the controller's position as z grows
   TextLine line_;

@@ -34,8 +34,8 @@ void collect(const DriveSequence& sequence, std::map<std::string, DriveRegister>
 /// Every register the profile uses and that can be read, by name.
 std::map<std::string, DriveRegister> registers_of(const DriveProfile& profile) {
   std::map<std::string, DriveRegister> registers;
-  for (const auto* sequence : {&profile.enable, &profile.disable, &profile.home, &profile.move_absolute, &profile.stop,
-                               &profile.alarm_reset}) {
+  for (const auto* sequence : {&profile.prepare, &profile.enable, &profile.disable, &profile.home,
+                               &profile.move_absolute, &profile.stop, &profile.alarm_reset}) {
     collect(*sequence, registers);
   }
   const auto add = [&](const DriveRegister& reg) { registers[reg.name] = reg; };
@@ -54,6 +54,7 @@ std::map<std::string, DriveRegister> registers_of(const DriveProfile& profile) {
   }
   for (const DriveIdentity& identity : profile.identify) add_all(identity.condition);
   for (const DriveTemperature& temperature : profile.temperatures) add(temperature.reg);
+  for (const DriveLabel& label : profile.labels) add(label.reg);
   if (profile.watchdog) add(profile.watchdog->reg);
   if (profile.soft_limits) {
     add(profile.soft_limits->positive);
@@ -61,6 +62,18 @@ std::map<std::string, DriveRegister> registers_of(const DriveProfile& profile) {
   }
   std::erase_if(registers, [](const auto& entry) { return !entry.second.readable; });
   return registers;
+}
+
+/// Of a number smaller than this the upper word says nothing but the sign: with its words exchanged it is a multiple of
+/// 65536, which hardly any other number is.
+constexpr std::int64_t kSmall = 0x8000;
+
+/// What the register's words, in the other order, would make of it.
+std::int64_t with_exchanged_words(const DriveRegister& reg, std::int64_t value) {
+  if (reg.words() != 2) return value;
+  DriveRegister other = reg;
+  other.order = reg.order == WordOrder::kHighFirst ? WordOrder::kLowFirst : WordOrder::kHighFirst;
+  return decode(other, encode(reg, value).data());
 }
 
 class Checker {
@@ -96,8 +109,8 @@ class Checker {
       if (!answered && check_.registers.size() >= 2) break;
     }
     if (!answered) {
-      throw Error(ErrorCode::kStageDisconnected,
-                  link_.description() + " answers nothing: is the drive on, and are unit, baud rate and parity right?");
+      throw Error(ErrorCode::kStageDisconnected, link_.description() + " gives no answer that can be used: " +
+                                                     check_.registers.front().error + ". " + link_.advice());
     }
   }
 
@@ -165,30 +178,51 @@ class Checker {
     if (is(profile_.moving) && is(profile_.in_position)) {
       check_.disagreements.push_back("moving and in position at once: is one of the masks inverted?");
     }
-    if (is(profile_.moving) && !is(profile_.enabled)) {
-      check_.disagreements.push_back("moving although not enabled: is one of the masks wrong?");
-    }
+    const bool exchanged = judge_words();
     for (const auto& temperature : check_.temperatures) {
-      if (temperature.celsius > -40.0 && temperature.celsius < 150.0) continue;
+      if (exchanged || (temperature.celsius > -40.0 && temperature.celsius < 150.0)) continue;
       std::ostringstream text;
       text << "a " << temperature.name << " temperature of " << temperature.celsius
            << " degC: is celsius_per_unit right?";
       check_.disagreements.push_back(text.str());
     }
-    judge_position();
+    if (!exchanged) judge_position();
   }
 
-  /// A position read with the wrong word order jumps by 65536 counts for one, or is far beyond any stage.
+  /// True, and said, if more 32-bit registers look as if their words were exchanged than look right.
+  bool judge_words() {
+    std::string names;
+    int balance = 0;
+    for (const auto& [name, reg] : registers_of(profile_)) {
+      const auto found = values_.find(name);
+      if (found == values_.end() || reg.words() != 2 || reg.codec != RegisterCodec::kPlain) continue;
+      const std::int64_t value = found->second;
+      if (value != 0 && std::abs(value) < kSmall) --balance;
+      if (std::abs(value) <= UINT16_MAX || std::abs(with_exchanged_words(reg, value)) >= kSmall) continue;
+      ++balance;
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    if (balance <= 0) return false;
+    std::ostringstream text;
+    text << "the two words of " << names << " seem to be exchanged: is /word_order right?";
+    if (check_.position_um) {
+      const std::int64_t other = with_exchanged_words(profile_.position, values_.at(profile_.position.name));
+      text << " The position reads " << *check_.position_um << " um, in the other order "
+           << profile_.direction * static_cast<double>(other) / profile_.counts_per_um << " um.";
+    }
+    check_.disagreements.push_back(text.str());
+    return true;
+  }
+
+  /// A position that is far beyond any stage.
   void judge_position() {
     if (!check_.position_um || std::abs(*check_.position_um) <= 1e6) return;
     std::ostringstream text;
     text << "a position of " << *check_.position_um << " um: is /word_order right?";
-    const DriveRegister& reg = profile_.position;
-    DriveRegister other = reg;
-    other.order = reg.order == WordOrder::kHighFirst ? WordOrder::kLowFirst : WordOrder::kHighFirst;
-    if (const auto value = read_register(link_, other)) {
-      text << " With the other it would be "
-           << profile_.direction * static_cast<double>(*value) / profile_.counts_per_um << " um.";
+    if (profile_.position.words() == 2) {
+      const std::int64_t other = with_exchanged_words(profile_.position, values_.at(profile_.position.name));
+      text << " With the other it would be " << profile_.direction * static_cast<double>(other) / profile_.counts_per_um
+           << " um.";
     }
     check_.disagreements.push_back(text.str());
   }

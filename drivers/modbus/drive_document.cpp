@@ -209,7 +209,9 @@ void describe_sequences(DriveDocument& document, Fields& sequences) {
     steps_field(sequences, key, steps, meaning);
     sequences.require(key);
   };
-  wanted("enable", document.enable, "makes the drive ready to move; [] = nothing to do");
+  steps_field(sequences, "prepare", document.prepare,
+              "settings, sent before the first motion and whenever the drive is enabled; takes no torque");
+  wanted("enable", document.enable, "gives torque, sent where status.enabled does not hold; [] = nothing to do");
   steps_field(sequences, "disable", document.disable, "takes the motor's current away");
   wanted("home", document.home, "starts the homing");
   wanted("move_absolute", document.move_absolute, "starts a move");
@@ -236,6 +238,11 @@ void describe_extras(DriveDocument& document, Fields& fields) {
                 inner.require("text");
                 describe_condition(identity.condition, inner);
               });
+  fields.list("watch", document.watch, {0, 32},
+              "registers that only the drive's master writes: a value that fvd did not write is another master's",
+              [](Fields& inner, WatchedDocument& watched) {
+                required_name(inner, "register", watched.reg, "such as the target or the control word");
+              });
   fields.optional("watchdog", document.watchdog, [](Fields& outer, WatchdogDocument& watchdog) {
     outer.group("watchdog", "stops the drive by itself when nothing is heard", [&](Fields& in) {
       required_name(in, "register", watchdog.reg, "of the time");
@@ -252,6 +259,11 @@ void describe_extras(DriveDocument& document, Fields& fields) {
                   required_name(in, "negative", limits.negative, "register of the lower limit");
                 });
   });
+  fields.map("labels", document.labels, "by what they are, such as serial or firmware: told with the drive's name",
+             [](Fields& outer, const std::string& key, LabelDocument& label) {
+               outer.group(key, "a number by which a single drive is known",
+                           [&](Fields& in) { required_name(in, "register", label.reg, "that holds it"); });
+             });
   fields.map("temperatures", document.temperatures, "by what is measured",
              [](Fields& outer, const std::string& key, TemperatureDocument& temperature) {
                outer.group(key, "a temperature", [&](Fields& in) {

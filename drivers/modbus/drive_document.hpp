@@ -68,6 +68,10 @@ struct IdentityDocument {
   ConditionDocument condition;
 };
 
+struct WatchedDocument {
+  std::string reg;
+};
+
 struct WatchdogDocument {
   std::string reg;
   std::int64_t armed = 0;
@@ -82,6 +86,10 @@ struct SoftLimitsDocument {
 struct TemperatureDocument {
   std::string reg;
   double celsius_per_unit = 0.1;
+};
+
+struct LabelDocument {
+  std::string reg;
 };
 
 struct DriveDocument {
@@ -106,6 +114,7 @@ struct DriveDocument {
   std::optional<ConditionDocument> limit_negative;
   std::optional<ConditionDocument> emergency_stop;
 
+  std::vector<StepDocument> prepare;
   std::vector<StepDocument> enable;
   std::vector<StepDocument> disable;
   std::vector<StepDocument> home;
@@ -115,9 +124,11 @@ struct DriveDocument {
 
   std::map<std::string, AlarmDocument> alarms;
   std::vector<IdentityDocument> identify;
+  std::vector<WatchedDocument> watch;
   std::optional<WatchdogDocument> watchdog;
   std::optional<SoftLimitsDocument> soft_limits;
   std::map<std::string, TemperatureDocument> temperatures;
+  std::map<std::string, LabelDocument> labels;
 };
 
 /// Every key with its range and meaning: the one place that defines them.

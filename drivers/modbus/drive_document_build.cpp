@@ -206,6 +206,7 @@ class ProfileBuilder {
   }
 
   void build_sequences() {
+    profile_.prepare = sequence("/sequences/prepare", document_.prepare);
     profile_.enable = sequence("/sequences/enable", document_.enable);
     profile_.disable = sequence("/sequences/disable", document_.disable);
     profile_.home = sequence("/sequences/home", document_.home);
@@ -254,6 +255,9 @@ class ProfileBuilder {
       const IdentityDocument& text = document_.identify[i];
       profile_.identify.push_back({condition("/identify/" + std::to_string(i), text.condition), text.text});
     }
+    for (std::size_t i = 0; i < document_.watch.size(); ++i) {
+      profile_.watched.push_back(reg("/watch/" + std::to_string(i) + "/register", document_.watch[i].reg, true));
+    }
     if (const auto& text = document_.watchdog) {
       profile_.watchdog = {reg("/watchdog/register", text->reg, true), text->armed, text->disarmed};
       require_fits("/watchdog/armed", profile_.watchdog->reg, text->armed);
@@ -262,6 +266,9 @@ class ProfileBuilder {
     if (const auto& text = document_.soft_limits) {
       profile_.soft_limits = {reg("/soft_limits/positive", text->positive, true),
                               reg("/soft_limits/negative", text->negative, true)};
+    }
+    for (const auto& [name, text] : document_.labels) {
+      profile_.labels.push_back({name, reg("/labels/" + name + "/register", text.reg, true)});
     }
     for (const auto& [name, text] : document_.temperatures) {
       profile_.temperatures.push_back(

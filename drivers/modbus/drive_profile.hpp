@@ -47,6 +47,12 @@ struct DriveWatchdog {
   std::int64_t disarmed = 0;  ///< register value
 };
 
+/// A number by which a single drive is known: its serial number, its firmware.
+struct DriveLabel {
+  std::string name;
+  DriveRegister reg;
+};
+
 struct DriveTemperature {
   std::string name;
   DriveRegister reg;
@@ -79,6 +85,8 @@ struct DriveProfile {
   /// Reads the target of the last move; forgotten in a restart. For drives that do not say whether they are homed.
   std::optional<DriveRegister> target;
 
+  std::vector<DriveRegister> watched;  ///< nobody but the drive's master writes them
+
   DriveCondition enabled;
   std::optional<DriveCondition> homed;  ///< nothing: the drive has no such bit; homed since the last homing then
   DriveCondition moving;
@@ -88,7 +96,8 @@ struct DriveProfile {
   std::optional<DriveCondition> limit_negative;
   std::optional<DriveCondition> emergency_stop;
 
-  DriveSequence enable;
+  DriveSequence prepare;  ///< settings before the first motion; may be empty
+  DriveSequence enable;   ///< run where `enabled` does not hold
   DriveSequence disable;  ///< may be empty
   DriveSequence home;
   DriveSequence move_absolute;
@@ -99,6 +108,7 @@ struct DriveProfile {
   std::optional<DriveWatchdog> watchdog;
   std::optional<DriveSoftLimits> soft_limits;
   std::vector<DriveTemperature> temperatures;
+  std::vector<DriveLabel> labels;
   std::map<int, DriveAlarm> alarms;             ///< by code
   bool alarms_are_bits = false;                 ///< the codes are single bits, of which several may be set
   std::chrono::milliseconds start_within{150};  ///< a move that has not begun by then was refused

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/base/mutex.hpp"
+#include "drivers/modbus/pause.hpp"
 
 namespace fvd {
 
@@ -14,15 +14,6 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr int kRepeats = 3;                 // of a write that does no harm twice
 constexpr milliseconds kWaitPollPeriod{2};  // between two readings of a wait's condition
-
-/// False when the wait was ended by a stop request.
-bool pause(milliseconds time, const std::stop_token& stop) {
-  Mutex mutex;
-  Condition never;
-  MutexLock lock(mutex);
-  never.wait_for(lock, stop, time, [] { return false; });
-  return !stop.stop_requested();
-}
 
 class Runner {
  public:
@@ -54,7 +45,7 @@ class Runner {
 
   static SequenceResult ended(const ModbusReply& reply, const std::string& what) {
     if (reply.outcome == ModbusOutcome::kOk) return {};
-    return {reply.outcome, what + ": " + reply.error, 0};
+    return {reply.outcome, what + ": " + reply.error, 0, reply.later};
   }
   static SequenceResult interrupted(const std::string& what) {
     return {ModbusOutcome::kUnknown, what + ": the axis was asked to stop", 0};
@@ -71,21 +62,24 @@ class Runner {
       words.insert(words.end(), encoded.begin(), encoded.end());
     }
     const DriveRegister& first = step.writes.front().reg;
+    // An urgent write is a stop, which may be sent as often as it takes.
+    const ModbusWriting how{first.write_single, step.repeatable || priority_ == ModbusPriority::kUrgent};
     ModbusReply reply;
     for (int attempt = 0; attempt < (step.repeatable ? kRepeats : 1); ++attempt) {
-      reply = link_.write(first.table, first.address, words, priority_, first.write_single);
-      if (reply.outcome != ModbusOutcome::kUnknown || stop_.stop_requested()) break;
+      reply = link_.write(first.table, first.address, words, priority_, how, stop_);
+      if (reply.outcome != ModbusOutcome::kUnknown || reply.later || stop_.stop_requested()) break;
     }
     return ended(reply, "write of " + first.name);
   }
 
   SequenceResult change(const DriveRegister& reg, std::uint32_t set, std::uint32_t clear) {
     const std::string what = "change of " + reg.name;
-    const ModbusReply read = link_.read(reg.table, reg.address, reg.words(), priority_);
+    const ModbusReply read = link_.read(reg.table, reg.address, reg.words(), priority_, stop_);
     if (read.outcome != ModbusOutcome::kOk) return ended(read, what);
     const auto now = static_cast<std::uint32_t>(decode(reg, read.values.data()));
     const auto words = encode(reg, std::int64_t{(now & ~clear) | set});
-    return ended(link_.write(reg.table, reg.address, words, priority_, reg.write_single), what);
+    // Bits that are set already make no second edge.
+    return ended(link_.write(reg.table, reg.address, words, priority_, {reg.write_single, true}), what);
   }
 
   SequenceResult run_step(const ModifyStep& step) { return change(step.reg, step.set, step.clear); }

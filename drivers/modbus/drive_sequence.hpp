@@ -72,9 +72,11 @@ struct SequenceResult {
   ModbusOutcome outcome = ModbusOutcome::kOk;
   std::string error;     ///< empty if kOk; else which step and why
   std::size_t step = 0;  ///< that did not end with kOk, 0-based; a branch counts as one
+  bool later = false;    ///< of kUnknown: the drive was busy, the line is sound
 };
 
-/// Runs the steps in order up to the first that is not ok. Writes are sent once each, but for repeatable ones. A wait
+/// Runs the steps in order up to the first that is not ok. Writes are sent once each, but
+/// for repeatable ones, and urgent ones to a busy drive. A wait
 /// that runs out and an expectation that is not met are kRejected. first: of the steps to run. A stop request ends
 /// waits and delays with kUnknown. context: blocks.
 [[nodiscard]] SequenceResult run_sequence(ModbusLink& link, const DriveSequence& sequence, const DriveValues& values,

@@ -8,8 +8,11 @@
 
 #include "core/base/error.hpp"
 #include "drivers/common/axis_controller.hpp"
+#include "drivers/common/drive_lock.hpp"
+#include "drivers/modbus/drive_check.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 #include "drivers/modbus/modbus_link.hpp"
+#include "drivers/modbus/own_writes.hpp"
 
 namespace fvd {
 
@@ -24,7 +27,7 @@ CommandResult command_result(const SequenceResult& result) {
     case ModbusOutcome::kUnknown:
       break;
   }
-  return {CommandOutcome::kUnknown, result.error};
+  return {CommandOutcome::kUnknown, result.error, result.later};
 }
 
 /// The profile, counting the way that this machine's stage is built.
@@ -38,9 +41,15 @@ DriveProfile profile_for(const StageConfig& config) {
 class ModbusPort final : public AxisPort {
  public:
   explicit ModbusPort(const StageConfig& config)
-      : profile_(profile_for(config)), link_(modbus_link_config(config)) {
+      : profile_(profile_for(config)),
+        own_writes_(profile_.watched, !profile_.homed),
+        lock_(config),
+        link_(modbus_link_config(config)) {
+    link_.observe_writes(
+        [this](const ModbusRequest& write, bool sent, bool done) { own_writes_.saw(write, sent, done); });
     identify();
     describe(config);
+    spdlog::info("stage: {} at {}", traits_.name, traits_.address);
   }
 
   ~ModbusPort() override {
@@ -48,10 +57,10 @@ class ModbusPort final : public AxisPort {
     if (watchdog_armed_ && answers_ && rests_) (void)write_watchdog(profile_.watchdog->disarmed);
     const ModbusLinkStats stats = link_.stats();
     spdlog::info(
-        "stage link closed: {} transactions, {} retries, {} unknown, {} reconnects, {} bytes discarded, latency p50 "
-        "{:.0f} us p99 {:.0f} us",
-        stats.transactions, stats.retries, stats.unknown, stats.reconnects, stats.discarded_bytes, stats.latency_p50_us,
-        stats.latency_p99_us);
+        "stage link closed: {} transactions, {} retries, {} unknown, {} put off, {} reconnects, {} bytes discarded, "
+        "latency p50 {:.0f} us p99 {:.0f} us",
+        stats.transactions, stats.retries, stats.unknown, stats.later, stats.reconnects, stats.discarded_bytes,
+        stats.latency_p50_us, stats.latency_p99_us);
   }
 
   [[nodiscard]] const AxisTraits& traits() const override { return traits_; }
@@ -64,9 +73,10 @@ class ModbusPort final : public AxisPort {
       ModbusReply reply = link_.read(block.table, block.address, block.count);
       answers_ = reply.outcome == ModbusOutcome::kOk;
       if (!answers_) {
-        error = reply.error;
+        error = reply.error + (answered_once_ ? "" : ". " + link_.advice());
         return std::nullopt;
       }
+      answered_once_ = true;
       sample.time = reply.sampled;  // the last block's, which holds the position
       image.add(block, std::move(reply.values));
     }
@@ -91,10 +101,16 @@ class ModbusPort final : public AxisPort {
     return sample;
   }
 
-  [[nodiscard]] CommandResult enable(const MotionLimits& limits, std::stop_token stop) override {
-    CommandResult result = run(profile_.enable, values({}, limits), std::move(stop));
+  [[nodiscard]] std::vector<std::string> disagreements() override { return check_drive(profile_, link_).disagreements; }
+
+  [[nodiscard]] CommandResult prepare(const MotionLimits& limits, std::stop_token stop) override {
+    CommandResult result = run(profile_.prepare, values({}, limits), std::move(stop));
     if (result.outcome == CommandOutcome::kDone) arm_watchdog();
     return result;
+  }
+
+  [[nodiscard]] CommandResult enable(const MotionLimits& limits, std::stop_token stop) override {
+    return run(profile_.enable, values({}, limits), std::move(stop));
   }
 
   [[nodiscard]] CommandResult home(const MotionLimits& limits, std::stop_token stop) override {
@@ -118,6 +134,8 @@ class ModbusPort final : public AxisPort {
   [[nodiscard]] CommandResult stop() override {
     return command_result(run_sequence(link_, profile_.stop, {}, ModbusPriority::kUrgent, {}));
   }
+
+  [[nodiscard]] std::optional<std::string> foreign_write() override { return own_writes_.foreign(link_); }
 
   [[nodiscard]] std::optional<std::int64_t> remembered_target() override {
     return profile_.target ? read_register(link_, *profile_.target) : std::nullopt;
@@ -143,6 +161,7 @@ class ModbusPort final : public AxisPort {
                           stats.reconnects,
                           stats.discarded_bytes,
                           0,
+                          stats.later,
                           stats.latency_p50_us,
                           stats.latency_p99_us,
                           stats.latency_max_us};
@@ -162,8 +181,9 @@ class ModbusPort final : public AxisPort {
   }
 
   void describe(const StageConfig& config) {
-    traits_.name = profile_.name;
+    traits_.name = profile_.name + labels();
     traits_.address = link_.description();
+    traits_.doubt_hint = ", and whether /word_order of the profile is the drive's: the words may be exchanged";
     traits_.feedback = profile_.feedback;
     traits_.steps_per_um = profile_.direction * profile_.steps_per_um;
     traits_.feedback_resolution = Micrometers{std::max(profile_.feedback_resolution_um, 1.0 / profile_.counts_per_um)};
@@ -172,9 +192,21 @@ class ModbusPort final : public AxisPort {
     traits_.tells_homed = profile_.homed.has_value();
     traits_.start_within = profile_.start_within;
     traits_.home_timeout = profile_.home_timeout;
-    // Five readings of every block, each tried three times, behind one start of a move with its handshakes.
+    // Five readings of every block, each tried three times, behind one start of a move with its handshakes; a drive
+    // that is busy may put off each block once for as long as it may.
     traits_.sample_timeout = std::chrono::seconds(5) +
+                             static_cast<int>(profile_.poll.size()) * ModbusLinkConfig{}.patience +
                              15 * static_cast<int>(profile_.poll.size() + 1) * (config.response_timeout + config.quiet);
+  }
+
+  /// " (firmware 12, serial 3456)"; empty where the profile has none.
+  [[nodiscard]] std::string labels() {
+    std::string all;
+    for (const DriveLabel& label : profile_.labels) {
+      const auto value = read_register(link_, label.reg);
+      all += (all.empty() ? " (" : ", ") + label.name + " " + (value ? std::to_string(*value) : "unknown");
+    }
+    return all.empty() ? all : all + ")";
   }
 
   [[nodiscard]] std::optional<std::pair<Micrometers, Micrometers>> soft_limits() {
@@ -213,7 +245,8 @@ class ModbusPort final : public AxisPort {
 
   ModbusReply write_watchdog(std::int64_t value) {
     const DriveRegister& reg = profile_.watchdog->reg;
-    return link_.write(reg.table, reg.address, encode(reg, value), ModbusPriority::kNormal, reg.write_single);
+    return link_.write(reg.table, reg.address, encode(reg, value), ModbusPriority::kNormal,
+                       {.single = reg.write_single, .repeatable = true});
   }
 
   [[nodiscard]] DriveValues values(StageCounts target, const MotionLimits& limits) const {
@@ -226,9 +259,12 @@ class ModbusPort final : public AxisPort {
   }
 
   const DriveProfile profile_;
+  OwnWrites own_writes_;  // before the link, which tells it of every write
+  const DriveLock lock_;  // before the link: nothing is sent without it
   ModbusLink link_;
   AxisTraits traits_;
   std::atomic<bool> answers_{true};
+  std::atomic<bool> answered_once_{false};
   std::atomic<bool> rests_{false};   // as of the last sample
   bool watchdog_armed_ = false;      // the mover's thread only, as the two below
   DriveValues move_;                 // the last that was sent

@@ -13,6 +13,8 @@
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "drivers/modbus/modbus_queue.hpp"
+#include "drivers/modbus/pause.hpp"
+#include "drivers/modbus/rtu_over_tcp.hpp"
 
 namespace fvd {
 
@@ -22,13 +24,17 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr int kReadAttempts = 3;
 constexpr std::size_t kLatencySamples = 1024;
+/// Between two attempts of a request that the device puts off.
+constexpr std::chrono::milliseconds kFirstPause{4};
+constexpr std::chrono::milliseconds kLongestPause{200};
 
 }  // namespace
 
 struct ModbusLink::Impl {
-  explicit Impl(const ModbusLinkConfig& config) : transport(config) {
+  explicit Impl(const ModbusLinkConfig& c) : config(c), transport(c) {
     std::string reason;
-    if (!transport.connect(reason)) {
+    bool renewed = false;
+    if (!transport.ensure_connected(false, renewed, reason)) {
       throw Error(ErrorCode::kStageDisconnected, "no Modbus connection to " + transport.description() + ": " + reason +
                                                      "; is the drive switched on and its address right?");
     }
@@ -43,7 +49,8 @@ struct ModbusLink::Impl {
       auto request = queue.next(stop);
       if (!request) break;
       ModbusReply reply = attempt(*request);
-      if (reply.outcome == ModbusOutcome::kUnknown && --request->attempts_left > 0 && !stop.stop_requested()) {
+      const bool is_doubt = reply.outcome == ModbusOutcome::kUnknown && !reply.later;
+      if (is_doubt && --request->attempts_left > 0 && !stop.stop_requested()) {
         const MutexLock lock(mutex);
         ++statistics.retries;
         queue.put_back(std::move(*request));  // what is urgent still goes first
@@ -69,29 +76,32 @@ struct ModbusLink::Impl {
 
   ModbusReply attempt(const QueuedRequest& request) {
     ModbusReply reply;
-    if (!transport.connected()) {
-      {
-        const MutexLock lock(mutex);
-        ++statistics.reconnects;
-      }
-      std::string reason;
-      if (!transport.connect(reason)) {
-        reply.error = "cannot connect: " + reason;
-        return book(std::move(reply), SteadyClock::duration::zero());
-      }
+    bool renewed = false;
+    std::string reason;
+    const bool connected = transport.ensure_connected(request.what.writes(), renewed, reason);
+    if (renewed) {
+      const MutexLock lock(mutex);
+      ++statistics.reconnects;
+    }
+    if (!connected) {
+      reply.error = "cannot connect: " + reason;
+      return book(std::move(reply), SteadyClock::duration::zero());
     }
     const auto begin = SteadyClock::now();
     const auto answer = transport.transact(request.what, reply.values, reply.error);
     const auto end = SteadyClock::now();
     reply.sampled = begin + (end - begin) / 2;
     switch (answer) {
-      case ModbusTransport::Answer::kOk:
+      case PduAnswer::kOk:
         reply.outcome = ModbusOutcome::kOk;
         break;
-      case ModbusTransport::Answer::kException:
+      case PduAnswer::kException:
         reply.outcome = ModbusOutcome::kRejected;
         break;
-      case ModbusTransport::Answer::kNone:
+      case PduAnswer::kLater:
+        reply.later = true;
+        break;
+      case PduAnswer::kNone:
         doubtful = true;
         break;
     }
@@ -102,15 +112,38 @@ struct ModbusLink::Impl {
   void resolve_doubt(const std::stop_token& stop) {
     if (!doubtful) return;
     doubtful = false;
-    const std::size_t discarded = transport.resynchronise([&] { return stop.stop_requested() || queue.has_urgent(); });
-    const MutexLock lock(mutex);
-    statistics.discarded_bytes += discarded;
+    transport.resynchronise([&] { return stop.stop_requested() || queue.has_urgent(); });
+  }
+
+  /// In the thread of who asks: others' requests go on meanwhile.
+  ModbusReply ask(ModbusRequest what, int attempts, bool repeatable, ModbusPriority priority,
+                  const std::stop_token& stop) {
+    const auto begin = SteadyClock::now();
+    for (auto wait = kFirstPause;; wait = std::min(2 * wait, kLongestPause)) {
+      QueuedRequest request;
+      request.what = what;
+      request.attempts_left = attempts;
+      ModbusReply reply = queue.submit(std::move(request), priority);
+      if (!reply.later || !repeatable) return reply;
+      if (SteadyClock::now() + wait > begin + config.patience) {
+        reply.error += ", for " + std::to_string(config.patience.count()) + " ms";
+        return reply;
+      }
+      if (!pause(wait, stop)) return reply;
+      const MutexLock lock(mutex);
+      ++statistics.retries;
+    }
   }
 
   ModbusReply book(ModbusReply reply, SteadyClock::duration latency) {
     const MutexLock lock(mutex);
     ++statistics.transactions;
-    if (reply.outcome == ModbusOutcome::kUnknown) ++statistics.unknown;
+    statistics.discarded_bytes += transport.take_discarded();
+    if (reply.later) {
+      ++statistics.later;
+    } else if (reply.outcome == ModbusOutcome::kUnknown) {
+      ++statistics.unknown;
+    }
     if (reply.outcome == ModbusOutcome::kRejected) ++statistics.rejected;
     if (reply.outcome != ModbusOutcome::kUnknown) {
       latencies_us[latency_count++ % kLatencySamples] = std::chrono::duration<double, std::micro>(latency).count();
@@ -118,6 +151,8 @@ struct ModbusLink::Impl {
     return reply;
   }
 
+  const ModbusLinkConfig config;
+  WriteObserver observer;     // set before the first write
   ModbusTransport transport;  // I/O thread only, once it runs
   bool doubtful = false;      // likewise: bytes of an answer may still come
   ModbusQueue queue;
@@ -131,19 +166,20 @@ struct ModbusLink::Impl {
 ModbusLink::ModbusLink(const ModbusLinkConfig& config) : impl_(std::make_unique<Impl>(config)) {}
 ModbusLink::~ModbusLink() = default;
 
-ModbusReply ModbusLink::read(ModbusTable table, int address, int count, ModbusPriority priority) {
-  QueuedRequest request;
-  request.what = {table, address, count, {}, false};
-  request.attempts_left = kReadAttempts;
-  return impl_->queue.submit(std::move(request), priority);
+ModbusReply ModbusLink::read(ModbusTable table, int address, int count, ModbusPriority priority, std::stop_token stop) {
+  return impl_->ask({table, address, count, {}, false}, kReadAttempts, true, priority, stop);
 }
 
 ModbusReply ModbusLink::write(ModbusTable table, int address, std::span<const std::uint16_t> values,
-                              ModbusPriority priority, bool single) {
-  QueuedRequest request;
-  request.what = {table, address, 0, {values.begin(), values.end()}, single};
-  return impl_->queue.submit(std::move(request), priority);
+                              ModbusPriority priority, ModbusWriting how, std::stop_token stop) {
+  const ModbusRequest what{table, address, 0, {values.begin(), values.end()}, how.single};
+  if (impl_->observer) impl_->observer(what, false, false);
+  ModbusReply reply = impl_->ask(what, 1, how.repeatable, priority, stop);
+  if (impl_->observer) impl_->observer(what, true, reply.outcome == ModbusOutcome::kOk);
+  return reply;
 }
+
+void ModbusLink::observe_writes(WriteObserver observer) { impl_->observer = std::move(observer); }
 
 ModbusLinkStats ModbusLink::stats() const {
   const MutexLock lock(impl_->mutex);
@@ -161,5 +197,16 @@ ModbusLinkStats ModbusLink::stats() const {
 }
 
 std::string ModbusLink::description() const { return impl_->transport.description(); }
+
+std::string ModbusLink::advice() const {
+  const auto* tcp = std::get_if<ModbusTcpEndpoint>(&impl_->config.endpoint);
+  if (tcp == nullptr) return "Is the drive on, and are unit, baud rate and parity right?";
+  if (answers_serial_frames(*tcp, impl_->config.unit, impl_->config.response_timeout)) {
+    return "It answers serial frames (RTU over TCP): set the serial device server to Modbus TCP, it passes bytes on as "
+           "they are.";
+  }
+  return "The connection was made: is the unit right, the drive behind a gateway on, and does the gateway speak Modbus "
+         "TCP and not serial frames (RTU over TCP)?";
+}
 
 }  // namespace fvd

@@ -5,8 +5,10 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -20,14 +22,26 @@ struct ModbusLinkStats {
   std::uint64_t retries = 0;
   std::uint64_t unknown = 0;
   std::uint64_t rejected = 0;
+  std::uint64_t later = 0;  ///< "acknowledge", "busy" and the two of gateways, each of which was no answer
   std::uint64_t reconnects = 0;
-  std::uint64_t discarded_bytes = 0;  ///< late or garbled, read off a serial line
+  std::uint64_t discarded_bytes = 0;  ///< late, garbled or unasked for
   double latency_p50_us = 0.0;        ///< of the last 1024 transactions that were answered
   double latency_p99_us = 0.0;
   double latency_max_us = 0.0;
 };
 
+/// How a write is sent.
+struct ModbusWriting {
+  bool single = false;      ///< FC 6 or 5, for one value
+  bool repeatable = false;  ///< it does no harm twice
+};
+
+/// Told of every write before it is sent, and again when it was answered: done is whether it was surely executed.
+using WriteObserver = std::function<void(const ModbusRequest&, bool sent, bool done)>;
+
 /// After any doubt the transport is made sure to hold no late reply. Reads are tried up to three times, writes once.
+/// Where the device says "later" - still at it, busy, a gateway without an answer - reads and repeatable writes are
+/// sent again with growing pauses until the link's patience ends; the caller waits, the line does not.
 /// Urgent requests go ahead of all others, between two attempts of a read and into the silence after a doubt too; so an
 /// urgent request is sent after one response timeout at most. context: thread-safe; calls block for their own
 /// transaction.
@@ -41,15 +55,22 @@ class ModbusLink {
 
   /// Reads registers, count 1..125, or bits, count 1..2000, as 0 and 1. address: a PDU address.
   [[nodiscard]] ModbusReply read(ModbusTable table, int address, int count,
-                                 ModbusPriority priority = ModbusPriority::kNormal);
+                                 ModbusPriority priority = ModbusPriority::kNormal, std::stop_token stop = {});
 
-  /// Writes 1..123 holding registers or coils in one frame, FC 16 or 15; with `single` one of them by FC 6 or 5.
+  /// Writes 1..123 holding registers or coils in one frame. A stop request ends the patience.
   [[nodiscard]] ModbusReply write(ModbusTable table, int address, std::span<const std::uint16_t> values,
-                                  ModbusPriority priority = ModbusPriority::kNormal, bool single = false);
+                                  ModbusPriority priority = ModbusPriority::kNormal, ModbusWriting how = {},
+                                  std::stop_token stop = {});
+
+  /// Before the first write; called on the writers' threads, and outlives the link.
+  void observe_writes(WriteObserver observer);
 
   [[nodiscard]] ModbusLinkStats stats() const;
   /// "host:port unit n" or "device unit n".
   [[nodiscard]] std::string description() const;
+  /// What to look at where nothing comes: of a serial line, or of a connection that was made, on which serial frames
+  /// are tried. context: blocks for two response timeouts.
+  [[nodiscard]] std::string advice() const;
 
  private:
   struct Impl;

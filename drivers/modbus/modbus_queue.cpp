@@ -4,18 +4,28 @@
 
 namespace fvd {
 
+namespace {
+
+ModbusReply unknown(const std::string& why) {
+  ModbusReply reply;
+  reply.error = why;
+  return reply;
+}
+
+}  // namespace
+
 ModbusReply ModbusQueue::submit(QueuedRequest request, ModbusPriority priority) {
   auto reply = request.done.get_future();
   {
     const MutexLock lock(mutex_);
-    if (closed_) return {ModbusOutcome::kUnknown, *closed_, {}, {}};
+    if (closed_) return unknown(*closed_);
     (priority == ModbusPriority::kUrgent ? urgent_ : normal_).push_back(std::move(request));
   }
   arrived_.notify_one();
   try {
     return reply.get();
   } catch (const std::future_error&) {
-    return {ModbusOutcome::kUnknown, "the request was dropped", {}, {}};
+    return unknown("the request was dropped");
   }
 }
 
@@ -35,7 +45,7 @@ std::optional<QueuedRequest> ModbusQueue::next(std::stop_token stop) {
 void ModbusQueue::put_back(QueuedRequest request) {
   const MutexLock lock(mutex_);
   if (closed_) {
-    request.done.set_value({ModbusOutcome::kUnknown, *closed_, {}, {}});
+    request.done.set_value(unknown(*closed_));
   } else {
     normal_.push_front(std::move(request));
   }
@@ -50,7 +60,7 @@ void ModbusQueue::close(const std::string& reason) {
   const MutexLock lock(mutex_);
   if (!closed_) closed_ = reason;
   for (auto* queue : {&urgent_, &normal_}) {
-    for (QueuedRequest& request : *queue) request.done.set_value({ModbusOutcome::kUnknown, reason, {}, {}});
+    for (QueuedRequest& request : *queue) request.done.set_value(unknown(reason));
     queue->clear();
   }
 }

@@ -26,7 +26,9 @@ enum class ModbusPriority { kNormal, kUrgent };
 
 struct ModbusReply {
   ModbusOutcome outcome = ModbusOutcome::kUnknown;
-  std::string error;                  ///< empty if kOk
+  std::string error;  ///< empty if kOk
+  /// Of kUnknown: it was told to come again later, because the device is at it or busy. The line is sound.
+  bool later = false;
   std::vector<std::uint16_t> values;  ///< of a read that is kOk
   /// Middle of the transaction that succeeded: the best guess of when the device sampled its registers.
   std::chrono::steady_clock::time_point sampled{};

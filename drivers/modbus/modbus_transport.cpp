@@ -44,12 +44,11 @@ constexpr milliseconds kDrainSlice{5};
 /// A line that never falls silent is drained for so many quiet times at most.
 constexpr int kMostQuietTimes = 8;
 
-/// The drive says that it did not execute the request. It does not say so where it is still at it, or busy, nor where a
-/// gateway had no answer from it.
-bool is_exception(int error) {
-  if (error == EMBXACK || error == EMBXSBUSY || error == EMBXGTAR) return false;
-  return (error > MODBUS_ENOBASE && error < EMBXGTAR) || error == EMBBADEXC;
-}
+/// Header of Modbus TCP: transaction, protocol, length, unit.
+constexpr std::size_t kTcpHeader = 7;
+constexpr std::size_t kUnitInTcpHeader = 6;
+/// A connection that ends this soon after an answer was ended because of it.
+constexpr std::chrono::seconds kSoonAfterAnswer{1};
 
 bool is_device_gone(int error) { return error == EIO || error == ENXIO || error == ENODEV || error == EBADF; }
 
@@ -119,22 +118,54 @@ void ModbusTransport::close() noexcept {
 }
 
 bool ModbusTransport::connect(std::string& error) {
-  const bool serial = std::holds_alternative<ModbusSerialEndpoint>(config_.endpoint);
-  if (serial && !lock_serial_port(error)) return false;
+  if (!is_tcp() && !lock_serial_port(error)) return false;
   if (modbus_connect(context_.get()) != 0) {
-    error = modbus_strerror(errno);
+    const int code = errno;
+    error = modbus_strerror(code);
+    if (code == EINPROGRESS || code == ETIMEDOUT) {
+      error = "nobody answered the connection within " + std::to_string(config_.response_timeout.count() * 9 / 10) +
+              " ms: is the host on and its address right, or does a firewall drop it?";
+    }
     unlock_serial_port();
     return false;
   }
   connected_ = true;
-  device_gone_ = false;
-  if (serial) {
+  device_gone_ = answered_ = false;
+  if (!is_tcp()) {
     prepare_serial_port();
   } else {
     const int on = 1;
     ::setsockopt(modbus_get_socket(context_.get()), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   }
   return true;
+}
+
+bool ModbusTransport::ensure_connected(bool writes, bool& renewed, std::string& error) {
+  renewed = false;
+  if (connected_ && is_tcp()) {
+    discard_unasked();
+    if (writes && answered_ && closes_after_answer_) close();
+  }
+  if (connected_) return true;
+  renewed = true;
+  return connect(error);
+}
+
+/// What came in the meantime answers nothing that is going to be asked. An end of the connection is no doubt: whatever
+/// was asked was answered.
+void ModbusTransport::discard_unasked() {
+  std::array<std::uint8_t, 256> chunk{};
+  for (;;) {
+    const auto count = ::recv(modbus_get_socket(context_.get()), chunk.data(), chunk.size(), MSG_DONTWAIT);
+    if (count > 0) {
+      discarded_ += static_cast<std::size_t>(count);
+      continue;
+    }
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    closes_after_answer_ = answered_ && SteadyClock::now() - last_byte_ < kSoonAfterAnswer;
+    return close();
+  }
 }
 
 /// Before the port is touched: who opens it to set it up disturbs the one that uses it.
@@ -173,65 +204,94 @@ void ModbusTransport::prepare_serial_port() {
   ::tcflush(fd, TCIOFLUSH);
 }
 
-int ModbusTransport::call(const ModbusRequest& request, std::vector<std::uint16_t>& values) {
-  const bool bits = request.table == ModbusTable::kCoil || request.table == ModbusTable::kDiscrete;
-  modbus_t* const context = context_.get();
-  if (request.read_count > 0) {
-    values.resize(static_cast<std::size_t>(request.read_count));
-    if (!bits) {
-      return request.table == ModbusTable::kInput
-                 ? modbus_read_input_registers(context, request.address, request.read_count, values.data())
-                 : modbus_read_registers(context, request.address, request.read_count, values.data());
-    }
-    std::vector<std::uint8_t> read(values.size());
-    const int count = request.table == ModbusTable::kDiscrete
-                          ? modbus_read_input_bits(context, request.address, request.read_count, read.data())
-                          : modbus_read_bits(context, request.address, request.read_count, read.data());
-    std::copy(read.begin(), read.end(), values.begin());
-    return count;
-  }
-  const auto count = static_cast<int>(request.written.size());
-  const bool single = request.single && count == 1;
-  if (!bits) {
-    return single ? modbus_write_register(context, request.address, request.written[0])
-                  : modbus_write_registers(context, request.address, count, request.written.data());
-  }
-  if (single) return modbus_write_bit(context, request.address, request.written[0]);
-  const std::vector<std::uint8_t> written(request.written.begin(), request.written.end());
-  return modbus_write_bits(context, request.address, count, written.data());
+/// False on a serial line with bytes that nobody asked for: they must not be taken for the answer to what follows.
+bool ModbusTransport::wait_for_line(std::string& error) {
+  const auto* line = std::get_if<ModbusSerialEndpoint>(&config_.endpoint);
+  if (line == nullptr) return true;
+  std::this_thread::sleep_until(last_byte_ + frame_gap(*line));
+  int waiting = 0;
+  if (::ioctl(modbus_get_socket(context_.get()), FIONREAD, &waiting) != 0 || waiting == 0) return true;
+  error = "bytes nobody asked for on the line";
+  return false;
 }
 
-ModbusTransport::Answer ModbusTransport::transact(const ModbusRequest& request, std::vector<std::uint16_t>& values,
-                                                  std::string& error) {
-  if (const auto* line = std::get_if<ModbusSerialEndpoint>(&config_.endpoint)) {
-    std::this_thread::sleep_until(last_byte_ + frame_gap(*line));
-    // What came in the meantime answers nothing that was asked: it must not be taken for the answer to this.
-    int waiting = 0;
-    if (::ioctl(modbus_get_socket(context_.get()), FIONREAD, &waiting) == 0 && waiting > 0) {
-      error = "bytes nobody asked for on the line";
-      return Answer::kNone;
+/// libmodbus would give every raw request the same transaction number, and late answers could not be told apart.
+bool ModbusTransport::send(Bytes pdu) {
+  std::vector<std::uint8_t> frame;
+  if (is_tcp()) {
+    ++transaction_;
+    const std::size_t length = pdu.size() + 1;
+    for (const std::size_t word : {std::size_t{transaction_}, std::size_t{0}, length}) {
+      frame.push_back(static_cast<std::uint8_t>(word >> 8U & 0xFFU));
+      frame.push_back(static_cast<std::uint8_t>(word & 0xFFU));
     }
   }
-  const int count = call(request, values);
+  frame.push_back(static_cast<std::uint8_t>(config_.unit));
+  frame.insert(frame.end(), pdu.begin(), pdu.end());
+  if (is_tcp()) {
+    const auto sent = ::send(modbus_get_socket(context_.get()), frame.data(), frame.size(), MSG_NOSIGNAL);
+    return sent == static_cast<ssize_t>(frame.size());
+  }
+  return modbus_send_raw_request(context_.get(), frame.data(), static_cast<int>(frame.size())) != -1;
+}
+
+/// Why what came is no answer to what was sent; empty if it may be one. count: of libmodbus, -1 with its error `code`.
+/// frame: what came as far as it is known, zeros behind it.
+std::string ModbusTransport::doubt(Bytes frame, int count, Bytes sent, int code) const {
+  const std::size_t unit_at = is_tcp() ? kUnitInTcpHeader : 0;
+  const auto other_unit = [&] {
+    return "an answer of unit " + std::to_string(frame[unit_at]) + " to a question to unit " +
+           std::to_string(config_.unit) + ": do two devices share an address, or is a gateway's table wrong?";
+  };
+  if (!is_tcp()) {
+    if (count == 0) return other_unit();  // libmodbus looks at nothing else of such a frame
+    // The answer to a read repeats neither address nor count of the question.
+    constexpr std::uint8_t kLastRead = 4;
+    const bool echoes = sent[0] <= kLastRead && frame[0] == config_.unit &&
+                        std::equal(sent.begin(), sent.begin() + 4, frame.begin() + 1);
+    if (count < 0 && code == EMBBADCRC && echoes) {
+      return "the line returns what is sent: switch off the local echo of the two-wire adapter";
+    }
+  }
+  if (count < 0 && code == ETIMEDOUT) return "no answer in time";
+  if (count < 0) return modbus_strerror(code);
+  if (static_cast<std::size_t>(count) <= unit_at + 1) return "an answer of another length";
+  if (!is_tcp()) return frame[0] == config_.unit ? "" : other_unit();
+  if (frame[2] != 0 || frame[3] != 0) return "an answer of another protocol than Modbus TCP";
+  if (frame[0] != transaction_ >> 8U || frame[1] != (transaction_ & 0xFFU)) return "an answer to another question";
+  return frame[unit_at] == config_.unit ? "" : other_unit();
+}
+
+PduAnswer ModbusTransport::transact(const ModbusRequest& request, std::vector<std::uint16_t>& values,
+                                    std::string& error) {
+  values.clear();
+  if (!wait_for_line(error)) return PduAnswer::kNone;
+  const std::vector<std::uint8_t> pdu = request_pdu(request);
+  std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> frame{};
+  const int count = send(pdu) ? modbus_receive_confirmation(context_.get(), frame.data()) : -1;
   const int code = errno;
   last_byte_ = SteadyClock::now();
-  const int expected = request.read_count > 0 ? request.read_count : static_cast<int>(request.written.size());
-  if (count == expected) return Answer::kOk;
-  values.clear();
-  error = count == -1 ? modbus_strerror(code) : "an answer of another length";
-  if (count == -1 && is_exception(code)) return Answer::kException;
-  device_gone_ = count == -1 && is_device_gone(code);
-  return Answer::kNone;
+  error = doubt(frame, count, pdu, code);
+  if (!error.empty()) {
+    device_gone_ = count == -1 && is_device_gone(code);
+    if (count == -1 && code == ECONNRESET && answered_) closes_after_answer_ = true;
+    return PduAnswer::kNone;
+  }
+  if (std::exchange(answered_, true)) closes_after_answer_ = false;
+  const std::size_t before = is_tcp() ? kTcpHeader : 1;
+  const std::size_t behind = is_tcp() ? 0 : 2;  // the checksum
+  const auto length = static_cast<std::size_t>(count);
+  if (length < before + behind) {
+    error = "an answer of another length";
+    return PduAnswer::kNone;
+  }
+  return judge_answer(request, pdu, Bytes(frame).subspan(before, length - before - behind), values, error);
 }
 
-std::size_t ModbusTransport::resynchronise(const std::function<bool()>& hurry) {
-  if (!connected_) return 0;
-  if (std::holds_alternative<ModbusTcpEndpoint>(config_.endpoint) || device_gone_) {
-    close();
-    return 0;
-  }
+void ModbusTransport::resynchronise(const std::function<bool()>& hurry) {
+  if (!connected_) return;
+  if (is_tcp() || device_gone_) return close();
   const int fd = modbus_get_socket(context_.get());
-  std::size_t discarded = 0;
   const auto begin = SteadyClock::now();
   auto silent_since = begin;
   while (SteadyClock::now() - silent_since < config_.quiet &&
@@ -241,15 +301,13 @@ std::size_t ModbusTransport::resynchronise(const std::function<bool()>& hurry) {
     std::array<std::uint8_t, 256> chunk{};
     const auto count = ::read(fd, chunk.data(), chunk.size());
     if (count > 0) {
-      discarded += static_cast<std::size_t>(count);
+      discarded_ += static_cast<std::size_t>(count);
       silent_since = SteadyClock::now();
     } else if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
-      close();  // the adapter was unplugged
-      return discarded;
+      return close();  // the adapter was unplugged
     }
   }
   ::tcflush(fd, TCIFLUSH);
-  return discarded;
 }
 
 std::string ModbusTransport::description() const {

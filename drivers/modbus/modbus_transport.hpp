@@ -11,9 +11,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
+
+#include "drivers/modbus/modbus_pdu.hpp"
 
 struct _modbus;  // libmodbus' modbus_t. NOLINT(bugprone-reserved-identifier): its name
 
@@ -41,20 +45,12 @@ struct ModbusLinkConfig {
   std::chrono::milliseconds response_timeout{200};
   /// RTU: how long the line must be silent before a request may follow a doubtful answer; at least the slowest reply.
   std::chrono::milliseconds quiet{250};
+  /// How long a request that does no harm twice is repeated while the device says "later".
+  std::chrono::milliseconds patience{2000};
 };
 
 /// Throws Error kBadConfig naming what cannot be used and what can.
 void check(const ModbusLinkConfig& config);
-
-enum class ModbusTable { kHolding, kInput, kCoil, kDiscrete };
-
-struct ModbusRequest {
-  ModbusTable table = ModbusTable::kHolding;
-  int address = 0;
-  int read_count = 0;                  ///< > 0: a read
-  std::vector<std::uint16_t> written;  ///< else a write; bits as 0 and 1
-  bool single = false;                 ///< FC 5 or 6 instead of 15 or 16, for one value
-};
 
 /// context: one thread.
 class ModbusTransport {
@@ -65,35 +61,51 @@ class ModbusTransport {
   ModbusTransport(const ModbusTransport&) = delete;
   ModbusTransport& operator=(const ModbusTransport&) = delete;
 
-  [[nodiscard]] bool connected() const noexcept { return connected_; }
-  /// False with the reason in `error`. A serial port is taken exclusively, low latency is asked for, and what it was
-  /// really set to is logged.
-  bool connect(std::string& error);
+  /// Before every request. Connects where there is no connection, or where the other side has ended it: gateways do so
+  /// after a time, some after every answer. Bytes that nobody asked for are discarded on TCP. A serial port is taken
+  /// exclusively, low latency is asked for, and what it was really set to is logged. False with the reason in `error`:
+  /// nothing can be sent. renewed: a connection was made. writes: what follows must not be lost in a dying connection.
+  bool ensure_connected(bool writes, bool& renewed, std::string& error);
 
-  enum class Answer { kOk, kException, kNone };
-  /// Sends one request and waits for its answer; fills `values` of a read. kNone: no usable answer, see `error`.
-  Answer transact(const ModbusRequest& request, std::vector<std::uint16_t>& values, std::string& error);
+  /// Sends one request and waits for its answer; fills `values` of a read. kNone: no usable answer, see `error`, which
+  /// names what the bytes show: another unit's answer, another protocol, the line's own echo.
+  PduAnswer transact(const ModbusRequest& request, std::vector<std::uint16_t>& values, std::string& error);
 
-  /// After kNone. RTU: reads and discards until silent or until hurry() says so. Returns the bytes discarded.
-  std::size_t resynchronise(const std::function<bool()>& hurry);
+  /// After kNone. RTU: reads and discards until silent or until hurry() says so.
+  void resynchronise(const std::function<bool()>& hurry);
 
-  /// "host:port unit n" or "device unit n". context: any thread.
+  /// Bytes that were discarded since the last call, late, garbled or unasked for.
+  [[nodiscard]] std::size_t take_discarded() noexcept { return std::exchange(discarded_, 0); }
+
+  /// context: any thread, as description().
+  [[nodiscard]] bool is_tcp() const noexcept { return std::holds_alternative<ModbusTcpEndpoint>(config_.endpoint); }
+  /// "host:port unit n" or "device unit n".
   [[nodiscard]] std::string description() const;
 
  private:
   struct ContextDeleter {
     void operator()(_modbus* context) const noexcept;
   };
+  using Bytes = std::span<const std::uint8_t>;
+
   void close() noexcept;
+  bool connect(std::string& error);
+  void discard_unasked();
   bool lock_serial_port(std::string& error);
   void unlock_serial_port() noexcept;
   void prepare_serial_port();
-  int call(const ModbusRequest& request, std::vector<std::uint16_t>& values);
+  bool wait_for_line(std::string& error);
+  bool send(Bytes pdu);
+  [[nodiscard]] std::string doubt(Bytes frame, int count, Bytes sent, int code) const;
 
   ModbusLinkConfig config_;
   std::unique_ptr<_modbus, ContextDeleter> context_;
   bool connected_ = false;
   bool device_gone_ = false;
+  bool answered_ = false;             // something came on this connection
+  bool closes_after_answer_ = false;  // the other side was seen to
+  std::uint16_t transaction_ = 0;     // TCP: the last one's number
+  std::size_t discarded_ = 0;
   int lock_ = -1;  // a descriptor of the serial port that holds its lock
   std::chrono::steady_clock::time_point last_byte_{};
 };

@@ -14,6 +14,7 @@
 
 #include "core/scan/stage_run.hpp"
 #include "core/stage/stage_report.hpp"
+#include "tests/bench/stage_fault_bench.hpp"
 #include "tests/support/fault_case.hpp"
 
 namespace fvd::test {
@@ -22,35 +23,6 @@ namespace {
 using std::chrono::milliseconds;
 
 double milliseconds_of(HostClock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); }
-
-// --- faults ---
-
-struct FaultFigures {
-  int cases = 0;
-  int wrong_values = 0;
-  int moves_too_many = 0;
-};
-
-FaultFigures run_faults() {
-  FaultFigures figures;
-  for (const DriveCase& drive : kDriveCases) {
-    for (const Transport transport : {Transport::kTcp, Transport::kRtu}) {
-      for (const FaultCase& fault : fault_cases()) {
-        const FaultOutcome outcome = run_fault_case(drive, transport, fault);
-        ++figures.cases;
-        figures.wrong_values += outcome.wrong_values;
-        figures.moves_too_many += outcome.moves_too_many;
-        const bool right = outcome.errors == (fault.ends_the_move ? 1 : 0) && outcome.unconsumed == 0;
-        if (outcome.wrong_values + outcome.moves_too_many > 0 || !right) {
-          std::cout << drive << " " << transport << " " << fault.name << ": " << outcome.story << std::endl;
-        }
-      }
-    }
-  }
-  std::printf("faults: %d cases, %d wrong values accepted, %d motions too many\n", figures.cases, figures.wrong_values,
-              figures.moves_too_many);
-  return figures;
-}
 
 // --- steps ---
 
@@ -195,7 +167,7 @@ double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
 int run() {
   spdlog::set_level(spdlog::level::off);
-  const FaultFigures faults = run_faults();
+  const StageFaultFigures faults = run_stage_faults();
   double sigma = 0.0;
   double bias = 0.0;
   double tcp_ms = 0.0;

@@ -24,7 +24,8 @@ struct FaultOutcome {
 struct FaultCase {
   const char* name;
   sim::FaultStep step;
-  bool ends_the_move;  ///< the fault is one that no driver may hide
+  bool ends_the_move;           ///< the fault is one that no driver may hide
+  bool another_master = false;  ///< in place of the step: somebody else writes a target
 };
 
 inline std::vector<FaultCase> fault_cases() {
@@ -58,6 +59,14 @@ inline std::vector<FaultCase> fault_cases() {
       {"EmergencyStop", step(FaultOn::kRead, FaultKind::kEmergencyStop), true},
       {"LinkCut", step(FaultOn::kAny, FaultKind::kLinkCut, milliseconds(80)), false},
       {"LinkCutForLong", step(FaultOn::kAny, FaultKind::kLinkCut, milliseconds(5000)), true},
+      {"AcknowledgeToWrite", step(FaultOn::kWrite, FaultKind::kException, milliseconds(0), 0x05), false},
+      {"BusyToRead", step(FaultOn::kRead, FaultKind::kException, milliseconds(0), 0x06, 4), false},
+      {"BusyToWrite", step(FaultOn::kWrite, FaultKind::kException, milliseconds(0), 0x06), false},
+      {"NoPathToRead", step(FaultOn::kRead, FaultKind::kException, milliseconds(0), 0x0A, 3), false},
+      {"NoPathToWrite", step(FaultOn::kWrite, FaultKind::kException, milliseconds(0), 0x0A), false},
+      {"GatewayGaveUpOnRead", step(FaultOn::kRead, FaultKind::kException, milliseconds(0), 0x0B, 2), false},
+      {"GatewayGaveUpOnWrite", step(FaultOn::kWrite, FaultKind::kException, milliseconds(0), 0x0B), false},
+      {"AnotherMastersTarget", {}, true, true},
       {"PowerCycle", step(FaultOn::kRead, FaultKind::kPowerCycle, milliseconds(60)), true},
   };
 }
@@ -76,7 +85,8 @@ inline FaultOutcome run_fault_case(const DriveCase& drive, Transport transport, 
       .window = Micrometers{0.5}, .samples = 3, .dwell = milliseconds(10), .timeout = milliseconds(2500)};
   int commanded = 0;
   for (int i = 1; i <= 6; ++i) {
-    if (i == 3) plant.faults().add(fault.step);
+    if (i == 3 && fault.another_master) (void)plant.write_target_as_another_master(12345);
+    if (i == 3 && !fault.another_master) plant.faults().add(fault.step);
     const double target_um = 10.0 * i;
     ++commanded;
     try {

@@ -2,6 +2,8 @@
 
 /// A simulated drive of any kind on either line, and the stage that drives it by the shipped profile.
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -26,6 +28,23 @@ inline constexpr DriveCase kDriveCases[] = {{sim::DriveKind::kAz, "oriental-az.j
                                             {sim::DriveKind::kCia402, "nanotec-cia402.json", "Cia402"}};
 
 inline std::ostream& operator<<(std::ostream& out, const DriveCase& drive) { return out << drive.name; }
+
+/// Where a drive takes the target of its next move, two words with the high one first.
+inline int target_address(sim::DriveKind kind) {
+  switch (kind) {
+    case sim::DriveKind::kAz:
+      return 0x005C;
+    case sim::DriveKind::kAr:
+      return 0x0400;
+    case sim::DriveKind::kLeadshine:
+      return 0x6201;
+    case sim::DriveKind::kScl:
+      return 30;
+    case sim::DriveKind::kCia402:
+      return 6002;
+  }
+  return 0;
+}
 
 /// A nearly perfect axis, so that errors in the figures are errors of fvd.
 inline sim::AxisParameters good_axis() {
@@ -57,6 +76,14 @@ class SimulatedDrive {
   [[nodiscard]] sim::SimDrive& drive() { return *drive_; }
   [[nodiscard]] sim::FaultScript& faults() { return faults_; }
   [[nodiscard]] SimulatedLine& line() { return line_; }
+
+  /// As a master does that does not share the line; starts nothing. False if the drive refuses it.
+  [[nodiscard]] bool write_target_as_another_master(std::int32_t steps) {
+    const auto bits = static_cast<std::uint32_t>(steps);
+    const std::array<std::uint16_t, 2> words{static_cast<std::uint16_t>(bits >> 16U),
+                                             static_cast<std::uint16_t>(bits & 0xFFFFU)};
+    return drive_->write(target_address(case_.kind), words) == sim::ModbusException::kNone;
+  }
 
   [[nodiscard]] StageConfig config() const {
     const ModbusLinkConfig link = line_.config();

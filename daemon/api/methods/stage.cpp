@@ -64,7 +64,7 @@ void describe_moved(Fields& fields) { ResultFields(fields).number("z_um", "where
 
 const std::vector<ErrorCode> kMotionErrors{ErrorCode::kStageDisconnected, ErrorCode::kStageLimit,
                                            ErrorCode::kStageNotHomed, ErrorCode::kStagePosition,
-                                           ErrorCode::kStageAlarm};
+                                           ErrorCode::kStageAlarm, ErrorCode::kStageTaken};
 
 }  // namespace
 

@@ -16,6 +16,9 @@ namespace {
 using std::chrono::milliseconds;
 using test::expect_error;
 
+constexpr Micrometers kMin{-1000.0};
+constexpr Micrometers kMax{1000.0};
+
 /// Answers until it is told otherwise.
 class ScriptedPort final : public AxisPort {
  public:
@@ -52,12 +55,17 @@ class ScriptedPort final : public AxisPort {
     ++stops;
     return {};
   }
+  [[nodiscard]] std::optional<std::string> foreign_write() override {
+    if (!another_writes.exchange(false)) return std::nullopt;
+    return "'target' reads 7, and fvd wrote 5";
+  }
   [[nodiscard]] std::string alarm_text(int /*code*/) const override { return "alarm"; }
 
   std::atomic<Mode> mode{Mode::kAnswers};
   std::deque<double> script;  ///< positions, um; the last again and again. Changed in a pause only
   double speed_um_per_s = 0.0;
   std::atomic<bool> moving{false};
+  std::atomic<bool> another_writes{false};
   std::atomic<int> stops{0};
   std::atomic<bool> connected_at_stop{true};
   std::atomic<AxisPoller*> poller{nullptr};
@@ -70,15 +78,42 @@ class ScriptedPort final : public AxisPort {
 TEST(AxisPoller, BelievesAJumpThatASecondReadingConfirms) {
   ScriptedPort port;
   port.script = {0.0, 5000.0, 5000.1};
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   EXPECT_DOUBLE_EQ(poller.sample_after(HostClock::now(), {}).position.value, 5000.1);
   EXPECT_EQ(poller.implausible(), 1U);
+}
+
+TEST(AxisPoller, BelievesAFirstPositionFarOutsideTheLimitsOnlyIfASecondReadingAgrees) {
+  ScriptedPort wrong;
+  wrong.script = {65536.0, 0.5};
+  AxisPoller once(wrong, 1000.0, kMin, kMax);
+  EXPECT_DOUBLE_EQ(once.latest().position.value, 0.5);
+  EXPECT_EQ(once.implausible(), 1U);
+
+  ScriptedPort far;
+  far.script = {65536.0, 65536.1};
+  AxisPoller twice(far, 1000.0, kMin, kMax);
+  EXPECT_DOUBLE_EQ(twice.latest().position.value, 65536.1) << "before homing the counter may stand anywhere";
+
+  ScriptedPort near;
+  near.script = {2900.0, 0.0};
+  AxisPoller inside(near, 1000.0, kMin, kMax);
+  EXPECT_EQ(inside.implausible(), 0U) << "limits leave room";
+}
+
+TEST(AxisPoller, TellsWhatAnotherMasterWroteForAWhile) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0, kMin, kMax);
+  EXPECT_FALSE(poller.foreign_write(true));
+  port.another_writes = true;
+  while (!poller.foreign_write(false)) std::this_thread::yield();
+  EXPECT_EQ(poller.foreign_write(true), "'target' reads 7, and fvd wrote 5") << "he may still be there";
 }
 
 TEST(AxisPoller, FollowsAnAxisThatIsMuchFasterThanItIsCommandedToBe) {
   ScriptedPort port;
   port.speed_um_per_s = 1e6;
-  AxisPoller poller(port, 1.0);
+  AxisPoller poller(port, 1.0, kMin, kMax);
   for (int i = 0; i < 20; ++i) EXPECT_NO_THROW((void)poller.sample_after(HostClock::now(), {}));
   EXPECT_TRUE(poller.connected());
 }
@@ -86,7 +121,7 @@ TEST(AxisPoller, FollowsAnAxisThatIsMuchFasterThanItIsCommandedToBe) {
 TEST(AxisPoller, BelievesNeitherOfTwoReadingsThatContradictOneAnother) {
   ScriptedPort port;
   port.script = {0.0, 5000.0, -7000.0, 0.2};
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   EXPECT_DOUBLE_EQ(poller.sample_after(HostClock::now(), {}).position.value, 0.2);
   EXPECT_EQ(poller.implausible(), 2U);
 }
@@ -95,7 +130,7 @@ TEST(AxisPoller, GivesUpAnAxisWhosePositionsMakeNoSense) {
   ScriptedPort port;
   port.moving = true;
   port.script = {0.0, 1e4, -1e4, 2e4, -2e4, 3e4, 0.0};
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   expect_error(ErrorCode::kStageDisconnected, {"the fake", "contradict"},
                [&] { (void)poller.sample_after(HostClock::now(), {}); });
   while (port.stops == 0) std::this_thread::yield();
@@ -103,7 +138,7 @@ TEST(AxisPoller, GivesUpAnAxisWhosePositionsMakeNoSense) {
 
 TEST(AxisPoller, GivesSamplesThatWereBegunAfterTheQuestion) {
   ScriptedPort port;
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   for (int i = 0; i < 20; ++i) {
     const HostTime asked = HostClock::now();
     EXPECT_GT(poller.sample_after(asked, {}).begun, asked);
@@ -112,7 +147,7 @@ TEST(AxisPoller, GivesSamplesThatWereBegunAfterTheQuestion) {
 
 TEST(AxisPoller, TellsWaitersOfALossAndOnlyThenStopsTheAxis) {
   ScriptedPort port;
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   port.poller = &poller;
   port.moving = true;
   (void)poller.sample_after(HostClock::now(), {});
@@ -126,7 +161,7 @@ TEST(AxisPoller, TellsWaitersOfALossAndOnlyThenStopsTheAxis) {
 
 TEST(AxisPoller, TellsWaitersThatItsThreadHasEndedByAnException) {
   ScriptedPort port;
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   (void)poller.sample_after(HostClock::now(), {});
   port.mode = ScriptedPort::Mode::kThrows;
   expect_error(ErrorCode::kStageDisconnected, {"out of luck"},
@@ -137,7 +172,7 @@ TEST(AxisPoller, TellsWaitersThatItsThreadHasEndedByAnException) {
 
 TEST(AxisPoller, LetsNobodyWaitForEver) {
   ScriptedPort port;
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   poller.pause([&] {
     const HostTime asked = HostClock::now();
     expect_error(ErrorCode::kStageDisconnected, {"in time"}, [&] { (void)poller.sample_after(asked, {}); });
@@ -148,7 +183,7 @@ TEST(AxisPoller, LetsNobodyWaitForEver) {
 
 TEST(AxisPoller, EndsAWaitOnAStopRequest) {
   ScriptedPort port;
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   std::stop_source stop;
   auto waiter = std::async(std::launch::async, [&] {
     return test::name_of(
@@ -160,7 +195,7 @@ TEST(AxisPoller, EndsAWaitOnAStopRequest) {
 
 TEST(AxisPoller, TakesNoSampleInAPause) {
   ScriptedPort port;
-  AxisPoller poller(port, 1000.0);
+  AxisPoller poller(port, 1000.0, kMin, kMax);
   (void)poller.sample_after(HostClock::now(), {});
   poller.pause([&] {
     const HostTime before = poller.latest().begun;

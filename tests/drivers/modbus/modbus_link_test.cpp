@@ -167,8 +167,9 @@ TEST_P(AModbusLink, LetsAStopThroughWithinOneResponseTimeoutUnderAnyFault) {
 TEST_P(AModbusLink, ReadsAndWritesSingleRegisters) {
   ModbusLink link(line_.config());
   const std::uint16_t value = 77;
-  EXPECT_EQ(link.write(ModbusTable::kHolding, 9, std::span(&value, 1), ModbusPriority::kNormal, true).outcome,
-            ModbusOutcome::kOk);
+  EXPECT_EQ(
+      link.write(ModbusTable::kHolding, 9, std::span(&value, 1), ModbusPriority::kNormal, {.single = true}).outcome,
+      ModbusOutcome::kOk);
   EXPECT_EQ(link.read(ModbusTable::kInput, 9, 1).values, std::vector<std::uint16_t>{77});
   EXPECT_EQ(link.read(ModbusTable::kCoil, 9, 1).outcome, ModbusOutcome::kRejected) << "this bank has none";
 }

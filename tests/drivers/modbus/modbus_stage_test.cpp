@@ -177,6 +177,7 @@ TEST_F(AModbusStage, WorksAgainOnceTheDriveIsBack) {
   EXPECT_EQ(error_of([&] { (void)stage->move_to(Micrometers{5.0}, criterion_, {}); }), ErrorCode::kStageDisconnected);
   EXPECT_EQ(error_of([&] { (void)open(); }), ErrorCode::kStageDisconnected);
   serve();
+  stage.reset();  // one at a time has the drive
   auto again = open();
   EXPECT_TRUE(again->status().homed) << "the drive kept its reference";
   EXPECT_NO_THROW(again->move_to(Micrometers{5.0}, criterion_, {}));

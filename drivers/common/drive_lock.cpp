@@ -1,0 +1,140 @@
+#include "drivers/common/drive_lock.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/error.hpp"
+
+namespace fvd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t kEverybodysFolder = 01777;  // as /tmp
+constexpr mode_t kEverybodysFile = 0666;     // each holder writes its name into it, whoever made it
+
+/// Of several names of a host the lock must be the same.
+std::string numeric_address(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (const int failure = ::getaddrinfo(host.c_str(), nullptr, &hints, &found); failure != 0) {
+    throw Error(ErrorCode::kStageDisconnected,
+                "the drive's host '" + host + "' has no address: " + ::gai_strerror(failure) + "; see /stage/address");
+  }
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+  std::array<char, NI_MAXHOST> text{};
+  if (::getnameinfo(found->ai_addr, found->ai_addrlen, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) {
+    return host;
+  }
+  return text.data();
+}
+
+bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-';
+}
+
+/// What no file name may hold becomes its number, so that two drives never share a name.
+std::string as_file_name(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    if (is_plain(c)) {
+      name += c;
+    } else {
+      name += '_' + std::to_string(static_cast<unsigned char>(c)) + '_';
+    }
+  }
+  return name;
+}
+
+/// "process 1234 (fvd)", as the holder wrote it. It may not have done so yet.
+std::string holder_of(int file) {
+  std::array<char, 64> text{};
+  const ssize_t count = ::pread(file, text.data(), text.size(), 0);
+  std::string holder(text.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  holder = holder.substr(0, holder.find('\n'));
+  const bool is_readable = std::all_of(holder.begin(), holder.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  return holder.empty() || !is_readable ? "another program" : holder;
+}
+
+void sign(int file) {
+  const std::string holder = "process " + std::to_string(::getpid()) + " (" + ::program_invocation_short_name + ")\n";
+  if (::ftruncate(file, 0) != 0) return;  // who is refused is told of "another program"
+  [[maybe_unused]] const ssize_t written = ::pwrite(file, holder.data(), holder.size(), 0);
+}
+
+/// A file that is there is opened without O_CREAT, which the kernel refuses in everybody's folder for files of others.
+int open_lock(const fs::path& path) {
+  constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
+  int file = ::open(path.c_str(), kFlags);
+  if (file >= 0 || errno != ENOENT) return file;
+  file = ::open(path.c_str(), kFlags | O_CREAT | O_EXCL, kEverybodysFile);
+  if (file < 0) return errno == EEXIST ? ::open(path.c_str(), kFlags) : file;
+  (void)::fchmod(file, kEverybodysFile);  // whatever the umask took away
+  return file;
+}
+
+}  // namespace
+
+fs::path drive_lock_folder() {
+  std::error_code error;
+  return fs::is_directory("/run/lock", error) ? "/run/lock/fvd" : "/tmp/fvd-lock";
+}
+
+std::string drive_lock_name(const StageConfig& config) {
+  std::string drive;
+  if (config.transport == "tcp") {
+    drive = numeric_address(config.address) + "-" + std::to_string(config.port);
+  } else {
+    std::error_code error;
+    const fs::path real = fs::canonical(config.serial_device, error);
+    drive = error ? config.serial_device : real.string();
+  }
+  const bool has_units = config.driver == "modbus" && config.transport == "tcp";
+  if (has_units) drive += "-unit-" + std::to_string(config.unit);
+  if (config.driver == "gcs" && config.transport == "tcp") drive += "-axis-" + config.gcs_axis;
+  return as_file_name(drive) + ".lock";
+}
+
+DriveLock::DriveLock(const StageConfig& config) {
+  const fs::path folder = drive_lock_folder();
+  if (::mkdir(folder.c_str(), kEverybodysFolder) == 0) (void)::chmod(folder.c_str(), kEverybodysFolder);
+  const fs::path path = folder / drive_lock_name(config);
+  file_ = open_lock(path);
+  if (file_ < 0) {
+    throw Error(ErrorCode::kBadConfig,
+                "the drive's lock file " + path.string() + " cannot be opened: " + std::strerror(errno) +
+                    "; without it two programs might move one axis: give fvd the right to write to " +
+                    folder.parent_path().string());
+  }
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0) {
+    sign(file_);
+    return;
+  }
+  const int failure = errno;
+  const std::string holder =
+      failure == EWOULDBLOCK ? holder_of(file_) : std::string("nobody: ") + std::strerror(failure);
+  ::close(file_);
+  throw Error(ErrorCode::kStageTaken, "the drive is in use by " + holder + ", which holds " + path.string() +
+                                          "; nothing was sent to it: end that program first");
+}
+
+DriveLock::~DriveLock() {
+  if (::ftruncate(file_, 0) != 0) {
+    // The name of a holder that is gone does no harm: it is read only where the lock is held.
+  }
+  ::close(file_);
+}
+
+}  // namespace fvd

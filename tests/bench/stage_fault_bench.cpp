@@ -1,0 +1,32 @@
+#include "tests/bench/stage_fault_bench.hpp"
+
+#include <cstdio>
+#include <iostream>
+
+#include "tests/support/fault_case.hpp"
+
+namespace fvd::test {
+
+StageFaultFigures run_stage_faults() {
+  StageFaultFigures figures;
+  for (const DriveCase& drive : kDriveCases) {
+    for (const Transport transport : {Transport::kTcp, Transport::kRtu}) {
+      for (const FaultCase& fault : fault_cases()) {
+        const FaultOutcome outcome = run_fault_case(drive, transport, fault);
+        ++figures.cases;
+        figures.wrong_values += outcome.wrong_values;
+        figures.moves_too_many += outcome.moves_too_many;
+        const bool right = outcome.errors == (fault.ends_the_move ? 1 : 0) && outcome.unconsumed == 0;
+        if (!right) ++figures.surprises;
+        if (outcome.wrong_values + outcome.moves_too_many > 0 || !right) {
+          std::cout << drive << " " << transport << " " << fault.name << ": " << outcome.story << std::endl;
+        }
+      }
+    }
+  }
+  std::printf("faults: %d cases, %d wrong values accepted, %d motions too many\n", figures.cases, figures.wrong_values,
+              figures.moves_too_many);
+  return figures;
+}
+
+}  // namespace fvd::test
