@@ -80,9 +80,16 @@ int open_lock(const fs::path& path) {
   int file = ::open(path.c_str(), kFlags);
   if (file >= 0 || errno != ENOENT) return file;
   file = ::open(path.c_str(), kFlags | O_CREAT | O_EXCL, kEverybodysFile);
-  if (file < 0) return errno == EEXIST ? ::open(path.c_str(), kFlags) : file;
+  if (file < 0) return errno == EEXIST ? open_lock(path) : file;
   (void)::fchmod(file, kEverybodysFile);  // whatever the umask took away
   return file;
+}
+
+bool is_at(int file, const fs::path& path) {
+  struct stat opened {};
+  struct stat there {};
+  return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &there) == 0 && opened.st_ino == there.st_ino &&
+         opened.st_dev == there.st_dev;
 }
 
 }  // namespace
@@ -110,31 +117,35 @@ std::string drive_lock_name(const StageConfig& config) {
 DriveLock::DriveLock(const StageConfig& config) {
   const fs::path folder = drive_lock_folder();
   if (::mkdir(folder.c_str(), kEverybodysFolder) == 0) (void)::chmod(folder.c_str(), kEverybodysFolder);
-  const fs::path path = folder / drive_lock_name(config);
-  file_ = open_lock(path);
-  if (file_ < 0) {
-    throw Error(ErrorCode::kBadConfig,
-                "the drive's lock file " + path.string() + " cannot be opened: " + std::strerror(errno) +
-                    "; without it two programs might move one axis: give fvd the right to write to " +
-                    folder.parent_path().string());
-  }
-  if (::flock(file_, LOCK_EX | LOCK_NB) == 0) {
-    sign(file_);
-    return;
-  }
-  const int failure = errno;
-  const std::string holder =
-      failure == EWOULDBLOCK ? holder_of(file_) : std::string("nobody: ") + std::strerror(failure);
-  ::close(file_);
-  throw Error(ErrorCode::kStageTaken, "the drive is in use by " + holder + ", which holds " + path.string() +
-                                          "; nothing was sent to it: end that program first");
+  path_ = folder / drive_lock_name(config);
+  // A file that its holder has just taken away locks nothing: the next one is taken.
+  do {
+    if (file_ >= 0) ::close(file_);
+    file_ = open_lock(path_);
+    if (file_ < 0) refuse_file();
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0) refuse_drive(errno);
+  } while (!is_at(file_, path_));
+  sign(file_);
 }
 
 DriveLock::~DriveLock() {
-  if (::ftruncate(file_, 0) != 0) {
-    // The name of a holder that is gone does no harm: it is read only where the lock is held.
-  }
+  (void)::unlink(path_.c_str());  // where it is another user's it stays, and is signed by the next holder
   ::close(file_);
+}
+
+void DriveLock::refuse_file() const {
+  throw Error(ErrorCode::kBadConfig, "the drive's lock file " + path_.string() +
+                                         " cannot be opened: " + std::strerror(errno) +
+                                         "; without it two programs might move one axis: let fvd write to " +
+                                         drive_lock_folder().parent_path().string());
+}
+
+void DriveLock::refuse_drive(int failure) const {
+  const std::string holder =
+      failure == EWOULDBLOCK ? holder_of(file_) : std::string("nobody: ") + std::strerror(failure);
+  ::close(file_);
+  throw Error(ErrorCode::kStageTaken, "the drive is in use by " + holder + ", which holds " + path_.string() +
+                                          "; nothing was sent to it: end that program first");
 }
 
 }  // namespace fvd

@@ -28,6 +28,10 @@ class DriveLock {
   DriveLock& operator=(const DriveLock&) = delete;
 
  private:
+  [[noreturn]] void refuse_file() const;
+  [[noreturn]] void refuse_drive(int failure) const;
+
+  std::filesystem::path path_;
   int file_ = -1;
 };
 

@@ -35,6 +35,7 @@ TEST(ADriveLock, IsHeldByOneAndNamesHim) {
 
 TEST(ADriveLock, IsFreeOnceItsHolderIsGone) {
   { const DriveLock lock(drive()); }
+  EXPECT_FALSE(std::filesystem::exists(drive_lock_folder() / drive_lock_name(drive()))) << "it leaves nothing behind";
   EXPECT_NO_THROW(const DriveLock lock(drive()));
 }
 
