@@ -1,7 +1,10 @@
 /// A drive whose 32-bit words come in another order than its profile says is neither believed nor moved.
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "drivers/modbus/drive_check.hpp"
 #include "drivers/modbus/drive_profile.hpp"
@@ -43,7 +46,9 @@ class ADriveWithExchangedWords : public testing::Test {
  protected:
   ADriveWithExchangedWords() {
     plant_.axis().move_to(HostClock::now(), 500, 1e5, 1e6, 1e6);  // 5 um
-    while (plant_.axis().moving(HostClock::now())) std::this_thread::yield();
+    while (plant_.axis().true_position_um(HostClock::now()) < 4.5 || plant_.axis().moving(HostClock::now())) {
+      std::this_thread::yield();
+    }
   }
   [[nodiscard]] StageConfig config() const {
     StageConfig config = plant_.config();

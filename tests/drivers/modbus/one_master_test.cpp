@@ -43,6 +43,7 @@ class OneMaster : public testing::TestWithParam<test::DriveCase> {
     config.port = std::get<ModbusTcpEndpoint>(line_.config().endpoint).port;
     return config;
   }
+
   test::SimulatedDrive plant_{GetParam(), Transport::kTcp};
   WriteCounter counter_{plant_.drive()};
   sim::FaultScript no_faults_;
@@ -63,7 +64,8 @@ TEST_P(OneMaster, LeavesASecondOneOutWhileTheAxisMoves) {
   const auto stage = open_modbus_stage(config);
   stage->home({});
   const std::jthread second([&] {
-    while (!plant_.axis().moving(HostClock::now())) std::this_thread::yield();
+    // Far enough for all of a start's writes to have been sent.
+    while (plant_.axis().true_position_um(HostClock::now()) < 80.0) std::this_thread::yield();
     const int before = counter_.writes();
     expect_error(ErrorCode::kStageTaken, {"in use by process"}, [&] { (void)open_modbus_stage(config); });
     EXPECT_EQ(counter_.writes(), before);

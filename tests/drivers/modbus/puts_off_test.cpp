@@ -156,7 +156,9 @@ TEST_F(ABentLine, OfAnotherProtocolIsNotBelieved) {
 }
 
 TEST_F(ABentLine, WithAnswersToOtherQuestionsIsNotBelieved) {
-  test::BentLine line(drive_port(), {.answer = [](test::LineBytes& answer) { answer[0] ^= 0x40U; }});
+  test::BentLine line(drive_port(), {.answer = [](test::LineBytes& answer) {
+                        answer[0] = static_cast<std::uint8_t>(answer[0] ^ 0x40U);
+                      }});
   ModbusLink link(to(line));
   EXPECT_EQ(read(link).outcome, ModbusOutcome::kUnknown);
 }
@@ -205,7 +207,7 @@ TEST(ALineWithLocalEcho, IsCalledThat) {
 TEST(ASerialDeviceServer, ThatPassesBytesOnIsCalledThat) {
   // One that hands every connection's bytes to a serial line and back.
   test::SimulatedDrive plant(test::kDriveCases[0], Transport::kRtu);
-  const auto& serial = std::get<ModbusSerialEndpoint>(plant.line().config().endpoint);
+  const auto serial = std::get<ModbusSerialEndpoint>(plant.line().config().endpoint);
   const sim::FileDescriptor port(::open(serial.device.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   sockaddr_in address{};
   const sim::FileDescriptor listener(test::listen_on_loopback(8, address));
