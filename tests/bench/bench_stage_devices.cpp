@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -15,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "drivers/modbus/modbus_link.hpp"
 #include "tests/bench/stage_fault_bench.hpp"
 #include "tests/support/bent_line.hpp"
 #include "tests/support/busy_bank.hpp"

@@ -10,6 +10,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "drivers/modbus/modbus_link.hpp"
 #include "gtest/gtest.h"
 #include "sim/base/pseudo_terminal.hpp"
 #include "tests/support/bent_line.hpp"
