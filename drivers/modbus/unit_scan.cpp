@@ -55,19 +55,20 @@ std::vector<FoundUnit> scan_units(const UnitScan& scan, const std::function<void
     line.unit = unit;
     ModbusTransport transport(line);
     std::string error;
-    if (!transport.connect(error)) {
+    bool renewed = false;
+    if (!transport.ensure_connected(false, renewed, error)) {
       throw Error(ErrorCode::kStageDisconnected, "cannot open " + transport.description() + ": " + error);
     }
     ModbusRequest request;
     request.read_count = 1;
     std::vector<std::uint16_t> values;
     const auto answer = transport.transact(request, values, error);
-    if (answer == ModbusTransport::Answer::kNone) {
+    if (answer == PduAnswer::kNone) {
       // The next unit must not be taken for this one, which may be late.
-      (void)transport.resynchronise([&stop] { return stop.stop_requested(); });
+      transport.resynchronise([&stop] { return stop.stop_requested(); });
       continue;
     }
-    const bool told = answer == ModbusTransport::Answer::kOk && !values.empty();
+    const bool told = answer == PduAnswer::kOk && !values.empty();
     found.push_back({unit, told ? "register 0 is " + std::to_string(values.front()) : error});
   }
   return found;
