@@ -45,6 +45,7 @@ class ExchangedWords final : public sim::RegisterBank {
 class ADriveWithExchangedWords : public testing::Test {
  protected:
   ADriveWithExchangedWords() {
+    plant_.open_homed().reset();
     plant_.axis().move_to(HostClock::now(), 500, 1e5, 1e6, 1e6);  // 5 um
     while (plant_.axis().true_position_um(HostClock::now()) < 4.5 || plant_.axis().moving(HostClock::now())) {
       std::this_thread::yield();
