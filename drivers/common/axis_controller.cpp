@@ -64,7 +64,8 @@ class AxisController final : public Axis {
   void home(std::stop_token stop) override {
     const AxisSample before = poller_.sample_after(HostClock::now(), stop);
     require_homing_possible(*port_, before);
-    require_sole_master(true);
+    if (const auto seen = poller_.foreign_write(true); seen && seen->is_restart) poller_.forget_foreign_write();
+    require_sole_master(false);
     prepared_ = false;  // the drive may have been restarted
     make_ready(before, stop);
     require_wanted(stop);
@@ -151,8 +152,7 @@ class AxisController final : public Axis {
     if (!foreign) return;
     if (!traits_.tells_homed) poller_.remember_homed(false);  // its memory of the last target is no longer ours
     target_.reset();
-    throw Error(ErrorCode::kStageTaken, "another master writes to the drive at " + traits_.address + ": " + *foreign +
-                                            "; fvd moves nothing: end that program, see to the part, then home");
+    throw_foreign(traits_, *foreign);
   }
 
   void require_enabled(const AxisSample& sample) {
@@ -171,8 +171,7 @@ class AxisController final : public Axis {
     if (!read || *read == *target_) return;
     poller_.remember_homed(false);
     target_.reset();
-    throw Error(ErrorCode::kStageNotHomed,
-                "the drive at " + traits_.address + " has forgotten its last target, as after a power cut; home again");
+    throw_forgotten(traits_, "");
   }
 
   /// The axis rests and is sampled all the time; what happens to it from now on, settle() sees.

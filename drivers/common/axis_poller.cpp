@@ -195,21 +195,28 @@ void AxisPoller::look_for_others() {
   others_looked_for_ = now;
   auto found = port_.foreign_write();
   if (!found) return;
-  spdlog::warn("another master writes to the drive at {}: {}", port_.traits().address, *found);
+  spdlog::warn("{} the drive at {}: {}", found->is_restart ? "a restart of" : "another master writes to",
+               port_.traits().address, found->what);
   const MutexLock lock(mutex_);
-  foreign_ = std::move(*found);
+  foreign_ = std::move(found);
   foreign_seen_ = now;
 }
 
-std::optional<std::string> AxisPoller::foreign_write(bool look) {
+std::optional<ForeignWrite> AxisPoller::foreign_write(bool look) {
   if (look) {
     const MutexLock polling(polling_);
     others_looked_for_ = {};
     look_for_others();
   }
   const MutexLock lock(mutex_);
-  if (foreign_.empty() || HostClock::now() - foreign_seen_ > kForeignTime) return std::nullopt;
+  // A restart is over, and what it took is gone for good; a master may have gone away.
+  if (foreign_ && !foreign_->is_restart && HostClock::now() - foreign_seen_ > kForeignTime) foreign_.reset();
   return foreign_;
+}
+
+void AxisPoller::forget_foreign_write() {
+  const MutexLock lock(mutex_);
+  foreign_.reset();
 }
 
 std::vector<StageTemperature> AxisPoller::temperatures() const {

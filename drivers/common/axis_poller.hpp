@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -41,7 +42,8 @@ class AxisPoller {
   [[nodiscard]] std::vector<StageTemperature> temperatures() const;
 
   /// What another master wrote within the last ten seconds. look: looks now, too.
-  [[nodiscard]] std::optional<std::string> foreign_write(bool look);
+  [[nodiscard]] std::optional<ForeignWrite> foreign_write(bool look);
+  void forget_foreign_write();
 
   /// Runs the action between two samples: on a slow line they would come between the frames of a start.
   void pause(const std::function<void()>& action);
@@ -78,7 +80,7 @@ class AxisPoller {
   bool connected_ FVD_GUARDED_BY(mutex_) = true;
   std::string loss_ FVD_GUARDED_BY(mutex_);
   std::vector<StageTemperature> temperatures_ FVD_GUARDED_BY(mutex_);
-  std::string foreign_ FVD_GUARDED_BY(mutex_);
+  std::optional<ForeignWrite> foreign_ FVD_GUARDED_BY(mutex_);
   HostTime foreign_seen_ FVD_GUARDED_BY(mutex_){};
   HostTime temperatures_read_ FVD_GUARDED_BY(polling_){};
   HostTime others_looked_for_ FVD_GUARDED_BY(polling_){};

@@ -45,6 +45,12 @@ struct AxisTraits {
   std::chrono::milliseconds sample_timeout{10000};  ///< longest time between two samples on a line that is alive
 };
 
+/// Something stands in the controller that fvd did not write.
+struct ForeignWrite {
+  std::string what;
+  bool is_restart = false;  ///< it may have forgotten everything, the reference too
+};
+
 /// Speed and acceleration of a motion, both > 0.
 struct MotionLimits {
   double speed_um_per_s = 0.0;
@@ -85,7 +91,7 @@ class AxisPort {
   [[nodiscard]] virtual CommandResult stop() = 0;
 
   /// What another master wrote since the last look; each time it is told once. Nothing where that cannot be seen.
-  [[nodiscard]] virtual std::optional<std::string> foreign_write() { return std::nullopt; }
+  [[nodiscard]] virtual std::optional<ForeignWrite> foreign_write() { return std::nullopt; }
 
   /// The target of the last move as the controller remembers it, steps; for controllers that do not tell whether they
   /// are homed. Nothing if it cannot be read.

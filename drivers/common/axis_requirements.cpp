@@ -100,6 +100,18 @@ void require_agreement(AxisPort& port) {
                                          ". Nothing was moved; 'fvdctl stage check' shows all that it reads");
 }
 
+void throw_forgotten(const AxisTraits& traits, const std::string& what) {
+  throw Error(ErrorCode::kStageNotHomed, "the drive at " + traits.address +
+                                             " has forgotten its last target, as after a power cut" + what +
+                                             "; home again");
+}
+
+void throw_foreign(const AxisTraits& traits, const ForeignWrite& foreign) {
+  if (foreign.is_restart) throw_forgotten(traits, " (" + foreign.what + ")");
+  throw Error(ErrorCode::kStageTaken, "another master writes to the drive at " + traits.address + ": " + foreign.what +
+                                          "; fvd moves nothing: end that program, see to the part, then home");
+}
+
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings) {
   if (!traits.limits) return;
   const auto& [lower, upper] = *traits.limits;

@@ -34,6 +34,10 @@ struct AxisSettings {
 void require_wanted(const std::stop_token& stop);
 /// Throws Error kBadConfig if the controller is not what the port takes it for, with every reason.
 void require_agreement(AxisPort& port);
+/// Throws Error kStageNotHomed. what: an addition, empty or with a space before it.
+[[noreturn]] void throw_forgotten(const AxisTraits& traits, const std::string& what);
+/// Throws Error kStageTaken, or as throw_forgotten() for a restart.
+[[noreturn]] void throw_foreign(const AxisTraits& traits, const ForeignWrite& foreign);
 /// Throws Error kStageLimit if the configured limits reach beyond the controller's own.
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings);
 /// Throws Error kStageLimit if the target is beyond the controller's counter.

@@ -135,7 +135,7 @@ class ModbusPort final : public AxisPort {
     return command_result(run_sequence(link_, profile_.stop, {}, ModbusPriority::kUrgent, {}));
   }
 
-  [[nodiscard]] std::optional<std::string> foreign_write() override { return own_writes_.foreign(link_); }
+  [[nodiscard]] std::optional<ForeignWrite> foreign_write() override { return own_writes_.foreign(link_); }
 
   [[nodiscard]] std::optional<std::int64_t> remembered_target() override {
     return profile_.target ? read_register(link_, *profile_.target) : std::nullopt;

@@ -45,26 +45,29 @@ std::optional<std::uint64_t> OwnWrites::quiet_epoch() const {
   return on_their_way_ == 0 ? std::optional(epoch_) : std::nullopt;
 }
 
-std::optional<std::string> OwnWrites::foreign(ModbusLink& link) {
-  std::optional<std::string> found;
+std::optional<ForeignWrite> OwnWrites::foreign(ModbusLink& link) {
+  std::optional<ForeignWrite> found;
   for (std::size_t i = 0; i < registers_.size(); ++i) {
     const auto before = quiet_epoch();
     if (!before) return found;
     const auto value = read_register(link, registers_[i]);
     const MutexLock lock(mutex_);
     if (!value || on_their_way_ != 0 || epoch_ != *before) continue;
-    if (auto one = judge(watched_[i], *value)) found = std::move(one);
+    auto one = judge(watched_[i], *value);
+    if (one && (!found || found->is_restart)) found = std::move(one);
   }
   return found;
 }
 
-std::optional<std::string> OwnWrites::judge(Watched& watched, std::int64_t value) const {
+std::optional<ForeignWrite> OwnWrites::judge(Watched& watched, std::int64_t value) const {
   auto& possible = watched.possible;
   if (std::find(possible.begin(), possible.end(), value) != possible.end()) return std::nullopt;
   const auto own = possible.empty() ? std::nullopt : std::optional(possible.back());
   possible = {value};
-  if (!own || (value == 0 && restart_reads_zero_)) return std::nullopt;
-  return "'" + watched.reg.name + "' reads " + std::to_string(value) + ", and fvd wrote " + std::to_string(*own);
+  if (!own) return std::nullopt;
+  return ForeignWrite{
+      "'" + watched.reg.name + "' reads " + std::to_string(value) + ", and fvd wrote " + std::to_string(*own),
+      value == 0 && restart_reads_zero_};
 }
 
 }  // namespace fvd

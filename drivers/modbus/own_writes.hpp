@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/mutex.hpp"
+#include "drivers/common/axis_port.hpp"
 #include "drivers/modbus/drive_register.hpp"
 
 namespace fvd {
@@ -16,7 +17,7 @@ namespace fvd {
 /// context: thread-safe.
 class OwnWrites {
  public:
-  /// restart_reads_zero: a watched register that reads 0 tells of nobody, because the drive may have been restarted.
+  /// restart_reads_zero: a watched register that reads 0 tells of a restart, which the drive does not tell otherwise.
   OwnWrites(std::vector<DriveRegister> watched, bool restart_reads_zero);
 
   /// As ModbusLink::observe_writes() wants it.
@@ -24,7 +25,7 @@ class OwnWrites {
 
   /// Reads the watched registers. What of them fvd did not write, once per value; nothing at the first look, while a
   /// write is on its way, and where a register cannot be read.
-  [[nodiscard]] std::optional<std::string> foreign(ModbusLink& link);
+  [[nodiscard]] std::optional<ForeignWrite> foreign(ModbusLink& link);
 
  private:
   struct Watched {
@@ -33,7 +34,7 @@ class OwnWrites {
   };
 
   [[nodiscard]] std::optional<std::uint64_t> quiet_epoch() const;
-  [[nodiscard]] std::optional<std::string> judge(Watched& watched, std::int64_t value) const FVD_REQUIRES(mutex_);
+  [[nodiscard]] std::optional<ForeignWrite> judge(Watched& watched, std::int64_t value) const FVD_REQUIRES(mutex_);
 
   const bool restart_reads_zero_;
   const std::vector<DriveRegister> registers_;

@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/base/error.hpp"
 #include "drivers/modbus/modbus_link.hpp"
 #include "tests/bench/stage_fault_bench.hpp"
 #include "tests/support/bent_line.hpp"

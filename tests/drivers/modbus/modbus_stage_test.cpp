@@ -175,9 +175,9 @@ TEST_F(AModbusStage, WorksAgainOnceTheDriveIsBack) {
   auto stage = open_homed();
   server_.reset();
   EXPECT_EQ(error_of([&] { (void)stage->move_to(Micrometers{5.0}, criterion_, {}); }), ErrorCode::kStageDisconnected);
+  stage.reset();  // one at a time has the drive
   EXPECT_EQ(error_of([&] { (void)open(); }), ErrorCode::kStageDisconnected);
   serve();
-  stage.reset();  // one at a time has the drive
   auto again = open();
   EXPECT_TRUE(again->status().homed) << "the drive kept its reference";
   EXPECT_NO_THROW(again->move_to(Micrometers{5.0}, criterion_, {}));
