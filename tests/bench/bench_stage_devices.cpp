@@ -206,6 +206,7 @@ int believed(const std::function<void(LineBytes&)>& bend) {
 
 int run() {
   spdlog::set_level(spdlog::level::off);
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what was measured so far stays readable
   const CopyFigures copies = run_second_copies();
   const BusyFigures busy = run_busy_jobs();
   const int wrong_unit = believed([](LineBytes& answer) { answer[6] = 7; });

@@ -96,7 +96,7 @@ TEST(AxisPoller, BelievesAFirstPositionFarOutsideTheLimitsOnlyIfASecondReadingAg
   EXPECT_DOUBLE_EQ(twice.latest().position.value, 65536.1) << "before homing the counter may stand anywhere";
 
   ScriptedPort near;
-  near.script = {2900.0, 0.0};
+  near.script = {2900.0};
   AxisPoller inside(near, 1000.0, kMin, kMax);
   EXPECT_EQ(inside.implausible(), 0U) << "limits leave room";
 }
