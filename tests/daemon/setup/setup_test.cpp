@@ -41,7 +41,7 @@ class ASetup : public testing::Test {
   test::MotionAudit audit_{plant_};
   test::SimulatedOperator person_{plant_, FVD_SOURCE_DIR "/config/drives/oriental-az.json",
                                   test::letter_f_world().artefacts.letter_f};
-  Setup setup_;
+  fvd::Setup setup_;  // testing::Test has a private one
 };
 
 TEST_F(ASetup, BeginsWithTheCameraAndKnowsNoWayBackFromThere) {
