@@ -13,8 +13,8 @@ namespace fvd::ctl {
 
 struct StageArguments {
   StageConfig stage;
-  std::string gcs_axis;  ///< empty = a Modbus drive by its profile
-  std::string tcp;       ///< HOST or HOST:PORT; empty = the serial port of `stage`
+  std::string gcs_axis;           ///< empty = a Modbus drive by its profile
+  std::string tcp;                ///< HOST or HOST:PORT; empty = the serial port of `stage`
   int response_timeout_ms = 200;  ///< 10..10000
   bool json = false;
   bool home = false;

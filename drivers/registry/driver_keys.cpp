@@ -90,9 +90,10 @@ void describe_all_stages(StageConfig& stage, Fields& fields) {
                 "overshoot below the first slice that loads the backlash; at least 3 x backlash");
   fields.number("speed_um_per_s", stage.speed_um_per_s, positive(1e6), "speed of moves");
   fields.number("acceleration_um_per_s2", stage.acceleration_um_per_s2, positive(1e9), "acceleration of moves");
-  fields.boolean("reversed", stage.reversed,
-                 "z is to grow where the drive's position (with the profile's scale.direction) falls; z grows away from "
-                 "the part; not of replay");
+  fields.boolean(
+      "reversed", stage.reversed,
+      "z is to grow where the drive's position (with the profile's scale.direction) falls; z grows away from "
+      "the part; not of replay");
   fields.boolean("simulated", stage.simulated, "stamped into every result");
   fields.choice("transport", stage.transport, {"tcp", "rtu", "serial"},
                 "how the drive is reached; rtu = Modbus on a serial line, serial = driver gcs on one");

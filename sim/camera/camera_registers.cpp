@@ -42,6 +42,7 @@ void CameraRegisters::reset() {
   const std::vector<std::uint8_t> before = bootstrap_;
   initialise_locked();
   const auto keep = [&](std::uint32_t address, std::size_t bytes) {
+    mutex_.assert_held();
     std::copy_n(before.begin() + address, bytes, bootstrap_.begin() + address);
   };
   keep(reg::kUserName, reg::kUserNameBytes);

@@ -63,8 +63,8 @@ void describe_homed(Fields& fields) {
 void describe_moved(Fields& fields) { ResultFields(fields).number("z_um", "where the stage stands now"); }
 
 const std::vector<ErrorCode> kMotionErrors{ErrorCode::kStageDisconnected, ErrorCode::kStageLimit,
-                                           ErrorCode::kStageNotHomed, ErrorCode::kStagePosition,
-                                           ErrorCode::kStageAlarm, ErrorCode::kStageTaken};
+                                           ErrorCode::kStageNotHomed,     ErrorCode::kStagePosition,
+                                           ErrorCode::kStageAlarm,        ErrorCode::kStageTaken};
 
 }  // namespace
 

@@ -74,7 +74,8 @@ TEST(StageCheckOf, ADriveWithAnotherMapNamesWhatDisagrees) {
   config.profile = FVD_SOURCE_DIR "/config/drives/leadshine-pr.json";
   const Ran run = fvdctl(stage_words("check", config));
   EXPECT_EQ(run.code, kExitBadData);
-  EXPECT_NE(run.out.find("register 'status' at 4099 (0x1003) cannot be read: exception 2: illegal data address"), std::string::npos)
+  EXPECT_NE(run.out.find("register 'status' at 4099 (0x1003) cannot be read: exception 2: illegal data address"),
+            std::string::npos)
       << run.out;
   EXPECT_NE(run.out.find("position  unknown"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("alarm     unknown"), std::string::npos) << run.out;

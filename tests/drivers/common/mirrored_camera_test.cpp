@@ -52,9 +52,9 @@ TEST(AMirroredCamera, DeliversUprightFrames) {
 
 TEST(AMirroredCamera, LeavesADamagedFrameAlone) {
   sim::FakeClock clock;
-  const auto camera = upright(std::make_unique<sim::FakeCamera>(
-                                  clock, 4, 2, std::deque<sim::TriggerOutcome>{sim::TriggerOutcome::kIncomplete}),
-                              {true, true});
+  const auto camera = upright(
+      std::make_unique<sim::FakeCamera>(clock, 4, 2, std::deque<sim::TriggerOutcome>{sim::TriggerOutcome::kIncomplete}),
+      {true, true});
   camera->trigger();
   const auto frame = camera->next_frame(clock.now() + std::chrono::seconds(1));
   ASSERT_TRUE(frame);
