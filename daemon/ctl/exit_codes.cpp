@@ -26,6 +26,7 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kBusy:
     case ErrorCode::kTimeout:
     case ErrorCode::kShuttingDown:
+    case ErrorCode::kCameraDisconnected:
     case ErrorCode::kStageDisconnected:
     case ErrorCode::kStageNotHomed:
     case ErrorCode::kStagePosition:
