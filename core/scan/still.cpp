@@ -19,14 +19,13 @@ constexpr double kExposureTolerance = 0.05;
 }  // namespace
 
 Still take_still(Camera& camera, Clock& clock, const CameraSettings& settings, std::stop_token stop) {
+  const std::stop_callback wake(stop, [&camera] { camera.interrupt(); });
   Still still;
   still.settings = camera.configure(settings);
   FrameLedger ledger;
-  auto captured = SliceCapture(camera, clock, ledger).capture(clock.now(), kFrameRetries, std::move(stop));
-  if (!captured) {
-    throw Error(ErrorCode::kCameraFramesLost,
-                "the camera sent no good frame for " + std::to_string(1 + kFrameRetries) + " triggers: check its link");
-  }
+  SliceCapture capture(camera, clock, ledger);
+  auto captured = capture.capture(clock.now(), kFrameRetries, std::move(stop));
+  if (!captured) throw capture.failure("no good frame");
   still.frame = std::move(captured->frame);
   return still;
 }

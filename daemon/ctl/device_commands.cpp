@@ -44,7 +44,7 @@ std::vector<FoundCamera> network_cameras(const DevicesArguments& arguments) {
   std::vector<FoundCamera> cameras;
   if (arguments.at.empty() || !arguments.interfaces.empty()) cameras = discover_cameras(interfaces_of(arguments));
   for (const std::string& at : arguments.at) {
-    for (FoundCamera& camera : discover_camera_at(address_of(at, "--at"))) cameras.push_back(std::move(camera));
+    if (auto camera = discover_camera_at(address_of(at, "--at"))) cameras.push_back(std::move(*camera));
   }
   return cameras;
 }
@@ -100,7 +100,9 @@ int run_devices(const DevicesArguments& arguments, const Terminal& terminal) {
     if (error.code() != ErrorCode::kCameraDisconnected) throw;
     found.problems.emplace_back(error.what());
   }
-  for (FoundCamera& camera : list_usb_cameras()) found.cameras.push_back(std::move(camera));
+  for (FoundCamera& camera : list_usb_cameras().value_or(std::vector<FoundCamera>{})) {
+    found.cameras.push_back(std::move(camera));
+  }
   if (!arguments.units.empty()) found.serial_ports = serial_ports();
   for (const UnitScan& scan : scans) {
     FoundLine line{line_text(scan.line), {}, {}};
@@ -131,9 +133,7 @@ FoundCamera camera_named(const std::string& name, const std::vector<FoundCamera>
   std::vector<FoundCamera> fitting;
   std::string seen;
   for (const FoundCamera& camera : cameras) {
-    const bool fits = name == camera.serial || name == camera.mac || name == camera.address ||
-                      (!camera.user_name.empty() && name == camera.user_name);
-    if (fits) fitting.push_back(camera);
+    if (camera.is_called(name)) fitting.push_back(camera);
     seen += "; " + camera_text(camera);
   }
   if (fitting.size() == 1) return fitting.front();

@@ -29,7 +29,11 @@ Json to_json(const FoundCamera& camera) {
             {"user_name", camera.user_name},
             {"address", camera.address},
             {"control", control_name(camera.control)}};
-  if (camera.link == CameraLink::kUsb) return json;
+  if (camera.link == CameraLink::kUsb) {
+    json["node"] = camera.node;
+    json["accessible"] = camera.accessible;
+    return json;
+  }
   json["firmware"] = camera.firmware;
   json["mac"] = camera.mac;
   json["mask"] = camera.mask;
@@ -58,6 +62,7 @@ std::string camera_text(const FoundCamera& camera) {
   text << camera.vendor << " " << camera.model << ", serial " << camera.serial;
   if (camera.link == CameraLink::kUsb) {
     text << ", USB, address " << camera.address;
+    if (!camera.accessible) text << ", no permission to open " << camera.node << ": see the udev rule";
     return text.str();
   }
   text << ", MAC " << camera.mac << ", at " << camera.address;

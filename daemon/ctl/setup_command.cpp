@@ -59,7 +59,9 @@ std::vector<FoundCamera> find_cameras(const SetupArguments& arguments) {
     for (NetworkInterface& one : network_interfaces(name)) interfaces.push_back(std::move(one));
   }
   cameras = discover_cameras(interfaces);
-  for (FoundCamera& camera : list_usb_cameras()) cameras.push_back(std::move(camera));
+  for (FoundCamera& camera : list_usb_cameras().value_or(std::vector<FoundCamera>{})) {
+    cameras.push_back(std::move(camera));
+  }
   return cameras;
 }
 

@@ -1,23 +1,64 @@
 #include "drivers/aravis/usb_cameras.hpp"
 
-#include <arv.h>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
 
 namespace fvd {
 
-std::vector<FoundCamera> list_usb_cameras() {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first line of a file; empty if there is none.
+std::string line_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+/// USB3 Vision 1.0: an interface of class "miscellaneous" and subclass "USB3 Vision".
+bool is_usb3_vision(const fs::path& interface) {
+  return line_of(interface / "bInterfaceClass") == "ef" && line_of(interface / "bInterfaceSubClass") == "05";
+}
+
+/// "2-1" of "2-1:1.0"
+fs::path device_of(const fs::path& interface) {
+  const std::string name = interface.filename().string();
+  return interface.parent_path() / name.substr(0, name.find(':'));
+}
+
+std::string three_digits(const std::string& number) {
+  return number.size() >= 3 ? number : std::string(3 - number.size(), '0') + number;
+}
+
+}  // namespace
+
+std::optional<std::vector<FoundCamera>> list_usb_cameras(const fs::path& sysfs, const fs::path& dev) {
+  std::error_code error;
+  bool any = false;
   std::vector<FoundCamera> cameras;
-  ArvInterface* const usb = arv_uv_interface_get_instance();  // Aravis keeps it
-  arv_interface_update_device_list(usb);
-  const auto text = [](const char* value) { return std::string(value == nullptr ? "" : value); };
-  for (unsigned i = 0; i < arv_interface_get_n_devices(usb); ++i) {
+  for (fs::directory_iterator entry(sysfs, error), end; !error && entry != end; entry.increment(error)) {
+    any = true;
+    const fs::path interface = entry->path();
+    if (interface.filename().string().find(':') == std::string::npos || !is_usb3_vision(interface)) continue;
+    const fs::path device = device_of(interface);
     FoundCamera camera;
     camera.link = CameraLink::kUsb;
-    camera.vendor = text(arv_interface_get_device_vendor(usb, i));
-    camera.model = text(arv_interface_get_device_model(usb, i));
-    camera.serial = text(arv_interface_get_device_serial_nbr(usb, i));
-    camera.address = text(arv_interface_get_device_id(usb, i));
-    cameras.push_back(std::move(camera));
+    camera.vendor = line_of(device / "manufacturer");
+    camera.model = line_of(device / "product");
+    camera.serial = line_of(device / "serial");
+    camera.address = camera.id();
+    camera.node = (dev / three_digits(line_of(device / "busnum")) / three_digits(line_of(device / "devnum"))).string();
+    camera.accessible = ::access(camera.node.c_str(), R_OK | W_OK) == 0;
+    bool known = false;  // such a device has several interfaces
+    for (const FoundCamera& one : cameras) known = known || one.node == camera.node;
+    if (!known) cameras.push_back(std::move(camera));
   }
+  if (!any) return std::nullopt;
   return cameras;
 }
 

@@ -48,6 +48,8 @@ class MirroredCamera final : public Camera {
 
   [[nodiscard]] std::chrono::microseconds frame_deadline() const override { return camera_->frame_deadline(); }
   void interrupt() noexcept override { camera_->interrupt(); }
+  [[nodiscard]] std::string last_refusal() const override { return camera_->last_refusal(); }
+  void look_after() override { camera_->look_after(); }
   [[nodiscard]] bool connected() const noexcept override { return camera_->connected(); }
   [[nodiscard]] CameraHealth health() const override { return camera_->health(); }
 

@@ -29,6 +29,13 @@ constexpr std::uint8_t kAcknowledge = 0x01;
 constexpr std::uint8_t kAcknowledgeToEverybody = 0x10;
 /// Length of the answer: the bootstrap registers from 0x0000 on.
 constexpr std::size_t kAnswerBytes = 0xF8;
+/// A camera answers at once; a question that got lost is repeated.
+constexpr milliseconds kRepeat{50};
+constexpr milliseconds kRepeatSearch{200};
+constexpr std::uint16_t kAnyRequest = 0;
+/// Each interface is listened to for so long in its turn.
+constexpr milliseconds kTurn{5};
+constexpr milliseconds kForOthers{100};
 constexpr std::uint32_t kAnyControl = 0x3;  // exclusive, or with others reading
 
 std::uint32_t host_order(const sockaddr* address) {
@@ -102,16 +109,9 @@ bool fits(const NetworkInterface& interface, const FoundCamera& camera) {
          (*address & *mask) == (interface.address & *mask);
 }
 
-struct Asked {
-  explicit Asked(const NetworkInterface& through) : interface(through), socket(through.address, through.index) {}
-  NetworkInterface interface;
-  GvcpSocket socket;
-  std::uint16_t request = 0;
-};
-
-}  // namespace
-
-std::vector<NetworkInterface> network_interfaces(const std::string& named) {
+/// Lists the interfaces that are up.
+template <typename Wanted>
+std::vector<NetworkInterface> interfaces_that(Wanted&& wanted) {
   ifaddrs* first = nullptr;
   std::vector<NetworkInterface> interfaces;
   if (::getifaddrs(&first) != 0) return interfaces;
@@ -121,12 +121,50 @@ std::vector<NetworkInterface> network_interfaces(const std::string& named) {
       at->ifa_name, static_cast<int>(::if_nametoindex(at->ifa_name)), host_order(at->ifa_addr),
           host_order(at->ifa_netmask)
     };
-    const bool loopback = (at->ifa_flags & IFF_LOOPBACK) != 0;
-    const bool wanted =
-        named.empty() ? !loopback : named == interface.name || named == gvcp::address_text(interface.address);
-    if (wanted) interfaces.push_back(interface);
+    if (wanted(interface, (at->ifa_flags & IFF_LOOPBACK) != 0)) interfaces.push_back(interface);
   }
   ::freeifaddrs(first);
+  return interfaces;
+}
+
+struct Asked {
+  explicit Asked(const NetworkInterface& through) : interface(through), socket(through.address, through.index) {}
+  NetworkInterface interface;
+  GvcpSocket socket;
+  std::uint16_t request = 0;
+
+  void ask(std::uint32_t to) {
+    const bool everybody = to == kEverybody;
+    request = socket.send(to, gvcp::kDiscovery, everybody ? kAcknowledge | kAcknowledgeToEverybody : kAcknowledge, {});
+  }
+};
+
+/// A question through every interface that takes it; reason: why one does not.
+std::list<Asked> ask_everybody(const std::vector<NetworkInterface>& interfaces, std::string& reason) {
+  std::list<Asked> asked;
+  for (const NetworkInterface& interface : interfaces) {
+    try {
+      asked.emplace_back(interface).ask(kEverybody);
+    } catch (const Error& error) {
+      reason = interface.name + ": " + error.what();
+      if (!asked.empty() && asked.back().request == 0) asked.pop_back();
+    }
+  }
+  return asked;
+}
+
+std::list<Asked> ask_at(std::uint32_t address) {
+  std::list<Asked> asked;
+  asked.emplace_back(NetworkInterface{}).ask(address);
+  return asked;
+}
+
+}  // namespace
+
+std::vector<NetworkInterface> network_interfaces(const std::string& named) {
+  auto interfaces = interfaces_that([&named](const NetworkInterface& interface, bool loopback) {
+    return named.empty() ? !loopback : named == interface.name || named == gvcp::address_text(interface.address);
+  });
   if (interfaces.empty() && !named.empty()) {
     throw Error(ErrorCode::kBadInput, "there is no network interface '" + named +
                                           "' with an IPv4 address that is up; see: ip -brief address");
@@ -134,18 +172,13 @@ std::vector<NetworkInterface> network_interfaces(const std::string& named) {
   return interfaces;
 }
 
+std::vector<NetworkInterface> all_network_interfaces() {
+  return interfaces_that([](const NetworkInterface&, bool) { return true; });
+}
+
 std::vector<FoundCamera> discover_cameras(const std::vector<NetworkInterface>& interfaces, milliseconds patience) {
-  std::list<Asked> asked;
   std::string reason;
-  for (const NetworkInterface& interface : interfaces) {
-    try {
-      Asked& one = asked.emplace_back(interface);
-      one.request = one.socket.send(kEverybody, gvcp::kDiscovery, kAcknowledge | kAcknowledgeToEverybody, {});
-    } catch (const Error& error) {
-      reason = interface.name + ": " + error.what();
-      if (!asked.empty() && asked.back().request == 0) asked.pop_back();
-    }
-  }
+  std::list<Asked> asked = ask_everybody(interfaces, reason);
   if (asked.empty() && !reason.empty()) throw Error(ErrorCode::kCameraDisconnected, reason);
   const auto until = SteadyClock::now() + patience;  // the same for all: they answer at once
   std::vector<FoundCamera> all;
@@ -166,15 +199,50 @@ std::vector<FoundCamera> discover_cameras(const std::vector<NetworkInterface>& i
   return all;
 }
 
-std::vector<FoundCamera> discover_camera_at(std::uint32_t address, milliseconds patience) {
-  GvcpSocket socket;
-  const std::uint16_t request = socket.send(address, gvcp::kDiscovery, kAcknowledge, {});
+std::optional<FoundCamera> identify_camera(std::uint32_t address, milliseconds patience) {
+  const auto end = SteadyClock::now() + patience;
+  std::list<Asked> asked = ask_at(address);
   std::vector<FoundCamera> found;
-  const auto ack = socket.receive(gvcp::kDiscovery, request, SteadyClock::now() + patience);
-  auto camera = ack && ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
-  if (!camera) return found;
+  while (found.empty() && SteadyClock::now() < end) {
+    Asked& one = asked.front();
+    const auto ack = one.socket.receive(gvcp::kDiscovery, one.request, std::min(end, SteadyClock::now() + kRepeat));
+    auto camera = ack && ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
+    if (camera) return camera;
+    one.ask(address);
+  }
+  return std::nullopt;
+}
+
+std::optional<FoundCamera> discover_camera_at(std::uint32_t address, milliseconds patience) {
+  auto camera = identify_camera(address, patience);
+  if (!camera) return camera;
+  GvcpSocket socket;
   ask_control(socket, *camera);
-  found.push_back(std::move(*camera));
+  return camera;
+}
+
+std::vector<FoundCamera> look_for_camera(const std::string& wanted, std::uint32_t address, milliseconds patience) {
+  std::vector<FoundCamera> found;
+  try {
+    std::string reason;
+    std::list<Asked> asked = address != 0 ? ask_at(address) : ask_everybody(all_network_interfaces(), reason);
+    auto end = SteadyClock::now() + patience;
+    auto repeat_at = SteadyClock::now() + kRepeatSearch;
+    bool seen = false;
+    while (!asked.empty() && SteadyClock::now() < end) {
+      for (Asked& one : asked) collect(one.socket, kAnyRequest, SteadyClock::now() + kTurn, found);
+      if (seen) continue;
+      seen = std::any_of(found.begin(), found.end(), [&](const FoundCamera& one) { return one.is_called(wanted); });
+      if (seen) {
+        end = std::min(end, SteadyClock::now() + kForOthers);
+      } else if (SteadyClock::now() >= repeat_at) {
+        for (Asked& one : asked) one.ask(address != 0 ? address : kEverybody);
+        repeat_at = SteadyClock::now() + kRepeatSearch;
+      }
+    }
+  } catch (const Error&) {  // an interface that has just gone
+    return found;
+  }
   return found;
 }
 

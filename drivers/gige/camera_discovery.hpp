@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,15 +24,28 @@ struct NetworkInterface {
 /// Throws Error kBadInput if there is none of that name.
 [[nodiscard]] std::vector<NetworkInterface> network_interfaces(const std::string& named = {});
 
+/// All that are up, the loopback too.
+[[nodiscard]] std::vector<NetworkInterface> all_network_interfaces();
+
 /// Asks everybody on the wire of every interface for `patience`, and each camera that can be reached who controls it.
 /// Sorted by interface and address. Interfaces that nothing can be sent through are passed over where there are others;
 /// throws Error kCameraDisconnected if that is all of them.
 [[nodiscard]] std::vector<FoundCamera> discover_cameras(const std::vector<NetworkInterface>& interfaces,
                                                         std::chrono::milliseconds patience = std::chrono::seconds(1));
 
-/// Asks one address, e.g. behind a router that passes no broadcast. Nothing if no camera answers there. Throws Error
-/// kCameraDisconnected if there is no way to it.
-[[nodiscard]] std::vector<FoundCamera> discover_camera_at(std::uint32_t address,
-                                                          std::chrono::milliseconds patience = std::chrono::seconds(1));
+/// Asks one address, e.g. behind a router that passes no broadcast, and who controls the camera. Nothing if none
+/// answers there. Throws Error kCameraDisconnected if there is no way to it.
+[[nodiscard]] std::optional<FoundCamera> discover_camera_at(
+    std::uint32_t address, std::chrono::milliseconds patience = std::chrono::seconds(1));
+
+/// Who is at an address; asks for nothing else. Throws as discover_camera_at().
+[[nodiscard]] std::optional<FoundCamera> identify_camera(std::uint32_t address, std::chrono::milliseconds patience);
+
+/// Asks as discover_cameras() does, at `address` alone if it is not 0 (255.255.255.255 of one subnet, or one camera),
+/// and collects what answers within `patience`; ends 0.1 s after one has answered that is called `wanted`, so that
+/// another one of that name is seen too. Does not ask who controls them. Never throws: nothing can be sent = nobody
+/// answers.
+[[nodiscard]] std::vector<FoundCamera> look_for_camera(const std::string& wanted, std::uint32_t address,
+                                                       std::chrono::milliseconds patience);
 
 }  // namespace fvd

@@ -12,6 +12,9 @@ enum class CameraLink { kGigE, kUsb };
 /// Whether a program controls the camera, which then refuses everybody else.
 enum class CameraControl { kUnknown, kFree, kControlled };
 
+/// Letters of either case are the same; nothing is the same as an empty text.
+[[nodiscard]] bool same_name(const std::string& a, const std::string& b);
+
 struct FoundCamera {
   CameraLink link = CameraLink::kGigE;
   std::string vendor;
@@ -31,6 +34,18 @@ struct FoundCamera {
   bool subnet_fits = true;             ///< false: it cannot be opened before one of the two addresses changes
   CameraControl control = CameraControl::kUnknown;
   std::string controller;  ///< "192.168.10.2:51000" where the camera tells; empty = it does not
+
+  // USB only.
+  std::string node;        ///< its file below /dev/bus/usb
+  bool accessible = true;  ///< this process may open it
+
+  /// vendor-model-serial
+  [[nodiscard]] std::string id() const { return vendor + "-" + model + "-" + serial; }
+  /// "vendor-model-serial at 192.168.1.20, MAC 00:11:22:aa:bb:cc, named left"
+  [[nodiscard]] std::string text() const;
+  /// Whether the name is its IP address, MAC (with : or - or neither), serial number, user-defined name or
+  /// vendor-model-serial, in letters of either case.
+  [[nodiscard]] bool is_called(const std::string& name) const;
 };
 
 }  // namespace fvd

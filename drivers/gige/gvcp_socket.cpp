@@ -123,7 +123,7 @@ std::optional<GvcpSocket::Acknowledge> GvcpSocket::receive(std::uint16_t command
     if (size >= static_cast<ssize_t>(kHeaderBytes)) {
       const auto told = static_cast<std::uint16_t>((bytes[2] << 8U) | bytes[3]);
       const auto id = static_cast<std::uint16_t>((bytes[6] << 8U) | bytes[7]);
-      if (told != command + 1 || id != request) continue;
+      if (told != command + 1 || (request != 0 && id != request)) continue;
       return Acknowledge{ntohl(from.sin_addr.s_addr),
                          static_cast<std::uint16_t>((bytes[0] << 8U) | bytes[1]),
                          {bytes.begin() + kHeaderBytes, bytes.begin() + size}};

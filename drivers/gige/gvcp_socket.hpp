@@ -61,7 +61,7 @@ class GvcpSocket {
     std::uint16_t status = 0;  ///< 0 = done; else as GigE Vision numbers refusals, e.g. 0x8006 access denied
     std::vector<std::uint8_t> payload;
   };
-  /// The next acknowledge of that request; nothing if none came in time. All else is passed over.
+  /// The next acknowledge of that request, of any if it is 0; nothing if none came in time. All else is passed over.
   [[nodiscard]] std::optional<Acknowledge> receive(std::uint16_t command, std::uint16_t request,
                                                    std::chrono::steady_clock::time_point until);
 

@@ -112,7 +112,7 @@ void force_ip(const FoundCamera& camera, const CameraAddress& wanted, const Netw
     // The acknowledge may come from either address or not at all; the camera at its new address is what counts.
     (void)socket.receive(gvcp::kForceIp, request, std::chrono::steady_clock::now() + kPatience / 2);
     const auto there = discover_camera_at(wanted.address, kPatience / 2);
-    if (std::any_of(there.begin(), there.end(), [&](const FoundCamera& one) { return one.mac == camera.mac; })) return;
+    if (there && there->mac == camera.mac) return;
   }
   throw Error(ErrorCode::kCameraDisconnected, "the camera " + camera.serial + " (" + camera.mac +
                                                   ") does not answer at " + gvcp::address_text(wanted.address) +

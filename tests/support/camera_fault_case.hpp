@@ -86,34 +86,39 @@ struct CameraFaultCase {
   sim::CameraFaultStep step;
   /// The error with which the scan must end; nothing = it completes.
   std::optional<ErrorCode> end{};
+  int repeat = 1;  ///< the step stands in the script so often
 };
 
 /// For the names of the tests.
 inline void PrintTo(const CameraFaultCase& of, std::ostream* out) { *out << of.name; }
 
+/// Steps that strike at the fourth event.
+namespace camera_fault_steps {
+
+using sim::CameraFault;
+using std::chrono::milliseconds;
+
+inline sim::CameraFaultStep step(CameraFault fault, milliseconds delay = milliseconds(0), int value = 0,
+                                 int count = 1) {
+  return {.fault = fault, .after = 3, .count = count, .delay = delay, .value = value};
+}
+inline sim::CameraFaultStep at_command(CameraFault fault, milliseconds delay) {
+  return {.fault = fault, .on = sim::CameraEvent::kCommand, .after = 3, .delay = delay};
+}
+inline sim::CameraFaultStep at_trigger(CameraFault fault, milliseconds delay) {
+  return {.fault = fault, .on = sim::CameraEvent::kTrigger, .after = 3, .delay = delay};
+}
+/// Of time: off by so much.
+inline sim::CameraFaultStep in_time(CameraFault fault, milliseconds off) {
+  return {.fault = fault, .after = 3, .step = off};
+}
+
+}  // namespace camera_fault_steps
+
 inline std::vector<CameraFaultCase> camera_fault_cases() {
-  using sim::CameraEvent;
-  using sim::CameraFault;
-  using std::chrono::milliseconds;
-  const auto step = [](CameraFault fault, milliseconds delay = milliseconds(0), int value = 0, int count = 1) {
-    sim::CameraFaultStep one;
-    one.fault = fault;
-    one.after = 3;
-    one.delay = delay;
-    one.value = value;
-    one.count = count;
-    return one;
-  };
-  const auto at_command = [&](CameraFault fault, milliseconds delay) {
-    sim::CameraFaultStep one = step(fault, delay);
-    one.on = CameraEvent::kCommand;
-    return one;
-  };
-  const auto at_trigger = [&](CameraFault fault, milliseconds delay) {
-    sim::CameraFaultStep one = step(fault, delay);
-    one.on = CameraEvent::kTrigger;
-    return one;
-  };
+  using namespace camera_fault_steps;
+  using std::chrono::hours;
+  using std::chrono::seconds;
   return {
       {"DropLeader", step(CameraFault::kDropLeader)},
       {"DropTrailer", step(CameraFault::kDropTrailer)},
@@ -121,7 +126,7 @@ inline std::vector<CameraFaultCase> camera_fault_cases() {
       {"DropPacketForGood", step(CameraFault::kDropPacket, milliseconds(0), 1)},
       {"DropFrame", step(CameraFault::kDropFrame)},
       {"DropFrameThreeTimes", step(CameraFault::kDropFrame, milliseconds(0), 0, 3)},
-      {"DropFrameTooOften", step(CameraFault::kDropFrame, milliseconds(0), 0, 5), ErrorCode::kCameraFramesLost},
+      {"DropFrameTooOften", step(CameraFault::kDropFrame, milliseconds(0), 0, 5), ErrorCode::kCameraNoFrames},
       {"DropAck", step(CameraFault::kDropAck)},
       {"IgnoreTrigger", step(CameraFault::kIgnoreTrigger)},
       {"NackTrigger", step(CameraFault::kNackTrigger)},
@@ -137,6 +142,28 @@ inline std::vector<CameraFaultCase> camera_fault_cases() {
       {"IdsRestart", step(CameraFault::kIdsRestart)},
       {"StaleFrame", step(CameraFault::kStaleFrame)},
       {"MuteForAWink", step(CameraFault::kMute, milliseconds(120))},
+      {"MuteShorterThanAllowed", step(CameraFault::kMute, milliseconds(600))},
+      {"MuteAtTriggerShorterThanAllowed", at_trigger(CameraFault::kMute, milliseconds(600))},
+      {"MuteAtCommandShorterThanAllowed", at_command(CameraFault::kMute, milliseconds(600))},
+      {"HangShorterThanAllowed", step(CameraFault::kHang, milliseconds(600))},
+      {"BusyNowAndThen", step(CameraFault::kBusy), std::nullopt, 5},
+      {"BusyTenTimes", step(CameraFault::kBusy, milliseconds(0), 0, 10)},
+      {"PendingAck", step(CameraFault::kPendingAck, milliseconds(400), 800), std::nullopt, 2},
+      {"PendingAckForLong", step(CameraFault::kPendingAck, milliseconds(1500), 3000)},
+      {"OddTimeAhead", in_time(CameraFault::kOddTime, hours(1))},
+      {"OddTimeBack", in_time(CameraFault::kOddTime, -hours(1))},
+      {"OddTimeAheadEveryFourthFrame", in_time(CameraFault::kOddTime, hours(1)), std::nullopt, 3},
+      {"OddTimeBackEveryFourthFrame", in_time(CameraFault::kOddTime, -hours(1)), std::nullopt, 3},
+      {"ClockStepAheadASecond", in_time(CameraFault::kClockStep, seconds(1))},
+      {"ClockStepBackASecond", in_time(CameraFault::kClockStep, -seconds(1))},
+      {"ClockStepAhead", in_time(CameraFault::kClockStep, hours(1))},
+      {"ClockStepBack", in_time(CameraFault::kClockStep, -hours(1))},
+      {"OtherFormat", step(CameraFault::kOtherFormat)},
+      {"OtherFormatTooOften", step(CameraFault::kOtherFormat, milliseconds(0), 0, 4), ErrorCode::kCameraFramesLost},
+      {"ChunkMode", step(CameraFault::kChunkMode)},
+      {"ChunkModeOfOldCameras", step(CameraFault::kChunkMode, milliseconds(0), 1)},
+      {"PaddedLines", step(CameraFault::kPaddedLines, milliseconds(0), 8, 5)},
+      {"ForgetStream", step(CameraFault::kForgetStream), ErrorCode::kCameraNoFrames},
       {"Mute", step(CameraFault::kMute, milliseconds(3000)), ErrorCode::kCameraDisconnected},
       {"HangInExposure", step(CameraFault::kHang, milliseconds(1500)), ErrorCode::kCameraDisconnected},
       {"HangAtTrigger", at_trigger(CameraFault::kHang, milliseconds(1500)), ErrorCode::kCameraDisconnected},
@@ -188,13 +215,17 @@ inline std::unique_ptr<Camera> open_again(const CameraConfig& config) {
 
 /// A scan with the fault in it, then one without on the same connection, or on a new one if that was lost.
 inline CameraFaultOutcome run_camera_fault_case(const CameraFaultCase& fault) {
-  MarkedCamera marked;
+  sim::GigeCameraOptions options;
+  const bool longer =
+      fault.step.fault == sim::CameraFault::kChunkMode || fault.step.fault == sim::CameraFault::kPaddedLines;
+  if (longer) options.payload_margin_bytes = 4096;
+  MarkedCamera marked(160, 120, options);
   CameraFaultOutcome outcome;
   std::ostringstream story;
   auto camera = open_aravis_camera(marked.config());
   camera->configure(camera_fault_settings());
   SystemClock clock;
-  marked.server().faults().add(fault.step);
+  for (int i = 0; i < fault.repeat; ++i) marked.server().faults().add(fault.step);
   std::jthread reaper;
   HostTime struck{};
   for (int round = 0; round < 2; ++round) {
@@ -221,7 +252,7 @@ inline CameraFaultOutcome run_camera_fault_case(const CameraFaultCase& fault) {
           << report.frames.stale << " underrun " << report.frames.underrun << "; " << sink.what.str();
     if (round == 1) break;
     struck = last_slice;
-    if (outcome.end == ErrorCode::kCameraDisconnected) {
+    if (outcome.end == ErrorCode::kCameraDisconnected || outcome.end == ErrorCode::kCameraNoFrames) {
       outcome.end_ms = std::chrono::duration<double, std::milli>(HostClock::now() - struck).count();
       // Closing it takes as long as the camera is silent, and it keeps control for so long.
       reaper = std::jthread([dead = std::move(camera)]() mutable { dead.reset(); });

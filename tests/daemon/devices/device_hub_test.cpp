@@ -97,7 +97,7 @@ TEST_F(ADeviceHub, OpensTheAxisFirstAndEachDeviceOnce) {
   EXPECT_EQ(opened_, (Strings{"axis", "camera"}));
   EXPECT_EQ(hub_.openings(), 2);
   EXPECT_EQ(rest_, std::vector<bool>{true});
-  EXPECT_EQ(hub_.facts().sensor_height, 12);
+  EXPECT_EQ(hub_.facts().camera.sensor_height, 12);
 }
 
 TEST_F(ADeviceHub, TriesAMissingDeviceAgainAndStopsTheAxisMeanwhile) {
@@ -169,11 +169,13 @@ TEST_F(ADeviceHub, GivesUpTheDeviceThatAnErrorNamesAndOpensNothing) {
 
 TEST_F(ADeviceHub, RenewsACameraThatLostFramesAtTheNextOpeningOnly) {
   ASSERT_EQ(hub_.open(), std::nullopt);
-  opened_.clear();
-  EXPECT_EQ(hub_.after_failure(ErrorCode::kCameraFramesLost, "no frames"), std::nullopt);
-  EXPECT_TRUE(opened_.empty()) << "the end of the job is told first";
-  EXPECT_EQ(hub_.open(), std::nullopt);
-  EXPECT_EQ(opened_, Strings{"camera"});
+  for (const ErrorCode code : {ErrorCode::kCameraFramesLost, ErrorCode::kCameraNoFrames}) {
+    opened_.clear();
+    EXPECT_EQ(hub_.after_failure(code, "no frames"), std::nullopt);
+    EXPECT_TRUE(opened_.empty()) << "the end of the job is told first";
+    EXPECT_EQ(hub_.open(), std::nullopt);
+    EXPECT_EQ(opened_, Strings{"camera"});
+  }
 }
 
 TEST_F(ADeviceHub, KeepsItsDevicesAfterAnErrorThatIsNotTheirs) {
