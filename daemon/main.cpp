@@ -19,7 +19,7 @@
 #include "daemon/base/service_watchdog.hpp"
 #include "daemon/base/systemd_notify.hpp"
 #include "daemon/base/version.hpp"
-#include "daemon/devices/reaper.hpp"
+#include "daemon/devices/left_threads.hpp"
 #include "daemon/options.hpp"
 
 namespace fvd {
@@ -69,7 +69,7 @@ int serve(const Config& config) {
     received = signal_within(signals, ServiceWatchdog::interval());
   }
   spdlog::info("signal {}: stopping", received);
-  Reaper::process_ends();
+  process_ends();
   notify_stopping();
   return thread_failed ? exit_code::kInternal : exit_code::kOk;
 }
@@ -85,9 +85,9 @@ int main(int argc, char** argv) try {
   if (start.exit) return *start.exit;
   try {
     const int code = serve(start.config);
-    if (!Reaper::left_a_device()) return code;
+    if (!left_a_thread()) return code;
     spdlog::warn("a device that answers nothing is not closed in order; the system closes its connection");
-    spdlog::shutdown();
+    spdlog::default_logger()->flush();  // not gone: the thread that was left may log
     std::_Exit(code);
   } catch (const Error& error) {
     spdlog::critical("{}: {}", error_name(error.code()), error.what());

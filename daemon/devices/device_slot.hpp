@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "daemon/devices/left_threads.hpp"
 #include "daemon/devices/reaper.hpp"
 
 namespace fvd {
@@ -47,7 +48,8 @@ enum class Predecessor {
 template <typename Device>
 class DeviceSlot final : public AnyDeviceSlot {
  public:
-  /// Returns an open device, or throws.
+  /// Returns an open device, or throws. Runs on a thread of its own and owns all that it uses: the process may end
+  /// before it is done.
   using Opener = std::function<std::unique_ptr<Device>()>;
 
   DeviceSlot(Opener opener, ErrorCode lost, Predecessor predecessor)
@@ -64,7 +66,12 @@ class DeviceSlot final : public AnyDeviceSlot {
       return false;
     }
     try {
-      device_ = opener_();
+      const auto opened = std::make_shared<std::unique_ptr<Device>>();
+      if (!run_unless_process_ends("fvd-opening", [opener = opener_, opened] { *opened = opener(); })) {
+        failure_ = DeviceFailure{lost_, "the program ends while the device is being opened"};
+        return false;
+      }
+      device_ = std::move(*opened);
       failure_.reset();
       ++openings_;
       return true;

@@ -2,10 +2,10 @@
 
 #include <chrono>
 #include <utility>
-#include <vector>
 
 #include "core/base/clock.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "daemon/devices/left_threads.hpp"
 
 namespace fvd {
 
@@ -13,33 +13,14 @@ namespace {
 
 constexpr std::chrono::milliseconds kLastWait{200};
 
-std::atomic<bool> process_is_ending{false};
-
-/// Threads that are left running until the process ends. Never destroyed: nobody waits for them.
-struct LeftThreads {
-  Mutex mutex;
-  std::vector<std::jthread> threads FVD_GUARDED_BY(mutex);
-};
-LeftThreads& left() {
-  static auto* const threads = new LeftThreads;
-  return *threads;
-}
-
 }  // namespace
-
-void Reaper::process_ends() noexcept { process_is_ending = true; }
-
-bool Reaper::left_a_device() noexcept {
-  const MutexLock lock(left().mutex);
-  return !left().threads.empty();
-}
 
 Reaper::Reaper()
     : thread_(start_thread("fvd-reaper", [work = work_](const std::stop_token& stop) { run(*work, stop); })) {}
 
 Reaper::~Reaper() {
   thread_.request_stop();
-  if (!process_is_ending) return;  // the thread's own destructor waits
+  if (!process_is_ending()) return;  // the thread's own destructor waits
   bool ended = false;
   {
     MutexLock lock(work_->mutex);
@@ -48,9 +29,7 @@ Reaper::~Reaper() {
       return work_->ended;
     });
   }
-  if (ended) return;
-  const MutexLock lock(left().mutex);
-  left().threads.push_back(std::move(thread_));
+  if (!ended) leave_thread(std::move(thread_));
 }
 
 Closed Reaper::enqueue(std::shared_ptr<void> device) {

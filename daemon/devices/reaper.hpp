@@ -15,7 +15,8 @@ namespace fvd {
 /// Becomes true when the device is closed; an empty pointer stands for no device.
 using Closed = std::shared_ptr<const std::atomic<bool>>;
 
-/// context: thread-safe. Destruction waits until every device that was handed over is closed, unless the process ends.
+/// context: thread-safe. Destruction waits until every device that was handed over is closed, unless the process ends
+/// (left_threads.hpp).
 class Reaper {
  public:
   Reaper();
@@ -28,12 +29,6 @@ class Reaper {
   Closed bury(std::unique_ptr<Device> device) {
     return device ? enqueue(std::shared_ptr<void>(std::move(device))) : nullptr;
   }
-
-  /// The process ends: from now on destruction waits a fifth of a second only. A device that answers nothing is then
-  /// left to the system, which closes its sockets.
-  static void process_ends() noexcept;
-  /// A device was left; its thread still runs, so that the process must end by std::_Exit().
-  [[nodiscard]] static bool left_a_device() noexcept;
 
  private:
   struct Burial {

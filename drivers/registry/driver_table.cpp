@@ -104,8 +104,8 @@ std::unique_ptr<Camera> open_camera(const CameraConfig& config) {
 std::unique_ptr<Axis> open_stage(const StageConfig& config) { return open(axis_drivers(), config, "stage"); }
 
 DeviceOpeners openers_of(const DeviceConfigs& devices) {
-  return {.camera = [&devices] { return open_camera(devices.camera); },
-          .axis = [&devices] { return open_stage(devices.stage); }};
+  const auto own = std::make_shared<const DeviceConfigs>(devices);
+  return {.camera = [own] { return open_camera(own->camera); }, .axis = [own] { return open_stage(own->stage); }};
 }
 
 }  // namespace fvd

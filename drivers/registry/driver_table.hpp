@@ -58,7 +58,7 @@ void describe(StageConfig& config, Fields& fields);
 [[nodiscard]] Problems check_devices(const DeviceConfigs& devices, const Problems& read);
 void check_driver(const StageConfig& config, Problems& problems);
 
-/// devices outlives the openers.
+/// The openers own a copy of the configuration.
 [[nodiscard]] DeviceOpeners openers_of(const DeviceConfigs& devices);
 
 /// Opens the camera. Throws Error kBadConfig for an unknown driver (the message lists the known ones), else what the
