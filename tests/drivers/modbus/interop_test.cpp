@@ -56,7 +56,8 @@ TEST(TheModbusSerialServer, IsDrivenAHundredSteps) {
 TEST(TheModbusSerialClient, IdentifiesAndMovesTheSimulatedDrive) {
   if (!has_modbus_serial()) GTEST_SKIP() << kNoModbusSerial;
   test::SimulatedDrive plant(test::kDriveCases[4], Transport::kTcp);
-  const auto& tcp = std::get<ModbusTcpEndpoint>(plant.line().config().endpoint);
+  const ModbusLinkConfig link = plant.line().config();
+  const auto& tcp = std::get<ModbusTcpEndpoint>(link.endpoint);
   test::ChildProcess client({"node", std::string(kScripts) + "client.js", std::to_string(tcp.port)});
   const std::string seen = client.rest();
   EXPECT_EQ(client.wait(), 0) << seen;
