@@ -34,7 +34,12 @@ std::vector<NetworkInterface> interfaces_of(const DevicesArguments& arguments) {
   if (arguments.interfaces.empty()) return network_interfaces();
   std::vector<NetworkInterface> interfaces;
   for (const std::string& name : arguments.interfaces) {
-    for (NetworkInterface& one : network_interfaces(name)) interfaces.push_back(std::move(one));
+    for (NetworkInterface& one : network_interfaces(name)) {
+      const bool known = std::any_of(interfaces.begin(), interfaces.end(), [&](const NetworkInterface& other) {
+        return other.index == one.index && other.address == one.address;  // named twice: by name and by address
+      });
+      if (!known) interfaces.push_back(std::move(one));
+    }
   }
   return interfaces;
 }
@@ -133,7 +138,11 @@ FoundCamera camera_named(const std::string& name, const std::vector<FoundCamera>
   std::vector<FoundCamera> fitting;
   std::string seen;
   for (const FoundCamera& camera : cameras) {
-    if (camera.is_called(name)) fitting.push_back(camera);
+    // One that answers through several interfaces is one camera.
+    const bool known = std::any_of(fitting.begin(), fitting.end(), [&](const FoundCamera& other) {
+      return other.mac == camera.mac && other.address == camera.address;
+    });
+    if (camera.is_called(name) && !known) fitting.push_back(camera);
     seen += "; " + camera_text(camera);
   }
   if (fitting.size() == 1) return fitting.front();

@@ -148,4 +148,8 @@ void DriveLock::refuse_drive(int failure) const {
                                           "; nothing was sent to it: end that program first");
 }
 
+std::shared_ptr<const DriveLock> drive_lock_of(const StageConfig& config) {
+  return config.lock ? config.lock : std::make_shared<const DriveLock>(config);
+}
+
 }  // namespace fvd

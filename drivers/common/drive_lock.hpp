@@ -3,6 +3,7 @@
 /// One master per drive: a lock file that whoever opens a drive takes first. Who does not get it writes nothing.
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "drivers/common/driver_config.hpp"
@@ -34,5 +35,8 @@ class DriveLock {
   std::filesystem::path path_;
   int file_ = -1;
 };
+
+/// The lock that the configuration brings, else one that is taken now; throws as DriveLock does.
+[[nodiscard]] std::shared_ptr<const DriveLock> drive_lock_of(const StageConfig& config);
 
 }  // namespace fvd

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "core/base/units.hpp"
@@ -30,6 +31,8 @@ struct CameraConfig {
 
   bool operator==(const CameraConfig&) const = default;
 };
+
+class DriveLock;
 
 struct StageConfig {
   std::string driver = "modbus";      ///< "modbus", "gcs" or "replay"
@@ -58,6 +61,8 @@ struct StageConfig {
   double replay_step_um = 10.0;
   std::filesystem::path replay_z_file;  ///< driver "replay": z of each slice, one number a line; takes the step's place
   std::string replay_z_unit = "um";     ///< unit of that file: um, mm or m
+  /// The drive's lock, where the opener holds it over several openings; none = each opening takes it for itself.
+  std::shared_ptr<const DriveLock> lock = nullptr;
 
   bool operator==(const StageConfig&) const = default;
 };

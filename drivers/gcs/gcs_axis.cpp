@@ -72,7 +72,10 @@ std::optional<Integer> integer_of(const std::string& answer, int base) {
 class GcsPort final : public AxisPort {
  public:
   explicit GcsPort(const StageConfig& config)
-      : lock_(config), axis_(config.gcs_axis), sign_(config.reversed ? -1.0 : 1.0), line_(line_config(config)) {
+      : lock_(drive_lock_of(config)),
+        axis_(config.gcs_axis),
+        sign_(config.reversed ? -1.0 : 1.0),
+        line_(line_config(config)) {
     traits_.name = identity();
     traits_.address = line_.description() + " axis " + axis_;
     traits_.feedback =
@@ -251,7 +254,7 @@ class GcsPort final : public AxisPort {
     return {CommandOutcome::kRefused, command + ": error " + std::to_string(*code)};
   }
 
-  const DriveLock lock_;  // first: nothing is sent without it
+  const std::shared_ptr<const DriveLock> lock_;  // first: nothing is sent without it
   const std::string axis_;
   const double sign_;  // of the controller's position as z grows
   TextLine line_;

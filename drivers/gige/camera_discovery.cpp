@@ -241,8 +241,11 @@ std::vector<FoundCamera> look_for_camera(const std::string& wanted, std::uint32_
       }
     }
   } catch (const Error&) {  // an interface that has just gone
-    return found;
   }
+  // In one order whoever answers first: messages that list them are the same each time.
+  std::sort(found.begin(), found.end(), [](const FoundCamera& a, const FoundCamera& b) {
+    return std::tie(a.address, a.mac) < std::tie(b.address, b.mac);
+  });
   return found;
 }
 

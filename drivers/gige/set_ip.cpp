@@ -87,6 +87,10 @@ void check_address(const CameraAddress& wanted, const NetworkInterface& interfac
   if ((wanted.address & hosts) == 0 || (wanted.address & hosts) == hosts) {
     refuse(text + " is the network's own address or its broadcast with the mask " + gvcp::address_text(wanted.mask));
   }
+  if (wanted.gateway != 0 && (wanted.gateway & wanted.mask) != (wanted.address & wanted.mask)) {
+    refuse("the gateway " + gvcp::address_text(wanted.gateway) + " is not in the subnet of " + text +
+           " with the mask " + gvcp::address_text(wanted.mask));
+  }
   if (wanted.address == interface.address) refuse(text + " is the address of " + interface.name + " of this machine");
   if ((wanted.address & interface.mask) != (interface.address & interface.mask) ||
       (wanted.address & wanted.mask) != (interface.address & wanted.mask)) {

@@ -17,7 +17,7 @@ struct CameraAddress {
 };
 
 /// Throws Error kBadInput for an address that no camera can have, a mask with holes, an address that is the network's
-/// or its broadcast, the interface's own, or outside the interface's subnet.
+/// or its broadcast, a gateway outside of the subnet, the interface's own, or outside the interface's subnet.
 void check_address(const CameraAddress& wanted, const NetworkInterface& interface);
 
 /// FORCEIP: the address until the camera is switched off. Returns once the camera answers there. interface: through

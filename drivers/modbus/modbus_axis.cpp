@@ -43,7 +43,7 @@ class ModbusPort final : public AxisPort {
   explicit ModbusPort(const StageConfig& config)
       : profile_(profile_for(config)),
         own_writes_(profile_.watched, !profile_.homed),
-        lock_(config),
+        lock_(drive_lock_of(config)),
         link_(modbus_link_config(config)) {
     link_.observe_writes(
         [this](const ModbusRequest& write, bool sent, bool done) { own_writes_.saw(write, sent, done); });
@@ -259,8 +259,8 @@ class ModbusPort final : public AxisPort {
   }
 
   const DriveProfile profile_;
-  OwnWrites own_writes_;  // before the link, which tells it of every write
-  const DriveLock lock_;  // before the link: nothing is sent without it
+  OwnWrites own_writes_;                         // before the link, which tells it of every write
+  const std::shared_ptr<const DriveLock> lock_;  // before the link: nothing is sent without it
   ModbusLink link_;
   AxisTraits traits_;
   std::atomic<bool> answers_{true};

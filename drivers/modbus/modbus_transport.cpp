@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <linux/serial.h>
 #include <modbus/modbus.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -62,6 +63,14 @@ std::string ftdi_latency(const std::string& device) {
   std::ifstream in(file);
   std::string value;
   return std::getline(in, value) ? ", USB latency timer " + value + " ms" : "";
+}
+
+/// libmodbus tells a name that nobody knows as a refused connection.
+void explain_name(const std::string& host, std::string& error) {
+  addrinfo* found = nullptr;
+  const int unknown = ::getaddrinfo(host.c_str(), nullptr, nullptr, &found);
+  if (found != nullptr) ::freeaddrinfo(found);
+  if (unknown != 0) error = "no host is called '" + host + "': " + ::gai_strerror(unknown);
 }
 
 }  // namespace
@@ -125,6 +134,8 @@ bool ModbusTransport::connect(std::string& error) {
     if (code == EINPROGRESS || code == ETIMEDOUT) {
       error = "nobody answered the connection within " + std::to_string(config_.response_timeout.count() * 9 / 10) +
               " ms: is the host on and its address right, or does a firewall drop it?";
+    } else if (code == ECONNREFUSED && is_tcp()) {
+      explain_name(std::get<ModbusTcpEndpoint>(config_.endpoint).host, error);
     }
     unlock_serial_port();
     return false;

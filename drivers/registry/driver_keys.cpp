@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <iterator>
 
+#include <arpa/inet.h>
+
 #include "core/base/error.hpp"
 #include "drivers/common/text_line.hpp"
 #include "drivers/modbus/drive_profile.hpp"
@@ -52,6 +54,15 @@ void check_line(const StageConfig& stage, const std::string& serial, const int (
     problems.push_back({"/stage/serial_device", "is empty; expected a serial port such as /dev/serial/by-id/..."});
   }
   check_baud(stage.serial_baud, bauds, problems);
+}
+
+/// What has the looks of an IPv4 address and is none, such as 192.168.1.300, is no name of anything.
+void check_numeric_address(const std::string& address, const char* pointer, Problems& problems) {
+  in_addr parsed{};
+  const bool numeric =
+      address.find('.') != std::string::npos && address.find_first_not_of("0123456789.") == std::string::npos;
+  if (!numeric || ::inet_pton(AF_INET, address.c_str(), &parsed) == 1) return;
+  problems.push_back({pointer, "'" + address + "' is no IPv4 address: four numbers of 0..255 are expected"});
 }
 
 }  // namespace
@@ -140,6 +151,12 @@ void describe_replay(StageConfig& stage, Fields& fields) {
 }
 
 void check_aravis(const CameraConfig& camera, Problems& problems) {
+  check_numeric_address(camera.address, "/camera/address", problems);
+  in_addr parsed{};
+  if (!camera.search_address.empty() && ::inet_pton(AF_INET, camera.search_address.c_str(), &parsed) != 1) {
+    problems.push_back({"/camera/search_address",
+                        "'" + camera.search_address + "' is no IPv4 address; expected one such as 192.168.1.255"});
+  }
   if (!camera.address.empty()) return;
   problems.push_back({"/camera/address",
                       "is empty; expected the camera's IP address, serial number, MAC, user-defined "
@@ -155,6 +172,7 @@ void check_replay(const CameraConfig& camera, Problems& problems) {
 }
 
 void check_modbus(const StageConfig& stage, Problems& problems) {
+  if (stage.transport == "tcp") check_numeric_address(stage.address, "/stage/address", problems);
   check_line(stage, "rtu", kModbusBauds, problems);
   std::error_code error;
   if (!fs::is_regular_file(stage.profile, error)) {
@@ -170,6 +188,7 @@ void check_modbus(const StageConfig& stage, Problems& problems) {
 }
 
 void check_gcs(const StageConfig& stage, Problems& problems) {
+  if (stage.transport == "tcp") check_numeric_address(stage.address, "/stage/address", problems);
   check_line(stage, "serial", kTextLineBauds, problems);
   if (!stage.gcs_axis.empty() && stage.gcs_axis.find_first_of(" \n\r=") == std::string::npos) return;
   problems.push_back(

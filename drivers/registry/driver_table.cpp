@@ -4,6 +4,7 @@
 
 #include "core/base/error.hpp"
 #include "drivers/aravis/aravis_camera.hpp"
+#include "drivers/common/drive_lock.hpp"
 #include "drivers/common/mirrored_camera.hpp"
 #include "drivers/gcs/gcs_axis.hpp"
 #include "drivers/modbus/modbus_axis.hpp"
@@ -23,8 +24,8 @@ const std::vector<CameraDriver>& camera_drivers() {
 
 const std::vector<AxisDriver>& axis_drivers() {
   static const std::vector<AxisDriver> kRows{
-      {DeviceKind::kAxis, "modbus", "a drive by its profile", describe_modbus, check_modbus, open_modbus_stage},
-      {DeviceKind::kAxis, "gcs", "a controller of Physik Instrumente", describe_gcs, check_gcs, open_gcs_stage},
+      {DeviceKind::kAxis, "modbus", "a drive by its profile", describe_modbus, check_modbus, open_modbus_stage, true},
+      {DeviceKind::kAxis, "gcs", "a controller of Physik Instrumente", describe_gcs, check_gcs, open_gcs_stage, true},
       {DeviceKind::kAxis, "replay", "beside a replay camera", describe_replay, check_replay, open_replay_stage},
   };
   return kRows;
@@ -104,8 +105,13 @@ std::unique_ptr<Camera> open_camera(const CameraConfig& config) {
 std::unique_ptr<Axis> open_stage(const StageConfig& config) { return open(axis_drivers(), config, "stage"); }
 
 DeviceOpeners openers_of(const DeviceConfigs& devices) {
-  const auto own = std::make_shared<const DeviceConfigs>(devices);
-  return {.camera = [own] { return open_camera(own->camera); }, .axis = [own] { return open_stage(own->stage); }};
+  const AxisDriver* const driver = find(axis_drivers(), devices.stage.driver);
+  const bool locked = driver != nullptr && driver->locked;
+  const auto open_axis = [locked, config = std::make_shared<StageConfig>(devices.stage)] {
+    if (locked && !config->lock) config->lock = std::make_shared<const DriveLock>(*config);
+    return open_stage(*config);
+  };
+  return {.camera = [config = devices.camera] { return open_camera(config); }, .axis = open_axis};
 }
 
 }  // namespace fvd

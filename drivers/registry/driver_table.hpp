@@ -30,6 +30,7 @@ struct DriverRow {
   void (*check)(const Config&, Problems&);
   /// Throws as the driver says.
   std::unique_ptr<Device> (*open)(const Config&);
+  bool locked = false;  ///< takes the lock of the drive (drive_lock.hpp), unless the configuration brings it
 };
 
 using CameraDriver = DriverRow<CameraConfig, Camera>;
@@ -58,7 +59,8 @@ void describe(StageConfig& config, Fields& fields);
 [[nodiscard]] Problems check_devices(const DeviceConfigs& devices, const Problems& read);
 void check_driver(const StageConfig& config, Problems& problems);
 
-/// The openers own a copy of the configuration.
+/// The openers own a copy of the configuration. That of the axis holds the drive's lock from the first opening on, as
+/// long as it lives: while a lost drive is away, no other program of the machine takes it.
 [[nodiscard]] DeviceOpeners openers_of(const DeviceConfigs& devices);
 
 /// Opens the camera. Throws Error kBadConfig for an unknown driver (the message lists the known ones), else what the

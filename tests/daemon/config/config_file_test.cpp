@@ -222,6 +222,19 @@ TEST_F(AUsableConfig, NeedsACameraAddress) {
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/address", "is empty")));
 }
 
+TEST_F(AUsableConfig, NeedsAddressesThatCanBe) {
+  config_.camera.address = "192.168.1.300";
+  config_.camera.search_address = "left";
+  config_.stage.address = "10.0.0";
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/address", "'192.168.1.300' is no IPv4 address"),
+                                                 problem("/camera/search_address", "'left' is no IPv4 address"),
+                                                 problem("/stage/address", "'10.0.0' is no IPv4 address")));
+  config_.camera.address = "40012345";  // a serial number
+  config_.camera.search_address = "192.168.1.255";
+  config_.stage.address = "drive.example";
+  EXPECT_THAT(check_config(config_), IsEmpty());
+}
+
 TEST_F(AUsableConfig, NeedsLimitsInOrder) {
   config_.stage.max = config_.stage.min;
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/stage/min_um", "not below max_um")));

@@ -141,6 +141,7 @@ TEST(CameraSetIp, RefusesWhatCannotBeReachedAfterwards) {
       {{"127.0.0.1"}, "is the address of lo"},
       {{"127.0.0.0", "--mask", "255.255.255.0"}, "network's own address"},
       {{"127.0.0.5", "--mask", "255.0.255.0"}, "no mask of a subnet"},
+      {{"127.0.0.9", "--gateway", "10.0.0.1"}, "gateway 10.0.0.1 is not in the subnet"},
       {{"224.0.0.1"}, "no address of a device"}};
   for (const auto& [words, text] : cases) {
     const auto run = refused(words);
