@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "core/base/error.hpp"
@@ -77,7 +78,10 @@ int run_setup(const SetupArguments& arguments, const Terminal& terminal) {
         << std::endl;
   }
   Setup setup(std::move(options), signal.token());
+  const bool script = ::isatty(terminal.in_fd) == 0;
   while (!setup.done()) {
+    // What was typed before a question was seen is no answer to it: the axis might move on it.
+    if (!script) ::tcflush(terminal.in_fd, TCIFLUSH);
     if (arguments.json) {
       terminal.out << to_json(setup.question()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
                    << std::endl;
@@ -89,7 +93,13 @@ int run_setup(const SetupArguments& arguments, const Terminal& terminal) {
       throw Error(ErrorCode::kBadInput, "the answers end at the question '" + setup.question().step +
                                             "'; the setup is not finished, and nothing was written");
     }
+    const std::string step = setup.question().step;
     setup.answer(*answer);
+    if (script && setup.refused()) {  // the answers that follow are to other questions
+      throw Error(ErrorCode::kBadInput, "the answer '" + *answer + "' to the question '" + step +
+                                            "' was refused: " + setup.question().note +
+                                            "; the setup is not finished, and nothing was written");
+    }
   }
   if (arguments.json) {
     terminal.out << nlohmann::ordered_json{{"written", setup.written().string()}, {"note", setup.report()}}.dump()

@@ -26,7 +26,8 @@ struct SetupArguments {
 };
 
 /// Adds `setup`. chosen: set to it if the line names it. Its answers come from terminal.in_fd, one a line; where they
-/// end before the setup does, nothing is written.
+/// end before the setup does, nothing is written. A terminal's are read from when its question is shown, and one that
+/// is refused is asked for again; of a script or a program it ends the setup.
 void add_setup_command(CLI::App& app, SetupArguments& arguments, const Terminal& terminal,
                        std::function<int()>& chosen);
 

@@ -10,6 +10,9 @@ StopOnSignal::StopOnSignal() {
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaddset(&signals_, SIGHUP);  // nohup means to go on
   pthread_sigmask(SIG_BLOCK, &signals_, &before_);
   watcher_ = start_thread("fvdctl-signals", [this](const std::stop_token& ended) {
     constexpr timespec kPollInterval{0, 100'000'000};

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Ctrl-C halts what moves instead of ending the program.
+/// Ctrl-C, and a terminal that is closed, halt what moves instead of ending the program.
 
 #include <csignal>
 #include <stop_token>
@@ -8,7 +8,8 @@
 
 namespace fvd::ctl {
 
-/// While it lives SIGINT and SIGTERM request a stop. context: one at a time.
+/// While it lives SIGINT, SIGTERM and SIGHUP (unless that is ignored, as under nohup) request a stop. context: one at a
+/// time.
 class StopOnSignal {
  public:
   StopOnSignal();

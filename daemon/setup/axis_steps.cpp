@@ -1,5 +1,6 @@
 /// Which way z grows, and how far the axis may go.
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -11,25 +12,26 @@ namespace fvd {
 namespace {
 
 constexpr double kJog_um = 10.0;
-/// Longest way for one answer while a limit is taught: away from the part, and towards it.
-constexpr double kLongestUp_um = 1000.0;
+/// Longest way towards the part for one answer while a limit is taught.
 constexpr double kLongestDown_um = 200.0;
 /// Limits that lie closer leave no room for a scan.
 constexpr double kLeastTravel_um = 1.0;
 
-double position_um(SetupContext& context) {
-  return context.bench.stage(context.draft.devices.stage).status().position.value;
+/// Where the axis stands, or why nobody knows.
+std::string standing_text(SetupContext& context) {
+  try {
+    return "The axis stands at " + um_text(position(context).value) + ".";
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kStageNotHomed) return "The axis has no reference.";
+    return std::string("The axis cannot be asked where it stands: ") + error.what() + ".";
+  }
 }
-
-/// Opened anew, with another direction or other limits, some drives have no reference any more.
-bool needs_reference(SetupContext& context) { return !context.bench.stage(context.draft.devices.stage).status().homed; }
 
 SetupQuestion ask_jog(SetupContext& /*context*/) {
   SetupQuestion question;
   question.text =
       "The lens is far from everything? Watch which way it goes, by a dial gauge or against the light: the axis moves "
-      "by "
-      "10 um.";
+      "by 10 um.";
   question.choices = {{"jog", "moves the axis by +10 um", true}};
   return question;
 }
@@ -57,9 +59,7 @@ SetupNext take_towards(SetupContext& context, const SetupAnswer& answer) {
   stage.reversed = !stage.reversed;
   stage.min = -std::exchange(stage.max, -stage.min);
   context.note = "z is turned round; the next jog has to go away from the part";
-  if (!needs_reference(context)) return SetupNext::kStepBack;
-  context.note += ". The drive has forgotten its reference";
-  return SetupNext::kReference;
+  return SetupNext::kStepBack;
 }
 
 /// Answers of both limits. here: what becomes of it.
@@ -80,7 +80,7 @@ std::optional<Micrometers> taught(SetupContext& context, const SetupAnswer& answ
     move_by(context, -answer.number(1, 0.01, kLongestDown_um, "distance in um"));
     return std::nullopt;
   }
-  if (answer.is("here")) return Micrometers{position_um(context)};
+  if (answer.is("here")) return position(context);
   if (answer.begins("at", 2)) {
     const StageConfig& stage = context.draft.devices.stage;
     return Micrometers{answer.number(1, stage.min.value, stage.max.value, "position within the travel, in um")};
@@ -90,8 +90,7 @@ std::optional<Micrometers> taught(SetupContext& context, const SetupAnswer& answ
 
 SetupQuestion ask_upper(SetupContext& context) {
   SetupQuestion question;
-  question.text = "The upper limit, the highest that the lens is ever to go. The axis stands at " +
-                  um_text(position_um(context)) + ".";
+  question.text = "The upper limit, the highest that the lens is ever to go. " + standing_text(context);
   question.choices = limit_choices("upper");
   return question;
 }
@@ -99,11 +98,11 @@ SetupQuestion ask_upper(SetupContext& context) {
 SetupNext take_upper(SetupContext& context, const SetupAnswer& answer) {
   const auto limit = taught(context, answer);
   if (!limit) return SetupNext::kStay;
-  StageConfig& stage = context.draft.devices.stage;
-  if (limit->value < stage.min.value + kLeastTravel_um) {
-    throw Error(ErrorCode::kBadInput, um_text(limit->value) + " leaves no travel above " + um_text(stage.min.value));
+  const Micrometers lowest = context.draft.devices.stage.min;
+  if (limit->value < lowest.value + kLeastTravel_um) {
+    throw Error(ErrorCode::kBadInput, um_text(limit->value) + " leaves no travel above " + um_text(lowest.value));
   }
-  stage.max = *limit;
+  context.draft.upper_limit = limit;
   context.note = "upper limit " + um_text(limit->value);
   return SetupNext::kOn;
 }
@@ -112,10 +111,8 @@ SetupQuestion ask_lower(SetupContext& context) {
   SetupQuestion question;
   question.text =
       "The lower limit, the closest that the lens is ever to come to the part: with the part in place, well before "
-      "they "
-      "touch. A scan begins below the surface, by its take-up of " +
-      um_text(context.draft.devices.stage.take_up.value) + " more. The axis stands at " +
-      um_text(position_um(context)) + ".";
+      "they touch. A scan begins below the surface, by its take-up of " +
+      um_text(context.draft.devices.stage.take_up.value) + " more. " + standing_text(context);
   question.choices = limit_choices("lower");
   return question;
 }
@@ -123,21 +120,42 @@ SetupQuestion ask_lower(SetupContext& context) {
 SetupNext take_lower(SetupContext& context, const SetupAnswer& answer) {
   const auto limit = taught(context, answer);
   if (!limit) return SetupNext::kStay;
-  StageConfig& stage = context.draft.devices.stage;
-  if (limit->value > stage.max.value - kLeastTravel_um) {
-    throw Error(ErrorCode::kBadInput, um_text(limit->value) + " leaves no travel below " + um_text(stage.max.value));
+  const Micrometers upper = context.draft.upper_limit.value();
+  if (limit->value > upper.value - kLeastTravel_um) {
+    throw Error(ErrorCode::kBadInput, um_text(limit->value) + " leaves no travel below " + um_text(upper.value));
   }
-  stage.min = *limit;
+  // Both at once: an axis of other limits is opened anew, and some drives have no reference then.
+  context.draft.devices.stage.min = *limit;
+  context.draft.devices.stage.max = upper;
   context.note = "lower limit " + um_text(limit->value);
   return SetupNext::kOn;
 }
 
 }  // namespace
 
+Micrometers position(SetupContext& context) {
+  const StageStatus status = context.bench.stage(context.draft.devices.stage).status();
+  if (!status.homed) throw Error(ErrorCode::kStageNotHomed, "the axis has no reference: where it stands means nothing");
+  return status.position;
+}
+
+SettleCriterion settle_within(const StageConfig& stage, double distance_um) {
+  // Twice the way at full speed, and the ramps.
+  const double way_s = 2.0 * distance_um / stage.speed_um_per_s + stage.speed_um_per_s / stage.acceleration_um_per_s2;
+  SettleCriterion criterion;
+  criterion.timeout += std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(way_s * 1e3)));
+  return criterion;
+}
+
 void move_by(SetupContext& context, double distance_um) {
   Axis& stage = context.bench.moving_stage(context.draft.devices.stage);
-  const Micrometers target = stage.status().position + Micrometers{distance_um};
-  const MoveRecord move = stage.move_to(target, {}, context.stop);
+  const Micrometers target = position(context) + Micrometers{distance_um};
+  if (const auto upper = context.draft.upper_limit; upper && target > *upper) {
+    throw Error(ErrorCode::kStageLimit, um_text(target.value) + " is above the upper limit of " +
+                                            um_text(upper->value) + "; nothing was moved");
+  }
+  const MoveRecord move =
+      stage.move_to(target, settle_within(context.draft.devices.stage, std::abs(distance_um)), context.stop);
   context.note = "the axis stands at " + um_text(move.position.value);
 }
 
@@ -145,8 +163,7 @@ std::vector<SetupStep> axis_steps() {
   return {{"jog", nullptr, ask_jog, take_jog},
           {"towards", nullptr, ask_towards, take_towards},
           {"upper_limit", nullptr, ask_upper, take_upper},
-          {"lower_limit", nullptr, ask_lower, take_lower},
-          {"reference_again", needs_reference, reference_step().ask, reference_step().take}};
+          {"lower_limit", nullptr, ask_lower, take_lower}};
 }
 
 }  // namespace fvd

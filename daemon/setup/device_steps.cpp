@@ -48,9 +48,13 @@ SetupNext take_camera(SetupContext& context, const SetupAnswer& answer) {
   for (std::size_t i = 0; i < context.cameras.size(); ++i) {
     if (answer.is(std::to_string(i + 1))) address = context.cameras[i].address;
   }
-  context.draft.devices.camera.address = address;
-  context.draft.devices.camera.packet_socket = !address.starts_with("127.");  // it sees frames of the loopback twice
-  const CameraInfo info = context.bench.camera(context.draft.devices.camera).info();
+  CameraConfig& camera = context.draft.devices.camera;
+  camera.driver = "aravis";
+  camera.address = address;
+  camera.serial.clear();
+  camera.packet_socket = !address.starts_with("127.");  // it sees frames of the loopback twice
+  const CameraInfo info = context.bench.camera(camera).info();
+  camera.serial = info.serial;  // no other one from now on
   context.note = "camera " + info.vendor + " " + info.model + ", serial " + info.serial + ", sensor " +
                  std::to_string(info.sensor_width) + " x " + std::to_string(info.sensor_height) + " pixels";
   return SetupNext::kOn;
@@ -71,6 +75,7 @@ void take_tcp(StageConfig& stage, const SetupAnswer& answer) {
   const std::string& where = answer.word(1);
   const auto colon = where.rfind(':');
   stage.transport = "tcp";
+  stage.port = StageConfig().port;
   stage.address = where.substr(0, colon);
   if (stage.address.empty()) refuse_answer(answer);
   if (colon != std::string::npos) {
@@ -87,6 +92,8 @@ SetupNext take_line(SetupContext& context, const SetupAnswer& answer) {
   if (answer.word(0) != "serial" || answer.size() < 2 || answer.size() > 4) refuse_answer(answer);
   stage.transport = "rtu";
   stage.serial_device = answer.word(1);
+  stage.serial_baud = StageConfig().serial_baud;
+  stage.serial_parity = StageConfig().serial_parity;
   if (answer.size() > 2) stage.serial_baud = static_cast<int>(answer.number(2, 9600, 921600, "baud rate"));
   if (answer.size() > 3) stage.serial_parity = answer.word(3);
   if (stage.serial_parity != "none" && stage.serial_parity != "even" && stage.serial_parity != "odd") {
@@ -210,10 +217,11 @@ SetupNext take_travel(SetupContext& context, const SetupAnswer& answer) {
 SetupQuestion ask_reference(SetupContext& /*context*/) {
   SetupQuestion question;
   question.text =
-      "Take the part away and bring the lens far from everything, by hand if need be. The motor is enabled next, and "
-      "the axis needs a reference: homing MOVES it to its reference switch, in the direction that is set in the drive.";
+      "Take the part away and bring the lens far from everything, by hand if need be. The axis needs a reference: "
+      "homing MOVES it to its reference switch, in the direction that is set in the drive. The motor gets no torque "
+      "before the first motion: hold a vertical axis that has no brake.";
   question.choices = {{"home", "enables the motor and homes the axis", true},
-                      {"keep", "enables the motor; the axis has a reference already, and nothing moves", false}};
+                      {"keep", "the axis has a reference already; nothing is enabled, and nothing moves", false}};
   return question;
 }
 
@@ -243,16 +251,11 @@ void search_cameras(SetupContext& context) {
   }
 }
 
-SetupStep reference_step() { return {"reference", nullptr, ask_reference, take_reference}; }
-
 std::vector<SetupStep> device_steps() {
-  return {{"camera", nullptr, ask_camera, take_camera},
-          {"line", nullptr, ask_line, take_line},
-          {"profile", nullptr, ask_profile, take_profile},
-          {"unit", by_profile, ask_unit, take_unit},
-          {"scale", by_profile, ask_scale, take_scale},
-          {"travel", nullptr, ask_travel, take_travel},
-          reference_step()};
+  return {{"camera", nullptr, ask_camera, take_camera},         {"line", nullptr, ask_line, take_line},
+          {"profile", nullptr, ask_profile, take_profile},      {"unit", by_profile, ask_unit, take_unit},
+          {"scale", by_profile, ask_scale, take_scale},         {"travel", nullptr, ask_travel, take_travel},
+          {"reference", nullptr, ask_reference, take_reference}};
 }
 
 }  // namespace fvd

@@ -14,8 +14,10 @@ namespace {
 
 /// 0.1 % of the pixels may be brighter than this share of full scale.
 constexpr double kExposureTarget = 0.8;
-/// Longest way for one answer while the surface is looked for.
+/// Longest way towards the part for one answer while the surface is looked for, and longest reach of the autofocus.
 constexpr double kLongestFocus_um = 100.0;
+constexpr double kLongestReach_um = 300.0;
+constexpr double kLeastReach_um = 5.0;
 constexpr int kAutofocusSteps = 60;
 
 /// Takes a picture and says in the note what it shows.
@@ -65,23 +67,31 @@ SetupQuestion ask_focus(SetupContext& context) {
   const StageConfig& stage = context.draft.devices.stage;
   SetupQuestion question;
   question.text = "Lay a letter F under the lens, upright as you want to see it, and bring it into focus.";
-  question.choices = {{"up UM", "moves away from the part, by 100 um at most", true},
-                      {"down UM", "moves towards the part, by 100 um at most", true},
-                      {"auto",
-                       "moves through all of " + um_text(stage.min.value) + " to " + um_text(stage.max.value) +
-                           " and to where the middle of the picture is sharpest",
-                       true},
-                      look_again(),
-                      {"ok", "the letter is sharp", false}};
+  question.choices = {
+      {"up UM", "moves away from the part, by 1000 um at most", true},
+      {"down UM", "moves towards the part, by 100 um at most", true},
+      {"auto UM",
+       "moves through so much below and above, 300 um at most and within " + um_text(stage.min.value) + " to " +
+           um_text(stage.max.value) + ", and to where the middle of the picture is sharpest; it begins " +
+           um_text(stage.take_up.value) + " below that, to take up the backlash",
+       true},
+      look_again(),
+      {"ok", "the letter is sharp", false}};
   return question;
 }
 
-void focus_by_itself(SetupContext& context) {
+/// Looks so far to both sides of where the axis stands: a range that was not bounded would be stepped through too
+/// coarsely for the letter, and would begin at the lower limit with the part in place.
+void focus_by_itself(SetupContext& context, double reach_um) {
   const StageConfig& config = context.draft.devices.stage;
   AutofocusPlan plan;
-  plan.from = config.min + config.take_up;  // every move arrives from below
-  plan.to = config.max;
+  const Micrometers here = position(context);
+  const Micrometers lowest = config.min + config.take_up;  // every move arrives from below
+  plan.from = std::max(here - Micrometers{reach_um}, lowest);
+  plan.to = std::min(here + Micrometers{reach_um}, config.max);
   plan.step = Micrometers{std::max(1.0, (plan.to - plan.from).value / kAutofocusSteps)};
+  plan.settle =
+      settle_within(config, std::abs((here - plan.from).value) + (plan.to - plan.from + config.take_up).value);
   Axis& stage = context.bench.moving_stage(config);
   check_plan(plan, stage.info());
   Camera& camera = context.bench.camera(context.draft.devices.camera);
@@ -92,15 +102,15 @@ void focus_by_itself(SetupContext& context) {
 
 SetupNext take_focus(SetupContext& context, const SetupAnswer& answer) {
   if (answer.is("ok")) {
-    context.draft.focus_um = context.bench.stage(context.draft.devices.stage).status().position.value;
+    context.draft.focus_um = position(context).value;
     return SetupNext::kOn;
   }
   if (answer.begins("up", 2)) {
-    move_by(context, answer.number(1, 0.01, kLongestFocus_um, "distance in um"));
+    move_by(context, answer.number(1, 0.01, kLongestUp_um, "distance in um"));
   } else if (answer.begins("down", 2)) {
     move_by(context, -answer.number(1, 0.01, kLongestFocus_um, "distance in um"));
-  } else if (answer.is("auto")) {
-    focus_by_itself(context);
+  } else if (answer.begins("auto", 2)) {
+    focus_by_itself(context, answer.number(1, kLeastReach_um, kLongestReach_um, "reach in um"));
   } else if (!answer.is("picture")) {
     refuse_answer(answer);
   }

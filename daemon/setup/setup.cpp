@@ -1,17 +1,21 @@
 #include "daemon/setup/setup.hpp"
 
+#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "daemon/setup/setup_files.hpp"
 #include "daemon/setup/setup_step.hpp"
 
 namespace fvd {
 
 namespace {
+
+using namespace std::string_view_literals;
 
 std::vector<SetupStep> all_steps() {
   std::vector<SetupStep> all;
@@ -68,6 +72,7 @@ std::string um_text(double um) {
 struct Setup::Impl {
   Impl(SetupOptions with, std::stop_token stop)
       : options(std::move(with)), bench(options.pictures), context{options, bench, {}, {}, {}, {}, std::move(stop)} {
+    context.draft.devices = older_devices(options.file);
     context.draft.devices.camera.simulated = options.simulated;
     context.draft.devices.stage.simulated = options.simulated;
     search_cameras(context);
@@ -89,11 +94,27 @@ struct Setup::Impl {
     if (!earlier.empty()) question.choices.push_back({"back", "takes the answer before back", false});
   }
 
+  /// A question that cannot be made anew stays as it was shown, with the note.
+  void ask_again() {
+    try {
+      ask();
+    } catch (const Error&) {
+      question.note = std::exchange(context.note, {});
+    }
+  }
+
+  /// The reference is asked for by a later step, and that step comes next.
+  [[nodiscard]] bool in_between() const { return !earlier.empty() && earlier.back().first > index; }
+
+  void step_back() {
+    index = earlier.back().first;
+    earlier.pop_back();
+  }
+
   void go_back() {
     if (earlier.empty()) throw Error(ErrorCode::kBadInput, "this is the first question");
-    index = earlier.back().first;
     context.draft = earlier.back().second;
-    earlier.pop_back();
+    step_back();
   }
 
   void take(const SetupAnswer& answer) {
@@ -102,16 +123,13 @@ struct Setup::Impl {
       case SetupNext::kStay:
         return;
       case SetupNext::kStepBack:
-        index = earlier.back().first;
-        earlier.pop_back();
-        return;
-      case SetupNext::kReference:
-        while (std::string_view(steps[index].name) != "reference") {
-          index = earlier.back().first;
-          earlier.pop_back();
-        }
+        step_back();
         return;
       case SetupNext::kOn: {
+        if (in_between()) {
+          step_back();
+          return;
+        }
         const std::size_t next = next_wanted(index + 1);
         earlier.emplace_back(index, before);
         index = next;
@@ -120,13 +138,24 @@ struct Setup::Impl {
     }
   }
 
+  /// An axis without a reference is asked for one, and then the step that needs it again.
+  void ask_for_reference() {
+    if (index == reference) return;
+    earlier.emplace_back(index, context.draft);
+    index = reference;
+  }
+
   const SetupOptions options;
   SetupBench bench;
   SetupContext context;
   const std::vector<SetupStep> steps = all_steps();
+  const std::size_t reference = static_cast<std::size_t>(
+      std::find_if(steps.begin(), steps.end(), [](const SetupStep& step) { return step.name == "reference"sv; }) -
+      steps.begin());
   std::size_t index = 0;
   std::vector<std::pair<std::size_t, SetupDraft>> earlier;  // steps that were answered, with the draft before each
   SetupQuestion question;
+  bool refused = false;
 };
 
 Setup::Setup(SetupOptions options, std::stop_token stop)
@@ -138,7 +167,8 @@ const SetupQuestion& Setup::question() const { return impl_->question; }
 void Setup::answer(std::string_view text) {
   Impl& impl = *impl_;
   const SetupAnswer answer(text);
-  const SetupDraft before = impl.context.draft;
+  impl.refused = false;
+  const auto before = std::tuple(impl.index, impl.earlier, impl.context.draft);
   impl.bench.permit_motion(moves_the_axis(impl.question, answer.text()));
   try {
     if (answer.is("back")) {
@@ -146,15 +176,20 @@ void Setup::answer(std::string_view text) {
     } else {
       impl.take(answer);
     }
+    impl.bench.permit_motion(false);
+    if (!done()) impl.ask();
   } catch (const Error& error) {
     impl.bench.permit_motion(false);
     if (error.code() == ErrorCode::kAborted || error.code() == ErrorCode::kInternal) throw;
-    impl.context.draft = before;
+    std::tie(impl.index, impl.earlier, impl.context.draft) = before;
+    impl.refused = true;
     impl.context.note = error.what();
+    if (error.code() == ErrorCode::kStageNotHomed) impl.ask_for_reference();
+    impl.ask_again();
   }
-  impl.bench.permit_motion(false);
-  if (!done()) impl.ask();
 }
+
+bool Setup::refused() const { return impl_->refused; }
 
 bool Setup::done() const { return impl_->index >= impl_->steps.size(); }
 

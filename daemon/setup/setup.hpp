@@ -21,7 +21,7 @@ struct SetupOptions {
   std::filesystem::path drives;             ///< folder of drive profiles
   std::filesystem::path pictures;           ///< existing folder for the camera's picture
   bool simulated = false;                   ///< camera and stage are simulated: stamped into every result
-  std::function<std::vector<FoundCamera>()> find_cameras;  ///< asked when the setup begins and on "again"
+  std::function<std::vector<FoundCamera>()> find_cameras;  ///< asked when the setup begins and on "search"
 };
 
 /// The axis moves only within answer(), and only for an answer that its choice announces as moving; so much is enforced
@@ -30,16 +30,20 @@ struct SetupOptions {
 /// token from any.
 class Setup {
  public:
-  /// Nothing is opened yet. stop: halts a motion that runs, and makes answer() return.
+  /// Looks for cameras, where options say how, and opens nothing. stop: halts a motion that runs, and makes answer()
+  /// return.
   Setup(SetupOptions options, std::stop_token stop);
   ~Setup();
   Setup(const Setup&) = delete;
   Setup& operator=(const Setup&) = delete;
 
+  /// Whether the last answer was refused, or a device failed on it: nothing of it was taken.
+  [[nodiscard]] bool refused() const;
   /// The question that is open. Not to be called once done().
   [[nodiscard]] const SetupQuestion& question() const;
   /// Does what the answer says, and asks the next question. An answer that is refused, and a device that fails, leave
-  /// the question open, with the reason as its note. Throws Error kAborted after a stop request.
+  /// the question open, with the reason as its note; where the axis has no reference, that is asked for first. Throws
+  /// Error kAborted after a stop request.
   void answer(std::string_view text);
 
   [[nodiscard]] bool done() const;

@@ -1,5 +1,6 @@
 #include "daemon/setup/setup_bench.hpp"
 
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -34,19 +35,22 @@ Axis& SetupBench::moving_stage(const StageConfig& config) {
   return stage(config);
 }
 
-void SetupBench::close() noexcept {
-  camera_.reset();
-  stage_.reset();
-}
-
 SetupBench::Picture SetupBench::take_picture(const SetupDraft& draft, std::stop_token stop) {
   const Still still = take_still(camera(draft.devices.camera), clock_, draft.picture, std::move(stop));
   const ImageView& image = still.frame.image;
-  const std::filesystem::path file = folder_ / "setup.png";
   std::error_code none_there;
-  std::filesystem::remove(file, none_there);
-  write_new_file(file, encode_image_png(image));
-  picture_ = file;
+  if (picture_.empty()) {
+    // A picture that somebody else put there stays.
+    std::filesystem::path file = folder_ / "setup.png";
+    for (int i = 2; std::filesystem::exists(std::filesystem::symlink_status(file, none_there)); ++i) {
+      file = folder_ / ("setup-" + std::to_string(i) + ".png");
+    }
+    write_new_file(file, encode_image_png(image));
+    picture_ = file;
+  } else {
+    std::filesystem::remove(picture_, none_there);
+    write_new_file(picture_, encode_image_png(image));
+  }
   return {mean_focus(image, central_region(image.width, image.height)), grey_statistics(image), image.width,
           image.height};
 }

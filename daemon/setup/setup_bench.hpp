@@ -23,17 +23,17 @@ class SetupBench {
 
   /// The camera of this configuration, opened where it is not open already. Throws as open_camera().
   [[nodiscard]] Camera& camera(const CameraConfig& config);
-  /// The stage likewise, to be read. Opening it enables the motor; nothing moves. Throws as open_stage().
+  /// The stage likewise, to be read. Opening it halts an axis that moves, and nothing else: it gets torque before its
+  /// first motion. Throws as open_stage().
   [[nodiscard]] Axis& stage(const StageConfig& config);
   /// The stage, to be moved. Throws Error kInternal where no answer has permitted that.
   [[nodiscard]] Axis& moving_stage(const StageConfig& config);
-  /// Lets both devices go, e.g. for another program that looks at the drive.
-  void close() noexcept;
   void close_stage() noexcept { stage_.reset(); }
 
   void permit_motion(bool permitted) noexcept { motion_permitted_ = permitted; }
 
-  /// Takes a picture and writes it as a PNG over the one before. Returns what it shows: sharpness and brightness.
+  /// Takes a picture and writes it as a PNG: the first under a name that is free, then over the one before. Returns
+  /// what it shows: sharpness and brightness.
   struct Picture {
     double focus = 0.0;  ///< mean modified Laplacian of the central region, grey levels
     GreyStatistics grey;

@@ -18,10 +18,11 @@ struct TrialRange {
 
 struct SetupDraft {
   DeviceConfigs devices;
-  CameraSettings picture;                ///< exposure and format
-  std::optional<double> pixel_pitch_um;  ///< absent = nobody measured it
-  std::optional<double> focus_um;        ///< z at which the surface was seen sharply
-  std::optional<TrialRange> trial;       ///< of the last scan that succeeded
+  std::optional<Micrometers> upper_limit;  ///< taught; in force once the lower one is
+  CameraSettings picture;                  ///< exposure and format
+  std::optional<double> pixel_pitch_um;    ///< absent = nobody measured it
+  std::optional<double> focus_um;          ///< z at which the surface was seen sharply
+  std::optional<TrialRange> trial;         ///< of the last scan that succeeded
 };
 
 }  // namespace fvd

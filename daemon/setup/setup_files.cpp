@@ -3,11 +3,15 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <set>
 #include <system_error>
+#include <vector>
 
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "config/field_writer.hpp"
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/config/config_file.hpp"
@@ -20,44 +24,38 @@ namespace {
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-ordered_json camera_keys(const SetupDraft& draft) {
-  const CameraConfig& camera = draft.devices.camera;
-  ordered_json keys{{"driver", camera.driver},
-                    {"address", camera.address},
-                    {"mirror_x", camera.mirror_x},
-                    {"mirror_y", camera.mirror_y}};
-  if (!camera.packet_socket) keys["packet_socket"] = false;
-  if (camera.simulated) keys["simulated"] = true;
+/// What the setup settled, beside keys that differ from their defaults.
+std::set<std::string> settled(const StageConfig& stage) {
+  std::set<std::string> keys{"driver",    "transport",  "min_um",
+                             "max_um",    "take_up_um", "speed_um_per_s",
+                             "simulated", "reversed",   "acceleration_um_per_s2"};
+  keys.merge(stage.transport == "tcp" ? std::set<std::string>{"address", "port"}
+                                      : std::set<std::string>{"serial_device", "serial_baud"});
+  keys.merge(stage.driver == "modbus" ? std::set<std::string>{"profile", "unit"} : std::set<std::string>{"gcs_axis"});
+  if (stage.transport == "rtu") keys.insert("serial_parity");
   return keys;
 }
+std::set<std::string> settled(const CameraConfig& /*camera*/) {
+  return {"driver", "address", "serial", "packet_socket", "mirror_x", "mirror_y", "simulated"};
+}
 
-ordered_json stage_keys(const SetupDraft& draft) {
-  const StageConfig& stage = draft.devices.stage;
-  ordered_json keys{{"driver", stage.driver}, {"transport", stage.transport}};
-  if (stage.transport == "tcp") {
-    keys["address"] = stage.address;
-    keys["port"] = stage.port;
-  } else {
-    keys["serial_device"] = stage.serial_device;
-    keys["serial_baud"] = stage.serial_baud;
-    if (stage.driver == "modbus") keys["serial_parity"] = stage.serial_parity;
+/// Keys and values of both devices.
+ordered_json values_of(DeviceConfigs devices) {
+  return fields_to_json([&devices](Fields& fields) { describe(devices, fields); });
+}
+
+bool is_there(const fs::path& file) {
+  std::error_code error;
+  const bool there = fs::exists(fs::symlink_status(file, error));
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory) {
+    throw Error(ErrorCode::kStorageWrite, "cannot look for " + file.string() + ": " + error.message());
   }
-  if (stage.driver == "modbus") {
-    keys["profile"] = stage.profile.string();
-    keys["unit"] = stage.unit;
-  } else {
-    keys["gcs_axis"] = stage.gcs_axis;
-  }
-  keys["min_um"] = stage.min.value;
-  keys["max_um"] = stage.max.value;
-  keys["reversed"] = stage.reversed;
-  if (stage.simulated) keys["simulated"] = true;
-  return keys;
+  return there;
 }
 
 /// The older file's keys, or none. One that cannot be read is not built upon.
 ordered_json older_keys(const fs::path& file) {
-  if (!fs::exists(file)) return ordered_json::object();
+  if (!is_there(file)) return ordered_json::object();
   Problems problems;
   const auto before = parse_strict_json(read_text_file(file), problems);
   if (!before || !before->is_object()) return ordered_json::object();
@@ -66,13 +64,31 @@ ordered_json older_keys(const fs::path& file) {
   return keys;
 }
 
+/// A block of the document, made where there is none; nothing where something else stands in its place, which reading
+/// the document will refuse.
+ordered_json* block_of(ordered_json& document, const char* name) {
+  ordered_json& block = document[name];
+  if (block.is_null()) block = ordered_json::object();
+  return block.is_object() ? &block : nullptr;
+}
+
+/// Every value that was in force takes the place of the older one: nothing is left over that the trial did not see.
+void put_values(ordered_json* block, const ordered_json& values, const ordered_json& defaults,
+                const std::set<std::string>& always) {
+  if (block == nullptr) return;
+  for (const auto& [key, value] : values.items()) {
+    if (always.contains(key) || block->contains(key) || value != defaults.at(key)) (*block)[key] = value;
+  }
+}
+
 std::string config_document(const SetupDraft& draft, const fs::path& file) {
   ordered_json document = older_keys(file);
-  document["camera"].update(camera_keys(draft));
-  document["stage"].update(stage_keys(draft));
-  if (!document.contains("paths") || !document["paths"].contains("recipe_dir")) {
-    document["paths"]["recipe_dir"] = "recipes";
-  }
+  const ordered_json values = values_of(draft.devices);
+  const ordered_json defaults = values_of({});
+  put_values(block_of(document, "camera"), values["camera"], defaults["camera"], settled(draft.devices.camera));
+  put_values(block_of(document, "stage"), values["stage"], defaults["stage"], settled(draft.devices.stage));
+  ordered_json* const paths = block_of(document, "paths");
+  if (paths != nullptr && !paths->contains("recipe_dir")) (*paths)["recipe_dir"] = "recipes";
   return document.dump(2) + "\n";
 }
 
@@ -80,34 +96,52 @@ std::string config_document(const SetupDraft& draft, const fs::path& file) {
   throw Error(ErrorCode::kStorageWrite, what + " " + file.string() + ": " + std::strerror(errno));
 }
 
-/// A second name for the file that is there. Returns it.
+/// A copy of the file that is there, under a name that is free. Returns it.
 fs::path keep_older(const fs::path& file) {
   for (int i = 1;; ++i) {
     const fs::path kept = file.string() + ".old-" + std::to_string(i);
-    if (::link(file.c_str(), kept.c_str()) == 0) return kept;
-    if (errno != EEXIST) fail("cannot keep the older file as", kept);
+    if (is_there(kept)) continue;
+    write_new_file(kept, read_text_file(file));
+    return kept;
   }
 }
 
-/// Puts the new file in place: by a rename, or under a name that must be free.
-void put_in_place(const fs::path& made, const fs::path& file, bool replace) {
-  const int failed = replace ? std::rename(made.c_str(), file.c_str()) : ::link(made.c_str(), file.c_str());
-  const int reason = errno;
-  if (!replace || failed != 0) ::unlink(made.c_str());
-  errno = reason;
-  if (failed != 0) fail("cannot write", file);
-  sync_directory(file.parent_path());
+/// By a rename, or under a name that must be free.
+int put_under(const fs::path& made, const fs::path& file, bool replace) {
+  if (replace) return std::rename(made.c_str(), file.c_str());
+  if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL) return -1;  // network file systems know a second name instead
+  if (::link(made.c_str(), file.c_str()) != 0) return -1;
+  return ::unlink(made.c_str());
 }
 
 fs::path write_recipe(const SetupDraft& draft, const fs::path& folder) {
   for (int i = 1;; ++i) {
     const fs::path file = folder / (i == 1 ? "first.json" : "first-" + std::to_string(i) + ".json");
-    if (fs::exists(file)) continue;
+    if (is_there(file)) continue;
     write_new_file(file, trial_recipe(draft, *draft.trial));
     sync_directory(folder);
     return file;
   }
 }
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw Error(ErrorCode::kStorageWrite, "cannot make the folder " + folder.string() + ": " + error.message());
+}
+
+/// Files that are removed again where not all of them could be written.
+struct LeftOver {
+  LeftOver() = default;
+  LeftOver(const LeftOver&) = delete;
+  LeftOver& operator=(const LeftOver&) = delete;
+  ~LeftOver() {
+    for (const fs::path& file : files) ::unlink(file.c_str());
+  }
+  std::vector<fs::path> files;
+};
 
 }  // namespace
 
@@ -124,28 +158,44 @@ std::string trial_recipe(const SetupDraft& draft, const TrialRange& range) {
   return recipe.dump(2) + "\n";
 }
 
+DeviceConfigs older_devices(const fs::path& named) {
+  const fs::path file = fs::absolute(named).lexically_normal();
+  try {
+    if (is_there(file)) return parse_config(read_text_file(file), file.parent_path()).config;
+  } catch (const Error&) {  // told when it is to be replaced
+  }
+  return {};
+}
+
 std::string write_setup(const SetupDraft& draft, const fs::path& named, bool replace) {
   const fs::path file = fs::absolute(named).lexically_normal();
-  const bool there = fs::exists(file);
+  const bool there = is_there(file);
   if (there && !replace) {
     throw Error(ErrorCode::kBadInput, file.string() + " is there already and stays as it is: 'replace' keeps it as " +
                                           file.filename().string() + ".old-N, or write another");
   }
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
+  make_folder(file.parent_path());
   const std::string text = config_document(draft, file);
   LoadedConfig loaded = parse_config(text, file.parent_path());
-  if (loaded.problems.empty()) fs::create_directories(loaded.config.paths.recipe_dir, error);
+  if (loaded.problems.empty()) make_folder(loaded.config.paths.recipe_dir);
   for (Problem& problem : check_config(loaded.config, loaded.problems)) loaded.problems.push_back(std::move(problem));
   throw_if_any(loaded.problems, ErrorCode::kBadConfig, file.string());
 
+  // The configuration last: where it is, all that belongs to it is.
+  LeftOver left_over;
+  fs::path recipe;
+  if (draft.trial) left_over.files.push_back(recipe = write_recipe(draft, loaded.config.paths.recipe_dir));
   const fs::path made = file.string() + ".new-" + std::to_string(::getpid());
-  fs::remove(made, error);
   write_new_file(made, text);
+  left_over.files.push_back(made);
+  fs::path kept;
+  if (there) left_over.files.push_back(kept = keep_older(file));
+  if (put_under(made, file, there) != 0) fail("cannot write", file);
+  left_over.files.clear();
+  sync_directory(file.parent_path());
   std::string told = "the configuration is " + file.string();
-  if (there) told += ", the older one " + keep_older(file).string();
-  put_in_place(made, file, there);
-  if (draft.trial) told += ", the recipe " + write_recipe(draft, loaded.config.paths.recipe_dir).string();
+  if (there) told += ", the older one " + kept.string();
+  if (draft.trial) told += ", the recipe " + recipe.string();
   return told;
 }
 

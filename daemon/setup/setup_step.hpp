@@ -47,18 +47,18 @@ struct SetupContext {
 };
 
 enum class SetupNext {
-  kStay,       ///< the same question again
-  kOn,         ///< the next step
-  kStepBack,   ///< the step before, with what was decided
-  kReference,  ///< the step "reference", with what was decided
+  kStay,      ///< the same question again
+  kOn,        ///< the next step
+  kStepBack,  ///< the step before, with what was decided
 };
 
 struct SetupStep {
   const char* name;
-  bool (*wanted)(SetupContext& context);  ///< nullptr = always; moves nothing. Throws as the bench does
-  /// Fills all but name and note. Moves nothing.
+  bool (*wanted)(SetupContext& context);  ///< nullptr = always; touches no device
+  /// Fills all but name and note. Moves nothing. Where it throws an Error the answer before is not taken.
   SetupQuestion (*ask)(SetupContext& context);
-  /// Throws Error for an answer that cannot be; the same question is then asked again.
+  /// Throws Error for an answer that cannot be; the same question is then asked again, after kStageNotHomed the
+  /// reference before it.
   SetupNext (*take)(SetupContext& context, const SetupAnswer& answer);
 };
 
@@ -71,11 +71,17 @@ struct SetupStep {
 /// Fills context.cameras, or the note where that failed.
 void search_cameras(SetupContext& context);
 
-/// The step that gives the axis its reference; also asked where an axis forgot it when it was opened anew.
-[[nodiscard]] SetupStep reference_step();
-
 /// "12.3 um", "0.04 um": four significant digits.
 [[nodiscard]] std::string um_text(double um);
+
+/// Where the axis stands. Throws Error kStageNotHomed: a position without a reference is none; else as the bench does.
+[[nodiscard]] Micrometers position(SetupContext& context);
+
+/// Longest way away from the part for one answer.
+inline constexpr double kLongestUp_um = 1000.0;
+
+/// The usual criterion, with the time that this stage needs for the way added to its timeout. distance_um: >= 0.
+[[nodiscard]] SettleCriterion settle_within(const StageConfig& stage, double distance_um);
 
 /// Moves by a distance and says in the note where the axis stands. Throws as Axis::move_to().
 void move_by(SetupContext& context, double distance_um);

@@ -32,7 +32,7 @@ class SimulatedOperator {
     if (step == "unit") return "1";
     if (step == "scale") return "yes";
     if (step == "travel") return "-1000 1000";
-    if (step == "reference" || step == "reference_again") return "home";
+    if (step == "reference") return "home";
     if (step == "jog") {
       before_um_ = lens_um();
       return "jog";
@@ -59,7 +59,7 @@ class SimulatedOperator {
   /// tried again.
   std::string focus(const SetupQuestion& question) {
     if (tells(question, "sharpest at")) focused_ = true;
-    if (!focused_) return "auto";
+    if (!focused_) return "auto 200";
     return tells(question, "the axis stands at") ? "ok" : "up 15";
   }
 

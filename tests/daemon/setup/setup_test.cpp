@@ -1,48 +1,11 @@
 /// The questions of the setup: what is refused, what is taken back, and that nothing moves but on an answer that says
 /// so.
 
-#include "daemon/setup/setup.hpp"
-
-#include "gtest/gtest.h"
-#include "tests/support/scratch_dir.hpp"
-#include "tests/support/set_up_station.hpp"
+#include "daemon/config/config_file.hpp"
+#include "tests/daemon/setup/a_setup.hpp"
 
 namespace fvd {
 namespace {
-
-class ASetup : public testing::Test {
- protected:
-  ASetup() : setup_({folder_ / "fvd.json", FVD_SOURCE_DIR "/config/drives", folder_.path(), true, {}}, {}) {}
-
-  void answer(const std::string& text) {
-    const bool moves = moves_the_axis(setup_.question(), text);
-    setup_.answer(text);
-    audit_.note(moves);
-  }
-  /// Answers as the operator would until that step is asked.
-  void come_to(const std::string& step) {
-    for (int i = 0; i < 40 && setup_.question().step != step; ++i) answer(person_.answer(setup_.question()));
-    ASSERT_EQ(setup_.question().step, step) << setup_.question().note;
-  }
-  [[nodiscard]] std::string step() const { return setup_.question().step; }
-  [[nodiscard]] std::string note() const { return setup_.question().note; }
-  /// The answer is refused with these words, the question stays open, and nothing has moved.
-  void expect_refused(const std::string& text, const std::string& words) {
-    const std::string before = step();
-    const int moves = plant_.drive().moves();
-    answer(text);
-    EXPECT_EQ(step(), before) << text;
-    EXPECT_NE(note().find(words), std::string::npos) << text << ": " << note();
-    EXPECT_EQ(plant_.drive().moves(), moves) << text;
-  }
-
-  test::ScratchDir folder_;
-  sim::Plant plant_{test::letter_f_station({})};
-  test::MotionAudit audit_{plant_};
-  test::SimulatedOperator person_{plant_, FVD_SOURCE_DIR "/config/drives/oriental-az.json",
-                                  test::letter_f_world().artefacts.letter_f};
-  fvd::Setup setup_;  // testing::Test has a private one
-};
 
 TEST_F(ASetup, BeginsWithTheCameraAndKnowsNoWayBackFromThere) {
   EXPECT_EQ(step(), "camera");
@@ -113,6 +76,53 @@ TEST_F(ASetup, TakesAnAnswerBack) {
   answer("back");
   EXPECT_EQ(step(), "jog");
   EXPECT_EQ(audit_.unattended(), 0);
+}
+
+TEST_F(ASetup, ForgetsWhatWasTakenBack) {
+  come_to("towards");
+  answer("yes");
+  answer("jog");
+  answer("back");
+  answer("back");
+  EXPECT_EQ(step(), "reference") << "before z was turned round";
+  answer("home");
+  answer("jog");
+  answer("no");
+  answer("at 300");
+  answer("at 100");
+  EXPECT_EQ(step(), "exposure");
+  answer("back");
+  answer("back");
+  answer("at 200");
+  answer("at -40");
+  for (const char* rest : {"ok", "ok", "upright", "unknown", "skip", "write"}) answer(rest);
+  ASSERT_TRUE(setup_.done()) << note();
+  const Config written = load_config(folder_ / "fvd.json").config;
+  EXPECT_FALSE(written.stage.reversed);
+  EXPECT_EQ(written.stage.max, Micrometers{200.0});
+  EXPECT_EQ(written.stage.min, Micrometers{-40.0});
+  EXPECT_EQ(written.camera.serial, "SIM01") << "the camera that was seen, and no other";
+  EXPECT_EQ(audit_.unattended(), 0);
+}
+
+TEST_F(ASetup, LooksForTheFocusNearby) {
+  come_to("focus");
+  expect_refused("auto", "none of the answers");
+  expect_refused("auto 301", "expected a number from 5 to 300");
+  const double before_um = plant_.axis().true_position_um(HostClock::now());
+  answer("auto 10");
+  EXPECT_EQ(step(), "focus");
+  EXPECT_GT(plant_.axis().true_position_um(HostClock::now()), before_um - 35.0) << "10 um, 20 of take-up, and no more";
+}
+
+TEST_F(ASetup, LeavesAPictureThatIsThere) {
+  test::write_text(folder_ / "setup.png", "somebody's");
+  come_to("exposure");
+  answer("picture");
+  answer("picture");
+  EXPECT_EQ(setup_.question().picture, folder_ / "setup-2.png");
+  EXPECT_EQ(test::read_text(folder_ / "setup.png"), "somebody's");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "setup-3.png"));
 }
 
 TEST_F(ASetup, TurnsPicturesUntilTheLetterIsUpright) {
