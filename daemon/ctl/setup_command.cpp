@@ -78,10 +78,10 @@ int run_setup(const SetupArguments& arguments, const Terminal& terminal) {
         << std::endl;
   }
   Setup setup(std::move(options), signal.token());
-  const bool script = ::isatty(terminal.in_fd) == 0;
+  const bool script = ::isatty(terminal.in_fd) == 0 && !arguments.json;  // a program reads that it was refused
   while (!setup.done()) {
     // What was typed before a question was seen is no answer to it: the axis might move on it.
-    if (!script) ::tcflush(terminal.in_fd, TCIFLUSH);
+    if (::isatty(terminal.in_fd) != 0) ::tcflush(terminal.in_fd, TCIFLUSH);
     if (arguments.json) {
       terminal.out << to_json(setup.question()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
                    << std::endl;

@@ -30,6 +30,13 @@ void look(SetupContext& context) {
        << seen.grey.p01 << " to " << seen.grey.p999 << ", " << 100.0 * seen.grey.saturated_fraction
        << " % saturated, exposure " << context.draft.picture.exposure_us << " us";
   context.note = note.str();
+  context.draft.seen_px = {seen.width_px, seen.height_px};
+}
+
+/// What nobody looked at is not kept.
+void require_picture(const SetupContext& context) {
+  if (context.draft.seen_px) return;
+  throw Error(ErrorCode::kBadInput, "no picture was taken since this question came up: answer 'picture' first");
 }
 
 SetupChoice look_again() { return {"picture", "takes another picture", false}; }
@@ -48,7 +55,10 @@ SetupQuestion ask_exposure(SetupContext& /*context*/) {
 
 SetupNext take_exposure(SetupContext& context, const SetupAnswer& answer) {
   SetupDraft& draft = context.draft;
-  if (answer.is("ok")) return SetupNext::kOn;
+  if (answer.is("ok")) {
+    require_picture(context);
+    return SetupNext::kOn;
+  }
   if (answer.is("auto")) {
     Camera& camera = context.bench.camera(draft.devices.camera);
     const ExposureFound found =
@@ -102,6 +112,7 @@ void focus_by_itself(SetupContext& context, double reach_um) {
 
 SetupNext take_focus(SetupContext& context, const SetupAnswer& answer) {
   if (answer.is("ok")) {
+    require_picture(context);
     context.draft.focus_um = position(context).value;
     return SetupNext::kOn;
   }
@@ -132,7 +143,10 @@ SetupQuestion ask_orientation(SetupContext& /*context*/) {
 }
 
 SetupNext take_orientation(SetupContext& context, const SetupAnswer& answer) {
-  if (answer.is("upright")) return SetupNext::kOn;
+  if (answer.is("upright")) {
+    require_picture(context);
+    return SetupNext::kOn;
+  }
   CameraConfig& camera = context.draft.devices.camera;
   if (!answer.is("mirrored") && !answer.is("flipped") && !answer.is("turned") && !answer.is("picture")) {
     refuse_answer(answer);
@@ -165,12 +179,15 @@ SetupNext take_pitch(SetupContext& context, const SetupAnswer& answer) {
     context.draft.pixel_pitch_um.reset();
     return SetupNext::kOn;
   }
-  constexpr double kLargest_px = 1e6;
   constexpr double kLargest_um = 1e5;
   if (answer.size() == 1) {
     context.draft.pixel_pitch_um = answer.number(0, 1e-4, kLargest_um, "size in um");
   } else if (answer.size() == 5) {
-    const auto at = [&](std::size_t index) { return answer.number(index, 0.0, kLargest_px, "place in pixels"); };
+    require_picture(context);
+    const auto [width_px, height_px] = *context.draft.seen_px;
+    const auto at = [&](std::size_t index) {
+      return answer.number(index, 0.0, (index % 2 == 0 ? width_px : height_px) - 1.0, "place in the picture in pixels");
+    };
     const double distance_px = std::hypot(at(2) - at(0), at(3) - at(1));
     if (distance_px < 10.0) throw Error(ErrorCode::kBadInput, "the places are less than 10 pixels apart");
     context.draft.pixel_pitch_um = answer.number(4, 1e-3, kLargest_um, "distance in um") / distance_px;

@@ -133,6 +133,7 @@ struct Setup::Impl {
         const std::size_t next = next_wanted(index + 1);
         earlier.emplace_back(index, before);
         index = next;
+        context.draft.seen_px.reset();
         return;
       }
     }

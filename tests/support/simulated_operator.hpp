@@ -42,8 +42,10 @@ class SimulatedOperator {
     if (step == "lower_limit") return "at -50";
     if (step == "exposure") return tells(question, "exposure") ? "ok" : "auto";
     if (step == "focus") return focus(question);
-    if (step == "orientation") return orientation(question.picture.string());
-    if (step == "pixel_pitch") return "100 50 400 50 300";
+    if (step == "orientation" || step == "pixel_pitch") {
+      if (!tells(question, "picture of")) return "picture";
+      return step == "orientation" ? orientation(question.picture.string()) : "100 50 400 50 300";
+    }
     if (step == "trial") return tells(question, "points are valid") ? "ok" : "scan 0 120 5";
     return "write";
   }

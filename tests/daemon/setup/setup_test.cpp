@@ -95,7 +95,7 @@ TEST_F(ASetup, ForgetsWhatWasTakenBack) {
   answer("back");
   answer("at 200");
   answer("at -40");
-  for (const char* rest : {"ok", "ok", "upright", "unknown", "skip", "write"}) answer(rest);
+  for (const char* rest : {"picture", "ok", "picture", "ok", "picture", "upright", "unknown", "skip", "write"}) answer(rest);
   ASSERT_TRUE(setup_.done()) << note();
   const Config written = load_config(folder_ / "fvd.json").config;
   EXPECT_FALSE(written.stage.reversed);
@@ -103,6 +103,16 @@ TEST_F(ASetup, ForgetsWhatWasTakenBack) {
   EXPECT_EQ(written.stage.min, Micrometers{-40.0});
   EXPECT_EQ(written.camera.serial, "SIM01") << "the camera that was seen, and no other";
   EXPECT_EQ(audit_.unattended(), 0);
+}
+
+TEST_F(ASetup, KeepsNothingThatNobodyLookedAt) {
+  come_to("exposure");
+  expect_refused("ok", "answer 'picture' first");
+  answer("picture");
+  answer("ok");
+  expect_refused("ok", "answer 'picture' first");
+  come_to("orientation");
+  expect_refused("upright", "answer 'picture' first");
 }
 
 TEST_F(ASetup, LooksForTheFocusNearby) {
@@ -139,7 +149,10 @@ TEST_F(ASetup, ComputesThePitchFromAScale) {
   come_to("pixel_pitch");
   expect_refused("100 50 104 53 10", "less than 10 pixels apart");
   expect_refused("100 50 400", "none of the answers");
-  answer("100 50 400 450 250");
+  expect_refused("10 10 300 10 100", "answer 'picture' first");
+  answer("picture");
+  expect_refused("10 10 9000 10 100", "expected a number from 0 to");
+  answer("50 20 290 200 150");
   EXPECT_EQ(note(), "a pixel is 0.5 um");
 }
 
