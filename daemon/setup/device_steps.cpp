@@ -33,7 +33,8 @@ SetupQuestion ask_camera(SetupContext& context) {
   for (std::size_t i = 0; i < context.cameras.size(); ++i) {
     question.choices.push_back({std::to_string(i + 1), camera_line(context.cameras[i]), false});
   }
-  question.choices.push_back({"ADDRESS", "the camera of this IP address, serial number, MAC, name or vendor-model-serial", false});
+  question.choices.push_back(
+      {"ADDRESS", "the camera of this IP address, serial number, MAC, name or vendor-model-serial", false});
   question.choices.push_back({"search", "looks for cameras", false});
   return question;
 }

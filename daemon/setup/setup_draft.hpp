@@ -19,12 +19,12 @@ struct TrialRange {
 
 struct SetupDraft {
   DeviceConfigs devices;
-  std::optional<Micrometers> upper_limit;  ///< taught; in force once the lower one is
-  CameraSettings picture;                  ///< exposure and format
+  std::optional<Micrometers> upper_limit;      ///< taught; in force once the lower one is
+  CameraSettings picture;                      ///< exposure and format
   std::optional<std::pair<int, int>> seen_px;  ///< width and height of the picture seen in this step; none = none was
-  std::optional<double> pixel_pitch_um;    ///< absent = nobody measured it
-  std::optional<double> focus_um;          ///< z at which the surface was seen sharply
-  std::optional<TrialRange> trial;         ///< of the last scan that succeeded
+  std::optional<double> pixel_pitch_um;        ///< absent = nobody measured it
+  std::optional<double> focus_um;              ///< z at which the surface was seen sharply
+  std::optional<TrialRange> trial;             ///< of the last scan that succeeded
 };
 
 }  // namespace fvd

@@ -95,7 +95,8 @@ TEST_F(ASetup, ForgetsWhatWasTakenBack) {
   answer("back");
   answer("at 200");
   answer("at -40");
-  for (const char* rest : {"picture", "ok", "picture", "ok", "picture", "upright", "unknown", "skip", "write"}) answer(rest);
+  for (const char* rest : {"picture", "ok", "picture", "ok", "picture", "upright", "unknown", "skip", "write"})
+    answer(rest);
   ASSERT_TRUE(setup_.done()) << note();
   const Config written = load_config(folder_ / "fvd.json").config;
   EXPECT_FALSE(written.stage.reversed);
