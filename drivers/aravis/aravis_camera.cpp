@@ -106,8 +106,12 @@ GObjectPtr<ArvCamera> open(const CameraTarget& target, CameraPresence& presence)
   });
   if (error.is_bad_description()) throw_damaged(target.name, error.message(), parser);
   if (!camera) {
-    throw Error(ErrorCode::kCameraDisconnected, "the camera " + target.name + " cannot be opened: " +
-                                                    (name.empty() ? "Aravis does not list it" : error.message()));
+    const std::string hint = target.identity ? "; it tells who it is and refuses what opening needs: power it off and "
+                                               "on, and see whether a firewall or another program is in the way"
+                                             : "";
+    throw Error(ErrorCode::kCameraDisconnected,
+                "the camera " + target.name +
+                    " cannot be opened: " + (name.empty() ? "Aravis does not list it" : error.message()) + hint);
   }
   presence.watch(arv_camera_get_device(camera.get()));
   for (const char* feature : {"Width", "Height", "PixelFormat", "PayloadSize", "AcquisitionStart", "AcquisitionStop"}) {
