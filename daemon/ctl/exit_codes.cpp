@@ -27,9 +27,6 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kTimeout:
     case ErrorCode::kShuttingDown:
     case ErrorCode::kCameraDisconnected:
-    case ErrorCode::kCameraSettings:
-    case ErrorCode::kCameraFramesLost:
-    case ErrorCode::kCameraNoFrames:
     case ErrorCode::kStageDisconnected:
     case ErrorCode::kStageNotHomed:
     case ErrorCode::kStagePosition:
@@ -38,6 +35,9 @@ int exit_code(ErrorCode code) noexcept {
       return kExitUnavailable;
     case ErrorCode::kAborted:
     case ErrorCode::kJobFailed:
+    case ErrorCode::kCameraSettings:
+    case ErrorCode::kCameraFramesLost:
+    case ErrorCode::kCameraNoFrames:
     case ErrorCode::kFocusRange:
       return kExitJobFailed;
     default:

@@ -202,7 +202,7 @@ TEST(CameraSetIp, TellsOfACameraThatIsNotThereThatIsControlledThatKeepsItsAddres
 
   const auto controlled =
       in_own_network("127.0.0.9", words, [](test::GvcpCamera& camera) { camera.set_reg(gvcp::kControlPrivilege, 2); });
-  EXPECT_EQ(controlled.outcome.code, kExitUnavailable);
+  EXPECT_EQ(controlled.outcome.code, kExitJobFailed);
   EXPECT_NE(controlled.outcome.err.find("is controlled by another program"), std::string::npos)
       << controlled.outcome.err;
   EXPECT_EQ(controlled.address, *gvcp::address_of("127.0.0.9"));
@@ -214,10 +214,10 @@ TEST(CameraSetIp, TellsOfACameraThatIsNotThereThatIsControlledThatKeepsItsAddres
 }
 
 TEST(ExitCodes, CallNoRefusalOfADeviceABug) {
-  for (const ErrorCode code : {ErrorCode::kCameraSettings, ErrorCode::kCameraFramesLost, ErrorCode::kCameraNoFrames}) {
-    EXPECT_EQ(exit_code(code), kExitUnavailable) << static_cast<int>(code);
+  for (const ErrorCode code :
+       {ErrorCode::kCameraSettings, ErrorCode::kCameraFramesLost, ErrorCode::kCameraNoFrames, ErrorCode::kFocusRange}) {
+    EXPECT_EQ(exit_code(code), kExitJobFailed) << static_cast<int>(code);
   }
-  EXPECT_EQ(exit_code(ErrorCode::kFocusRange), kExitJobFailed);
 }
 
 }  // namespace
