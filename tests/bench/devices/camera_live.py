@@ -32,7 +32,10 @@ RECIPE = {
 }
 FOREVER = 1_000_000
 # Of the lasting faults, those that may fail the job before anybody aborts it: such a row measures the daemon's end alone.
-MAY_END_THE_JOB = ("drop_ack", "busy", "ignore_trigger")
+# Frames that are refused at once fail it within a tenth of a second.
+MAY_END_THE_JOB = (
+    "drop_ack busy ignore_trigger wrong_size too_long other_format padded_lines dark_frame half_frame"
+).split()
 # Faults that last until the job is aborted, beginning in the middle of a scan: name, step of the script.
 LASTING = {
     "none": None,
