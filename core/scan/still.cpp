@@ -20,6 +20,8 @@ constexpr double kExposureTolerance = 0.05;
 
 Still take_still(Camera& camera, Clock& clock, const CameraSettings& settings, std::stop_token stop) {
   const std::stop_callback wake(stop, [&camera] { camera.interrupt(); });
+  // configure() cancels what was asked of the camera before, also by this stop.
+  if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "stopped before the camera was set up");
   Still still;
   still.settings = camera.configure(settings);
   FrameLedger ledger;

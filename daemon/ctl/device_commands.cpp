@@ -44,14 +44,25 @@ std::vector<NetworkInterface> interfaces_of(const DevicesArguments& arguments) {
   return interfaces;
 }
 
-/// Cameras on the networks, and at the addresses that were named.
-std::vector<FoundCamera> network_cameras(const DevicesArguments& arguments) {
-  std::vector<FoundCamera> cameras;
-  if (arguments.at.empty() || !arguments.interfaces.empty()) cameras = discover_cameras(interfaces_of(arguments));
-  for (const std::string& at : arguments.at) {
-    if (auto camera = discover_camera_at(address_of(at, "--at"))) cameras.push_back(std::move(*camera));
+/// Cameras on the networks, and at the addresses that were named. Where nothing can be asked is a problem of its own.
+void find_network_cameras(const DevicesArguments& arguments, FoundDevices& found) {
+  const auto search = [&found](const auto& cameras) {
+    try {
+      for (FoundCamera& camera : cameras()) found.cameras.push_back(std::move(camera));
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kCameraDisconnected) throw;
+      found.problems.emplace_back(error.what());
+    }
+  };
+  if (arguments.at.empty() || !arguments.interfaces.empty()) {
+    search([&] { return discover_cameras(interfaces_of(arguments)); });
   }
-  return cameras;
+  for (const std::string& at : arguments.at) {
+    search([address = address_of(at, "--at")] {
+      auto camera = discover_camera_at(address);
+      return camera ? std::vector{std::move(*camera)} : std::vector<FoundCamera>{};
+    });
+  }
 }
 
 std::pair<int, int> units_of(const std::string& text) {
@@ -99,12 +110,7 @@ int run_devices(const DevicesArguments& arguments, const Terminal& terminal) {
   const std::vector<UnitScan> scans = scans_of(arguments);
   const StopOnSignal signal;
   FoundDevices found;
-  try {
-    found.cameras = network_cameras(arguments);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kCameraDisconnected) throw;
-    found.problems.emplace_back(error.what());
-  }
+  find_network_cameras(arguments, found);
   for (FoundCamera& camera : list_usb_cameras().value_or(std::vector<FoundCamera>{})) {
     found.cameras.push_back(std::move(camera));
   }

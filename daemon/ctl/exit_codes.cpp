@@ -35,6 +35,10 @@ int exit_code(ErrorCode code) noexcept {
       return kExitUnavailable;
     case ErrorCode::kAborted:
     case ErrorCode::kJobFailed:
+    case ErrorCode::kCameraSettings:
+    case ErrorCode::kCameraFramesLost:
+    case ErrorCode::kCameraNoFrames:
+    case ErrorCode::kFocusRange:
       return kExitJobFailed;
     default:
       return kExitInternal;

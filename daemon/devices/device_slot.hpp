@@ -2,6 +2,7 @@
 
 /// Keeps one device open: opens it, notices its loss, opens it again.
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -43,6 +44,12 @@ enum class Predecessor {
   kAwaited,  ///< opens no other before: what it sends while it is closed would reach the next one
 };
 
+/// How long the end of the process waits for a device's closing: a camera's may take many seconds and is left, a
+/// drive's sends what counts - a stop, a watchdog's disarming - and its answers are due within some tenths of a second.
+[[nodiscard]] constexpr std::chrono::milliseconds last_wait(Predecessor predecessor) {
+  return std::chrono::milliseconds(predecessor == Predecessor::kAwaited ? 1000 : 200);
+}
+
 /// Device has connected(); destroying it may block, so a device that is given up goes to a reaper, the slot's own: no
 /// slot waits for the device of another.
 template <typename Device>
@@ -53,7 +60,7 @@ class DeviceSlot final : public AnyDeviceSlot {
   using Opener = std::function<std::unique_ptr<Device>()>;
 
   DeviceSlot(Opener opener, ErrorCode lost, Predecessor predecessor)
-      : opener_(std::move(opener)), lost_(lost), predecessor_(predecessor) {}
+      : opener_(std::move(opener)), lost_(lost), predecessor_(predecessor), reaper_(last_wait(predecessor)) {}
   ~DeviceSlot() override { drop(); }
   DeviceSlot(const DeviceSlot&) = delete;
   DeviceSlot& operator=(const DeviceSlot&) = delete;

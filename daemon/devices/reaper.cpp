@@ -1,6 +1,5 @@
 #include "daemon/devices/reaper.hpp"
 
-#include <chrono>
 #include <utility>
 
 #include "core/base/clock.hpp"
@@ -9,14 +8,9 @@
 
 namespace fvd {
 
-namespace {
-
-constexpr std::chrono::milliseconds kLastWait{200};
-
-}  // namespace
-
-Reaper::Reaper()
-    : thread_(start_thread("fvd-reaper", [work = work_](const std::stop_token& stop) { run(*work, stop); })) {}
+Reaper::Reaper(std::chrono::milliseconds last_wait)
+    : last_wait_(last_wait),
+      thread_(start_thread("fvd-reaper", [work = work_](const std::stop_token& stop) { run(*work, stop); })) {}
 
 Reaper::~Reaper() {
   thread_.request_stop();
@@ -24,7 +18,7 @@ Reaper::~Reaper() {
   bool ended = false;
   {
     MutexLock lock(work_->mutex);
-    ended = work_->changed.wait_until(lock, HostClock::now() + kLastWait, [this] {
+    ended = work_->changed.wait_until(lock, HostClock::now() + last_wait_, [this] {
       work_->mutex.assert_held();
       return work_->ended;
     });

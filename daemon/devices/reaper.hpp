@@ -3,6 +3,7 @@
 /// Closes devices on a thread of its own: closing a camera that no longer answers takes many seconds.
 
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <stop_token>
@@ -15,11 +16,11 @@ namespace fvd {
 /// Becomes true when the device is closed; an empty pointer stands for no device.
 using Closed = std::shared_ptr<const std::atomic<bool>>;
 
-/// context: thread-safe. Destruction waits until every device that was handed over is closed, unless the process ends
-/// (left_threads.hpp).
+/// context: thread-safe. Destruction waits until every device that was handed over is closed; when the process ends
+/// (left_threads.hpp), for `last_wait` at most.
 class Reaper {
  public:
-  Reaper();
+  explicit Reaper(std::chrono::milliseconds last_wait = std::chrono::milliseconds(200));
   ~Reaper();
   Reaper(const Reaper&) = delete;
   Reaper& operator=(const Reaper&) = delete;
@@ -46,6 +47,7 @@ class Reaper {
   Closed enqueue(std::shared_ptr<void> device);
   static void run(Work& work, const std::stop_token& stop);
 
+  const std::chrono::milliseconds last_wait_;
   std::shared_ptr<Work> work_ = std::make_shared<Work>();
   std::jthread thread_;
 };

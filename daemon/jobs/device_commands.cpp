@@ -5,6 +5,7 @@
 #include <ctime>
 #include <exception>
 #include <sstream>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -33,11 +34,14 @@ struct Shot {
   double z_um = 0.0;
 };
 
-/// Puts the camera's settings back, however the work ends.
+/// Puts the camera's settings back, however the work ends; not once it is stopped, because a camera that holds up what
+/// was stopped would hold up this as well. Whatever uses the camera next sets it up anyway.
 class RestoredSettings {
  public:
-  RestoredSettings(Camera& camera, const CameraSettings& settings) : camera_(camera), settings_(settings) {}
+  RestoredSettings(Camera& camera, const CameraSettings& settings, std::stop_token stop)
+      : camera_(camera), settings_(settings), stop_(std::move(stop)) {}
   ~RestoredSettings() {
+    if (stop_.stop_requested()) return;
     try {
       (void)camera_.configure(settings_);
     } catch (const std::exception& error) {
@@ -50,6 +54,7 @@ class RestoredSettings {
  private:
   Camera& camera_;
   CameraSettings settings_;
+  std::stop_token stop_;
 };
 
 /// A frame exposed from now on.
@@ -135,7 +140,7 @@ DeviceTask::Work preview_work(const CameraSettings& settings) {
 
 DeviceTask::Work exposure_work(const CameraSettings& asked, double target) {
   return [asked, target](const Devices& devices, const std::stop_token& stop) {
-    const RestoredSettings restored(devices.camera, asked);
+    const RestoredSettings restored(devices.camera, asked, stop);
     const ExposureFound found = find_exposure(devices.camera, devices.clock, asked, target, stop);
     return ordered_json{{"exposure_us", found.exposure_us},
                         {"reached", found.reached},

@@ -17,7 +17,8 @@ namespace fvd {
 [[nodiscard]] DeviceTask::Work preview_work(const CameraSettings& settings);
 
 /// Takes images, and changes the exposure, until 0.1 % of the pixels are brighter than `target` (0..1) of full scale, 8
-/// images at most. However it ends, `settings` are put back in force.
+/// images at most. However it ends, `settings` are put back in force,
+/// except when it is stopped.
 [[nodiscard]] DeviceTask::Work exposure_work(const CameraSettings& settings, double target);
 
 /// See autofocus().

@@ -115,6 +115,8 @@ void acquire(const ScanPlan& plan, const CameraSettings& settings, const Measure
 /// A camera that answers nothing, or exposes for seconds, does not hold up a stop.
 CameraSettings configure(Camera& camera, const CameraSettings& settings, const std::stop_token& stop) {
   const std::stop_callback wake(stop, [&camera] { camera.interrupt(); });
+  // configure() cancels what was asked of the camera before, also by this stop.
+  if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "stopped before the camera was set up");
   return camera.configure(settings);
 }
 

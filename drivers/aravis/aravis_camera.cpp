@@ -1,6 +1,7 @@
 #include "drivers/aravis/aravis_camera.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <future>
 #include <memory>
@@ -106,8 +107,12 @@ GObjectPtr<ArvCamera> open(const CameraTarget& target, CameraPresence& presence)
   });
   if (error.is_bad_description()) throw_damaged(target.name, error.message(), parser);
   if (!camera) {
-    throw Error(ErrorCode::kCameraDisconnected, "the camera " + target.name + " cannot be opened: " +
-                                                    (name.empty() ? "Aravis does not list it" : error.message()));
+    const std::string hint = target.identity ? "; it tells who it is and refuses what opening needs: power it off and "
+                                               "on, and see whether a firewall or another program is in the way"
+                                             : "";
+    throw Error(ErrorCode::kCameraDisconnected,
+                "the camera " + target.name +
+                    " cannot be opened: " + (name.empty() ? "Aravis does not list it" : error.message()) + hint);
   }
   presence.watch(arv_camera_get_device(camera.get()));
   for (const char* feature : {"Width", "Height", "PixelFormat", "PayloadSize", "AcquisitionStart", "AcquisitionStop"}) {
@@ -119,6 +124,23 @@ GObjectPtr<ArvCamera> open(const CameraTarget& target, CameraPresence& presence)
   return camera;
 }
 
+/// The serial number of the GigE Vision camera that is under control: two of one address answer a search in turns.
+std::string controlled_serial(ArvDevice* device) {
+  constexpr guint64 kSerialRegister = 0x00D8;
+  std::array<char, 17> text{};  // sixteen, and an end
+  GErrorSlot error;
+  arv_device_read_memory(device, kSerialRegister, text.size() - 1, text.data(), error.out());
+  error.check("the camera does not tell its serial number", ErrorCode::kCameraDisconnected);
+  return text.data();
+}
+
+void require_same(const CameraTarget& found, const std::string& opened) {
+  if (opened == found.identity->serial) return;
+  throw Error(ErrorCode::kCameraDisconnected, "another camera, of serial number " + opened + ", was opened at " +
+                                                  found.open_by + " than " + found.identity->text() +
+                                                  ", which was found there: do two have this address?");
+}
+
 /// The configuration with the name that messages use in the address' place.
 CameraConfig called(CameraConfig config, const std::string& name) {
   config.address = name;
@@ -127,9 +149,6 @@ CameraConfig called(CameraConfig config, const std::string& name) {
 
 class AravisCamera final : public Camera {
  public:
-  AravisCamera(const CameraConfig& config, milliseconds clock_renewal)
-      : AravisCamera(config, find_camera(config), clock_renewal) {}
-
   AravisCamera(const CameraConfig& config, const CameraTarget& target, milliseconds clock_renewal)
       : config_(called(config, target.name)),
         presence_(target.name, milliseconds(config.silence_ms)),
@@ -137,6 +156,7 @@ class AravisCamera final : public Camera {
         features_(camera_.get(), config_.address),
         acquisition_(camera_.get(), config_, features_, presence_, clock_renewal) {
     read_info(target);
+    if (target.identity) require_same(target, info_.serial);
     require_serial(config, info_.serial, camera_text(info_));
     spdlog::info("camera: {}", camera_text(info_));
     if (arv_camera_is_gv_device(camera_.get())) {
@@ -224,8 +244,9 @@ class AravisCamera final : public Camera {
     const FoundCamera& known = target.identity.value_or(FoundCamera{});
     info_.vendor = target.identity ? known.vendor : text(arv_camera_get_vendor_name(camera_.get(), error.out()));
     info_.model = target.identity ? known.model : text(arv_camera_get_model_name(camera_.get(), error.out()));
-    info_.serial =
-        target.identity ? known.serial : text(arv_camera_get_device_serial_number(camera_.get(), error.out()));
+    info_.serial = arv_camera_is_gv_device(camera_.get())
+                       ? controlled_serial(arv_camera_get_device(camera_.get()))
+                       : text(arv_camera_get_device_serial_number(camera_.get(), error.out()));
     info_.firmware = known.firmware;
     for (const char* feature : {"DeviceFirmwareVersion", "DeviceVersion"}) {
       if (!info_.firmware.empty() || !features_.available(feature)) continue;
@@ -332,7 +353,12 @@ class AravisCamera final : public Camera {
 }  // namespace
 
 std::unique_ptr<Camera> open_aravis_camera(const CameraConfig& config, std::chrono::milliseconds clock_renewal) {
-  return std::make_unique<AravisCamera>(config, clock_renewal);
+  return open_aravis_camera(config, find_camera(config), clock_renewal);
+}
+
+std::unique_ptr<Camera> open_aravis_camera(const CameraConfig& config, const CameraTarget& found,
+                                           std::chrono::milliseconds clock_renewal) {
+  return std::make_unique<AravisCamera>(config, found, clock_renewal);
 }
 
 }  // namespace fvd

@@ -72,6 +72,16 @@ std::optional<FoundCamera> identity_at(std::uint32_t ip) {
   }
 }
 
+/// A camera hears a broadcast and answers to everybody whatever its address is; nothing else works across subnets.
+void require_reachable(const FoundCamera& camera) {
+  if (camera.subnet_fits || identity_at(gvcp::address_of(camera.address).value_or(0))) return;
+  throw Error(ErrorCode::kCameraDisconnected,
+              "the camera " + camera.text() + ", mask " + camera.mask + ", is not in the subnet of " +
+                  camera.interface + " (" + camera.interface_address +
+                  ") and cannot be reached there; give it another address: fvdctl camera set-ip " + camera.serial +
+                  " --interface " + camera.interface + " --address ...");
+}
+
 /// 0 = everywhere
 std::uint32_t search_address(const CameraConfig& config) {
   if (config.search_address.empty()) return 0;
@@ -110,6 +120,7 @@ CameraTarget find_camera(const CameraConfig& config) {
                                                       "; give the MAC of one in camera.address");
     }
     if (called.empty()) return find_usb_camera(name, network);
+    require_reachable(called.front());
     target = {name + " (" + called.front().address + ")", called.front().address, called.front()};
   }
   if (target.identity) require_serial(config, target.identity->serial, target.identity->text());

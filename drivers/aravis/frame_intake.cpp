@@ -72,11 +72,11 @@ bool FrameIntake::misdated(Frame& frame) {
   frame.status = FrameStatus::kMisdated;
   ++frames_failed_;
   clock_.doubt();
-  const bool first = refusal_.empty();
   refusal_ = "a frame came whose exposure is to end " +
              std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(ahead).count()) +
-             " ms later: the camera's clock was set (PTP) or wrapped; it is measured anew";
-  if (first) spdlog::warn("camera: {}", refusal_);
+             " ms later: the camera's clock was set (PTP) or wrapped; it is measured anew, that of a camera without a "
+             "timestamp latch before the next scan";
+  if (!std::exchange(told_misdated_, true)) spdlog::warn("camera: {}", refusal_);
   return true;
 }
 

@@ -33,7 +33,10 @@ class FrameIntake {
 
   /// Why the last frame was refused that was complete; empty if none was since forget_refusal().
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
-  void forget_refusal() { refusal_.clear(); }
+  void forget_refusal() {
+    refusal_.clear();
+    told_misdated_ = false;
+  }
 
   /// The frame of a buffer; nothing for a frame exposed before `configured`, with other settings. The buffer goes back
   /// with the frame's lease. A frame that is dated in the future makes the clock doubtful.
@@ -55,6 +58,7 @@ class FrameIntake {
   FrameCounter counter_;
   std::unique_ptr<SlicePool> slices_;  // nothing: slices are what comes over the wire
   std::string refusal_;
+  bool told_misdated_ = false;  // in the log, once for each configure()
   std::uint64_t frames_complete_ = 0;
   std::uint64_t frames_failed_ = 0;
   std::uint64_t failed_since_good_ = 0;

@@ -24,15 +24,14 @@ using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr std::uint32_t kEverybody = 0xFFFFFFFFU;
-constexpr std::uint8_t kAcknowledge = 0x01;
-/// A camera in another subnet has no way to answer but to everybody.
-constexpr std::uint8_t kAcknowledgeToEverybody = 0x10;
 /// Length of the answer: the bootstrap registers from 0x0000 on.
 constexpr std::size_t kAnswerBytes = 0xF8;
 /// A camera answers at once; a question that got lost is repeated.
 constexpr milliseconds kRepeat{50};
 constexpr milliseconds kRepeatSearch{200};
 constexpr std::uint16_t kAnyRequest = 0;
+/// Most answers that one wait reads: a flood does not hold it.
+constexpr int kMostAnswers = 1000;
 /// Each interface is listened to for so long in its turn.
 constexpr milliseconds kTurn{5};
 constexpr milliseconds kForOthers{100};
@@ -88,18 +87,6 @@ void ask_control(GvcpSocket& socket, FoundCamera& camera) {
   camera.controller = gvcp::address_text(*controller) + ":" + std::to_string(*port & 0xFFFFU);
 }
 
-/// Answers to one discovery, each camera once.
-void collect(GvcpSocket& socket, std::uint16_t request, SteadyClock::time_point until,
-             std::vector<FoundCamera>& found) {
-  while (const auto ack = socket.receive(gvcp::kDiscovery, request, until)) {
-    auto camera = ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
-    const bool known = camera && std::any_of(found.begin(), found.end(), [&](const FoundCamera& other) {
-                         return other.mac == camera->mac && other.address == camera->address;
-                       });
-    if (camera && !known) found.push_back(std::move(*camera));
-  }
-}
-
 /// Both must see each other as neighbours, or there is no way back for the pictures.
 bool fits(const NetworkInterface& interface, const FoundCamera& camera) {
   const auto address = gvcp::address_of(camera.address);
@@ -135,9 +122,33 @@ struct Asked {
 
   void ask(std::uint32_t to) {
     const bool everybody = to == kEverybody;
-    request = socket.send(to, gvcp::kDiscovery, everybody ? kAcknowledge | kAcknowledgeToEverybody : kAcknowledge, {});
+    request = socket.send(to, gvcp::kDiscovery,
+                          everybody ? gvcp::kAcknowledged | gvcp::kAcknowledgedToEverybody : gvcp::kAcknowledged, {});
   }
 };
+
+/// Answers to one discovery, each camera once: through an interface whose subnet fits, if it answers through one.
+void collect(Asked& asked, std::uint16_t request, SteadyClock::time_point until, std::vector<FoundCamera>& found) {
+  for (int answers = 0; answers < kMostAnswers; ++answers) {
+    const auto ack = asked.socket.receive(gvcp::kDiscovery, request, until);
+    if (!ack) return;
+    auto camera = ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
+    if (!camera) continue;
+    if (asked.interface.address != 0) {
+      camera->interface = asked.interface.name;
+      camera->interface_address = gvcp::address_text(asked.interface.address);
+      camera->subnet_fits = fits(asked.interface, *camera);
+    }
+    const auto known = std::find_if(found.begin(), found.end(), [&](const FoundCamera& other) {
+      return other.mac == camera->mac && other.address == camera->address;
+    });
+    if (known == found.end()) {
+      found.push_back(std::move(*camera));
+    } else if (camera->subnet_fits && !known->subnet_fits) {
+      *known = std::move(*camera);
+    }
+  }
+}
 
 /// A question through every interface that takes it; reason: why one does not.
 std::list<Asked> ask_everybody(const std::vector<NetworkInterface>& interfaces, std::string& reason) {
@@ -184,11 +195,8 @@ std::vector<FoundCamera> discover_cameras(const std::vector<NetworkInterface>& i
   std::vector<FoundCamera> all;
   for (Asked& one : asked) {
     std::vector<FoundCamera> found;
-    collect(one.socket, one.request, until, found);
+    collect(one, one.request, until, found);
     for (FoundCamera& camera : found) {
-      camera.interface = one.interface.name;
-      camera.interface_address = gvcp::address_text(one.interface.address);
-      camera.subnet_fits = fits(one.interface, camera);
       if (camera.subnet_fits) ask_control(one.socket, camera);
       all.push_back(std::move(camera));
     }
@@ -230,7 +238,7 @@ std::vector<FoundCamera> look_for_camera(const std::string& wanted, std::uint32_
     auto repeat_at = SteadyClock::now() + kRepeatSearch;
     bool seen = false;
     while (!asked.empty() && SteadyClock::now() < end) {
-      for (Asked& one : asked) collect(one.socket, kAnyRequest, SteadyClock::now() + kTurn, found);
+      for (Asked& one : asked) collect(one, kAnyRequest, SteadyClock::now() + kTurn, found);
       if (seen) continue;
       seen = std::any_of(found.begin(), found.end(), [&](const FoundCamera& one) { return one.is_called(wanted); });
       if (seen) {

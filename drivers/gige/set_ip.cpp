@@ -15,8 +15,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::uint32_t kEverybody = 0xFFFFFFFFU;
-constexpr std::uint8_t kAcknowledge = 0x01;
-constexpr std::uint8_t kAcknowledgeToEverybody = 0x10;
 constexpr std::uint32_t kPersistent = 0x1;
 constexpr std::uint32_t kControl = 0x2;
 constexpr int kAttempts = 10;
@@ -108,11 +106,15 @@ void force_ip(const FoundCamera& camera, const CameraAddress& wanted, const Netw
                                                 (camera.controller.empty() ? "another program" : camera.controller) +
                                                 " and keeps its address; stop that first");
   }
+  const auto holder = identify_camera(wanted.address, kPatience / 2);
+  if (holder && holder->mac != camera.mac) {
+    refuse(gvcp::address_text(wanted.address) + " is taken by another camera: " + holder->text());
+  }
   GvcpSocket socket(interface.address, interface.index);
   const auto payload = force_ip_payload(camera, wanted);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const std::uint16_t request =
-        socket.send(kEverybody, gvcp::kForceIp, kAcknowledge | kAcknowledgeToEverybody, payload);
+        socket.send(kEverybody, gvcp::kForceIp, gvcp::kAcknowledged | gvcp::kAcknowledgedToEverybody, payload);
     // The acknowledge may come from either address or not at all; the camera at its new address is what counts.
     (void)socket.receive(gvcp::kForceIp, request, std::chrono::steady_clock::now() + kPatience / 2);
     const auto there = discover_camera_at(wanted.address, kPatience / 2);

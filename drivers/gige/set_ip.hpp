@@ -21,8 +21,8 @@ struct CameraAddress {
 void check_address(const CameraAddress& wanted, const NetworkInterface& interface);
 
 /// FORCEIP: the address until the camera is switched off. Returns once the camera answers there. interface: through
-/// which it was found. Throws Error as check_address(), kCameraSettings if a program controls it, kCameraDisconnected
-/// if it does not answer at its new address within 5 s.
+/// which it was found. Throws Error as check_address(), kBadInput if another camera answers at the address,
+/// kCameraSettings if a program controls it, kCameraDisconnected if it does not answer at its new address within 5 s.
 void force_ip(const FoundCamera& camera, const CameraAddress& wanted, const NetworkInterface& interface);
 
 /// The address that the camera has whenever it is switched on: writes it, and switches the persistent address on. The

@@ -157,9 +157,13 @@ SequenceResult run_sequence(ModbusLink& link, const DriveSequence& sequence, con
   return Runner(link, values, priority, std::move(stop)).run(sequence, first);
 }
 
-std::optional<std::int64_t> read_register(ModbusLink& link, const DriveRegister& reg, ModbusPriority priority) {
+std::optional<std::int64_t> read_register(ModbusLink& link, const DriveRegister& reg, ModbusPriority priority,
+                                          std::string* why) {
   const ModbusReply reply = link.read(reg.table, reg.address, reg.words(), priority);
-  if (reply.outcome != ModbusOutcome::kOk) return std::nullopt;
+  if (reply.outcome != ModbusOutcome::kOk) {
+    if (why != nullptr) *why = reply.error;
+    return std::nullopt;
+  }
   return decode(reg, reply.values.data());
 }
 

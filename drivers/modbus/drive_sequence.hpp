@@ -82,8 +82,9 @@ struct SequenceResult {
 [[nodiscard]] SequenceResult run_sequence(ModbusLink& link, const DriveSequence& sequence, const DriveValues& values,
                                           ModbusPriority priority, std::stop_token stop, std::size_t first = 0);
 
-/// One register, read in a transaction of its own; nothing if it could not be read.
+/// One register, read in a transaction of its own; nothing if it could not be read, and then the reason in `why`.
 [[nodiscard]] std::optional<std::int64_t> read_register(ModbusLink& link, const DriveRegister& reg,
-                                                        ModbusPriority priority = ModbusPriority::kNormal);
+                                                        ModbusPriority priority = ModbusPriority::kNormal,
+                                                        std::string* why = nullptr);
 
 }  // namespace fvd

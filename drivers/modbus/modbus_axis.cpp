@@ -211,11 +211,12 @@ class ModbusPort final : public AxisPort {
 
   [[nodiscard]] std::optional<std::pair<Micrometers, Micrometers>> soft_limits() {
     if (!profile_.soft_limits) return std::nullopt;
-    const auto positive = read_register(link_, profile_.soft_limits->positive);
-    const auto negative = read_register(link_, profile_.soft_limits->negative);
+    std::string why;
+    const auto positive = read_register(link_, profile_.soft_limits->positive, ModbusPriority::kNormal, &why);
+    const auto negative = read_register(link_, profile_.soft_limits->negative, ModbusPriority::kNormal, &why);
     if (!positive || !negative) {
       throw Error(ErrorCode::kStageDisconnected,
-                  "the drive at " + link_.description() + " does not tell its limits of travel");
+                  "the drive at " + link_.description() + " does not tell its limits of travel: " + why);
     }
     if (*negative >= *positive) {
       spdlog::info("the drive at {} has no limits of travel set: {} to {} steps", link_.description(), *negative,

@@ -9,7 +9,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/../support/setup.sh"
 promises() {
   case "$1" in
     camera)
-      echo 'longest_wait_after_abort_ms<=500 sigterm_exit_ms<=1000 gvcp_busy5_jobs_ok_of_20==20 pending_ack_ok_of_20==20' \
+      echo 'longest_wait_after_abort_ms<=500 sigterm_exit_ms<=1000 abort_rows_without_effect==0 sigterm_exits_failed==0' \
+        'gvcp_busy5_jobs_ok_of_20==20 pending_ack_ok_of_20==20' \
         'silence600_jobs_ok_of_20==20 idle_camera_loss_ms<=2000 no_frames_recovered_of_10==10 camera_found_by==5' \
         'wrong_camera_used==0 wrong_slices_accepted==0 fault_cases_camera>=44'
       ;;

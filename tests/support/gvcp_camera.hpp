@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -26,13 +27,17 @@ namespace fvd::test {
 /// Answers unicast commands only where they went to its address. context: thread-safe.
 class GvcpCamera {
  public:
-  explicit GvcpCamera(std::uint32_t address, std::uint32_t mask = 0xFFFFFF00U) : address_(address), mask_(mask) {
+  /// neighbour: a second camera of the same network, which hears only what is sent to its address.
+  explicit GvcpCamera(std::uint32_t address, std::uint32_t mask = 0xFFFFFF00U, bool neighbour = false)
+      : mac_low_(neighbour ? 0xCCDDEE02U : 0xCCDDEE01U), address_(address), mask_(mask) {
     fd_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     const int on = 1;
     ::setsockopt(fd_, IPPROTO_IP, IP_PKTINFO, &on, sizeof on);
+    ::setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     sockaddr_in here{};
     here.sin_family = AF_INET;
     here.sin_port = htons(3956);
+    if (neighbour) here.sin_addr.s_addr = htonl(address);
     bound_ = ::bind(fd_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0;
     thread_ = start_thread("gvcp-camera", [this](const std::stop_token& stop) { serve(stop); });
   }
@@ -55,6 +60,10 @@ class GvcpCamera {
   }
   /// Keeps the address whatever FORCEIP says.
   void be_deaf_to_force_ip() { deaf_ = true; }
+  /// Refuses every second write as busy; announces every other one by PENDING_ACK and acknowledges it `later`.
+  void write_slowly(std::chrono::milliseconds later) { write_time_ms_ = static_cast<int>(later.count()); }
+  /// Answers to discoveries lack their last byte, those to register reads their payload.
+  void answer_too_short() { short_ = true; }
 
  private:
   using Bytes = std::vector<std::uint8_t>;
@@ -82,7 +91,7 @@ class GvcpCamera {
     put32(out, 0x00010002);
     put32(out, 0);
     put32(out, 0x0000AABB);  // MAC
-    put32(out, 0xCCDDEE01);
+    put32(out, mac_low_);
     put32(out, 7);
     put32(out, 6);
     out.resize(0x24, 0);
@@ -130,22 +139,35 @@ class GvcpCamera {
     const MutexLock lock(mutex_);
     if (command == 0x0002) {
       payload = bootstrap();
-    } else if (command == 0x0004 && size >= 64 && get32(in + 12) == 0xCCDDEE01 && !deaf_) {
+      if (short_) payload.pop_back();
+    } else if (command == 0x0004 && size >= 64 && get32(in + 12) == mac_low_ && !deaf_) {
       address_ = get32(in + 28);
       mask_ = get32(in + 44);
     } else if (command == 0x0080 && !broadcast && size >= 12) {
-      put32(payload, registers_[get32(in + 8)]);
+      if (!short_) put32(payload, registers_[get32(in + 8)]);
     } else if (command == 0x0082 && !broadcast && size >= 16) {
       const std::uint32_t at = get32(in + 8);
       if (at != 0x0A00 && registers_[0x0A00] == 0) status = 0x8006;
+      if (write_time_ms_ > 0) status = ++writes_ % 2 == 0 ? status : 0x8007;
+      if (status == 0 && write_time_ms_ > 0) {
+        Bytes pending;
+        put32(pending, 10U * static_cast<std::uint32_t>(write_time_ms_));
+        send(in, from, 0, 0x0089, pending);
+        std::this_thread::sleep_for(std::chrono::milliseconds(write_time_ms_));  // its memory takes so long
+      }
       if (status == 0) registers_[at] = get32(in + 12);
       put32(payload, 1);
     } else {
       return;
     }
+    send(in, from, status, command + 1, payload);
+  }
+
+  void send(const std::uint8_t* in, const sockaddr_in& from, std::uint32_t status, std::uint32_t command,
+            const Bytes& payload) const {
     Bytes out;
     put16(out, status);
-    put16(out, command + 1);
+    put16(out, command);
     put16(out, static_cast<std::uint32_t>(payload.size()));
     out.push_back(in[6]);
     out.push_back(in[7]);
@@ -156,6 +178,10 @@ class GvcpCamera {
   int fd_ = -1;
   bool bound_ = false;
   std::atomic<bool> deaf_{false};
+  std::atomic<bool> short_{false};
+  std::atomic<int> write_time_ms_{0};  // 0: at once
+  int writes_ = 0;
+  const std::uint32_t mac_low_;
   std::atomic<std::uint32_t> address_;
   std::atomic<std::uint32_t> mask_;
   Mutex mutex_;

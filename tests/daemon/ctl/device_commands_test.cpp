@@ -107,6 +107,23 @@ TEST(Devices, TellWhoControlsACamera) {
   EXPECT_NE(run.outcome.out.find("controlled by 192.168.1.2:51000"), std::string::npos) << run.outcome.out;
 }
 
+TEST(Devices, BelieveNoAnswerThatIsTooShort) {
+  const auto run = in_own_network("127.0.0.9", {"devices", "--json", "--interface", "lo"},
+                                  [](test::GvcpCamera& camera) { camera.answer_too_short(); });
+  SKIP_WITHOUT_NETWORK(run);
+  EXPECT_EQ(run.outcome.code, kExitOk) << run.outcome.err;
+  EXPECT_TRUE(json::parse(run.outcome.out)["cameras"].empty()) << run.outcome.out;
+}
+
+TEST(Devices, KeepWhatWasFoundWhereOneAddressCannotBeAsked) {
+  const auto run = in_own_network(
+      "127.0.0.9", {"devices", "--json", "--interface", "lo", "--at", "203.0.113.9", "--at", "127.0.0.9"});
+  SKIP_WITHOUT_NETWORK(run);
+  EXPECT_EQ(run.outcome.code, kExitUnavailable) << run.outcome.err;
+  EXPECT_EQ(json::parse(run.outcome.out)["cameras"].size(), 2U) << run.outcome.out;
+  EXPECT_NE(run.outcome.out.find("203.0.113.9"), std::string::npos) << run.outcome.out;
+}
+
 TEST(CameraSetIp, ReachesACameraOfAnotherSubnet) {
   const auto run =
       in_own_network("192.168.7.9", {"camera", "set-ip", "SN42", "--address", "127.0.0.77", "--interface", "lo"});
@@ -128,6 +145,29 @@ TEST(CameraSetIp, SetsAnAddressForGood) {
   EXPECT_EQ(run.registers.at(gvcp::kPersistentMask), 0xFF000000U);
   EXPECT_EQ(run.registers.at(gvcp::kIpConfiguration), 7U);
   EXPECT_EQ(run.registers.at(gvcp::kControlPrivilege), 0U) << "control is given back";
+}
+
+TEST(CameraSetIp, WaitsForACameraWhoseMemoryIsSlow) {
+  const auto run = in_own_network(
+      "127.0.0.77", {"camera", "set-ip", "SN42", "--address", "127.0.0.77", "--persistent", "--interface", "lo"},
+      [](test::GvcpCamera& camera) { camera.write_slowly(std::chrono::milliseconds(300)); });
+  SKIP_WITHOUT_NETWORK(run);
+  EXPECT_EQ(run.outcome.code, kExitOk) << run.outcome.err;
+  EXPECT_EQ(run.registers.at(gvcp::kPersistentAddress), *gvcp::address_of("127.0.0.77"));
+  EXPECT_EQ(run.registers.at(gvcp::kControlPrivilege), 0U) << "control is given back";
+}
+
+TEST(CameraSetIp, TakesNoAddressOfAnotherCamera) {
+  std::unique_ptr<test::GvcpCamera> neighbour;
+  const auto run = in_own_network(
+      "192.168.7.9", {"camera", "set-ip", "SN42", "--address", "127.0.0.77", "--interface", "lo"},
+      [&neighbour](test::GvcpCamera&) {
+        neighbour = std::make_unique<test::GvcpCamera>(*gvcp::address_of("127.0.0.77"), 0xFF000000U, true);
+      });
+  SKIP_WITHOUT_NETWORK(run);
+  EXPECT_EQ(run.outcome.code, kExitBadData) << run.outcome.err;
+  EXPECT_NE(run.outcome.err.find("aa:bb:cc:dd:ee:02"), std::string::npos) << run.outcome.err;
+  EXPECT_EQ(run.address, *gvcp::address_of("192.168.7.9")) << "nothing was sent";
 }
 
 TEST(CameraSetIp, RefusesWhatCannotBeReachedAfterwards) {
@@ -163,6 +203,7 @@ TEST(CameraSetIp, TellsOfACameraThatIsNotThereThatIsControlledThatKeepsItsAddres
 
   const auto controlled =
       in_own_network("127.0.0.9", words, [](test::GvcpCamera& camera) { camera.set_reg(gvcp::kControlPrivilege, 2); });
+  EXPECT_EQ(controlled.outcome.code, kExitJobFailed);
   EXPECT_NE(controlled.outcome.err.find("is controlled by another program"), std::string::npos)
       << controlled.outcome.err;
   EXPECT_EQ(controlled.address, *gvcp::address_of("127.0.0.9"));
@@ -171,6 +212,13 @@ TEST(CameraSetIp, TellsOfACameraThatIsNotThereThatIsControlledThatKeepsItsAddres
       in_own_network("192.168.7.9", words, [](test::GvcpCamera& camera) { camera.be_deaf_to_force_ip(); });
   EXPECT_EQ(deaf.outcome.code, kExitUnavailable);
   EXPECT_NE(deaf.outcome.err.find("does not answer at 127.0.0.77"), std::string::npos) << deaf.outcome.err;
+}
+
+TEST(ExitCodes, CallNoRefusalOfADeviceABug) {
+  for (const ErrorCode code :
+       {ErrorCode::kCameraSettings, ErrorCode::kCameraFramesLost, ErrorCode::kCameraNoFrames, ErrorCode::kFocusRange}) {
+    EXPECT_EQ(exit_code(code), kExitJobFailed) << static_cast<int>(code);
+  }
 }
 
 }  // namespace

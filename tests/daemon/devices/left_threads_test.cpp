@@ -3,9 +3,11 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
+#include "daemon/devices/device_slot.hpp"
 #include "gtest/gtest.h"
 
 namespace fvd {
@@ -36,6 +38,34 @@ TEST(WorkThatMayBeLeftDeathTest, IsLeftWhenTheProcessEnds) {
     std::_Exit(!done && left_a_thread() ? 7 : 1);
   };
   EXPECT_EXIT(end_of_a_process(), testing::ExitedWithCode(7), "");
+}
+
+/// What a device still tells while it is closed takes this long.
+constexpr std::chrono::milliseconds kClosing{300};
+std::atomic<bool> closed{false};
+
+struct SlowToClose {
+  ~SlowToClose() {
+    std::this_thread::sleep_for(kClosing);
+    closed = true;
+  }
+  [[nodiscard]] static bool connected() { return true; }
+};
+
+TEST(ASlotDeathTest, AwaitsAtTheEndOfTheProcessWhatTheNextOneWouldAwait) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto end_of_a_process = [](Predecessor predecessor) {
+    {
+      DeviceSlot<SlowToClose> slot([] { return std::make_unique<SlowToClose>(); }, ErrorCode::kStageDisconnected,
+                                   predecessor);
+      if (!slot.ensure()) std::_Exit(1);
+      process_ends();
+      slot.drop();
+    }
+    std::_Exit(closed && !left_a_thread() ? 7 : 8);
+  };
+  EXPECT_EXIT(end_of_a_process(Predecessor::kAwaited), testing::ExitedWithCode(7), "") << "a drive's watchdog";
+  EXPECT_EXIT(end_of_a_process(Predecessor::kIgnored), testing::ExitedWithCode(8), "") << "a camera that is silent";
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ TEST_F(ASetupOfAForgetfulDrive, AsksForTheReferenceWhereItIsNeededAndComesBack) 
   EXPECT_EQ(step(), "reference") << "with the limits in force the drive was opened anew";
   answer("back");
   EXPECT_EQ(step(), "focus");
+  answer("picture");
   answer("ok");
   EXPECT_EQ(step(), "reference") << "a place without a reference is none";
   expect_refused("keep", "has no reference");

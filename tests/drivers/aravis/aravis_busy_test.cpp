@@ -11,6 +11,7 @@
 
 #include "core/runtime/guarded_thread.hpp"
 #include "drivers/aravis/busy_commands.hpp"
+#include "drivers/aravis/gvcp_probe.hpp"
 #include "tests/drivers/aravis/aravis_camera_fixture.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -124,10 +125,12 @@ TEST_F(AnAravisCamera, IsInterruptedWhileItIsSetUp) {
   EXPECT_TRUE(shoot(*camera).has_value());
 }
 
-/// Nobody controls this camera, and it tells so to nobody: what counts is that it refuses control.
+/// Answers everything with eight bytes. With ACCESS_DENIED: nobody controls it, and it tells so to nobody; what counts
+/// is that it refuses control.
 class ASecretiveDevice {
  public:
-  explicit ASecretiveDevice(const std::string& address) : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  explicit ASecretiveDevice(const std::string& address, std::uint16_t status = 0x8006)
+      : status_(status), socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in own{};
     own.sin_family = AF_INET;
     own.sin_port = htons(3956);
@@ -153,16 +156,28 @@ class ASecretiveDevice {
       socklen_t length = sizeof from;
       const auto size = ::recvfrom(socket_, in.data(), in.size(), 0, reinterpret_cast<sockaddr*>(&from), &length);
       if (size < 8 || in[0] != 0x42) continue;
-      // ACCESS_DENIED to everything.
-      const std::array<std::uint8_t, 8> out{0x80, 0x06, in[2], static_cast<std::uint8_t>(in[3] + 1),
-                                            0,    0,    in[6], in[7]};
+      const std::array<std::uint8_t, 8> out{static_cast<std::uint8_t>(status_ >> 8U),
+                                            static_cast<std::uint8_t>(status_ & 0xFFU),
+                                            in[2],
+                                            static_cast<std::uint8_t>(in[3] + 1),
+                                            0,
+                                            0,
+                                            in[6],
+                                            in[7]};
       ::sendto(socket_, out.data(), out.size(), 0, reinterpret_cast<const sockaddr*>(&from), length);
     }
   }
 
+  const std::uint16_t status_;
   int socket_;
   std::jthread thread_;
 };
+
+TEST_F(AnAravisCamera, TakesARegisterWithoutAValueForNoAnswer) {
+  const ASecretiveDevice device(address_, 0);
+  GvcpProbe probe(address_);
+  EXPECT_EQ(probe.ask(milliseconds(150)), GvcpProbe::Answer::kNone);
+}
 
 TEST_F(AnAravisCamera, BlamesNoOtherProgramWhenItsRegistersAreRefused) {
   const ASecretiveDevice device(address_);

@@ -3,6 +3,7 @@
 #include "drivers/aravis/camera_search.hpp"
 
 #include <fstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -11,6 +12,8 @@
 #include "drivers/gige/gvcp_socket.hpp"
 #include "tests/drivers/aravis/aravis_camera_fixture.hpp"
 #include "tests/support/expect_error.hpp"
+#include "tests/support/gvcp_camera.hpp"
+#include "tests/support/network_namespace.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -69,6 +72,35 @@ TEST_F(ANamedCamera, IsRefusedWhereAnotherSerialNumberIsExpected) {
                           AllOf(HasSubstr("S-4712"), HasSubstr("S-4711"), HasSubstr("another camera")));
   wanted.serial = "s-4711";
   EXPECT_NO_THROW((void)open_aravis_camera(wanted));
+}
+
+TEST_F(ANamedCamera, IsRefusedWhereItIsNotTheOneThatWasFound) {
+  const CameraTarget found = find_camera(config());
+  server_.reset();
+  sim::GigeCameraOptions options;
+  options.serial = "S-4712";
+  serve(options);
+  FVD_EXPECT_ERROR_SAYING(kCameraDisconnected, (void)open_aravis_camera(config(), found),
+                          AllOf(HasSubstr("S-4712"), HasSubstr("S-4711"), HasSubstr("another camera")));
+}
+
+TEST(ACameraSearch, TellsHowToReachACameraOfAnotherSubnet) {
+  bool possible = false;
+  std::optional<Error> refusal;
+  std::thread([&] {  // the namespace ends with this thread
+    possible = test::enter_own_network();
+    if (!possible) return;
+    const test::GvcpCamera camera(gvcp::address_of("192.168.7.9").value());
+    CameraConfig config;
+    config.address = "left";
+    refusal = test::error_of([&] { (void)find_camera(config); });
+  })
+      .join();
+  if (!possible) GTEST_SKIP() << "no network namespace on this machine";
+  ASSERT_TRUE(refusal.has_value());
+  EXPECT_EQ(refusal->code(), ErrorCode::kCameraDisconnected);
+  EXPECT_THAT(refusal->what(),
+              AllOf(HasSubstr("192.168.7.9"), HasSubstr("subnet of lo"), HasSubstr("fvdctl camera set-ip SN42")));
 }
 
 TEST(ACameraSearch, RefusesAnEmptyName) {
