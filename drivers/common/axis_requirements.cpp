@@ -91,9 +91,9 @@ void require_wanted(const std::stop_token& stop) {
   if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
 }
 
-void require_agreement(AxisPort& port) {
+void require_agreement(AxisPort& port, const std::stop_token& stop) {
   std::string all;
-  for (const std::string& one : port.disagreements()) all += (all.empty() ? "" : "; ") + one;
+  for (const std::string& one : port.disagreements(stop)) all += (all.empty() ? "" : "; ") + one;
   if (all.empty()) return;
   throw Error(ErrorCode::kBadConfig, "the drive at " + port.traits().address + " disagrees with its profile '" +
                                          port.traits().name + "': " + all +

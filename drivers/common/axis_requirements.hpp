@@ -32,8 +32,9 @@ struct AxisSettings {
 
 /// Throws Error kAborted if a stop was requested: nothing begins to move for a caller that does not want it any more.
 void require_wanted(const std::stop_token& stop);
-/// Throws Error kBadConfig if the controller is not what the port takes it for, with every reason.
-void require_agreement(AxisPort& port);
+/// Throws Error kBadConfig if the controller is not what the port takes it for, with every reason, and as
+/// AxisPort::disagreements() does.
+void require_agreement(AxisPort& port, const std::stop_token& stop);
 /// Throws Error kStageNotHomed. what: an addition, empty or with a space before it.
 [[noreturn]] void throw_forgotten(const AxisTraits& traits, const std::string& what);
 /// Throws Error kStageTaken, or as throw_forgotten() for a restart.
