@@ -1,7 +1,6 @@
 #include "drivers/common/axis_controller.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -23,7 +22,6 @@ using std::chrono::milliseconds;
 
 /// Maximum age of a sample that is treated as current while the axis rests.
 constexpr milliseconds kSampleAge{50};
-constexpr milliseconds kLongestLookAhead{2000};  ///< a position is not waited for any longer
 /// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
 constexpr Micrometers kSweepWindow{5.0};
 constexpr milliseconds kSweepGrace{3000};
@@ -96,13 +94,13 @@ class AxisController final : public Axis {
   }
 
   [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
-    require_near(to);
+    require_near(traits_, to);
     (void)poller_.sample_after(to, {});
     return poller_.mean(from, to);
   }
 
   [[nodiscard]] PositionMean position_at(HostTime at, std::chrono::microseconds reach) override {
-    require_near(at + reach);
+    require_near(traits_, at + reach);
     (void)poller_.sample_after(at + reach, {});
     return poller_.line(at, reach);
   }
@@ -158,14 +156,6 @@ class AxisController final : public Axis {
     throw_foreign(traits_, *foreign);
   }
 
-  /// Times of exposures are told by the camera's clock, and nobody can end a wait for them.
-  void require_near(HostTime time) const {
-    const auto ahead = std::chrono::duration_cast<milliseconds>(time - HostClock::now());
-    if (ahead <= kLongestLookAhead) return;
-    throw Error(ErrorCode::kInternal, "the position of the axis at " + traits_.address + " was asked for at a time " +
-                                          std::to_string(ahead.count()) + " ms ahead; is the camera's clock right?");
-  }
-
   void require_enabled(const AxisSample& sample) {
     if (!disabled_.somebody_else_disabled(sample)) return;
     poller_.remember_homed(false);
@@ -219,12 +209,9 @@ class AxisController final : public Axis {
     throw Error(code, failure.empty() ? message : message + "; " + failure);
   }
 
-  /// An axis that does not arrive may have been sent elsewhere, and one that is disabled or has another target may have
-  /// been so by another master. It still moves: a busy drive is not waited for.
+  /// The axis is yet to be halted: a busy drive is not waited for.
   void blame_other_master(ErrorCode& code, std::string& message) {
-    constexpr std::array kAnothersDoing{ErrorCode::kStagePosition, ErrorCode::kTimeout, ErrorCode::kStageAlarm,
-                                        ErrorCode::kStageNotHomed};
-    if (std::find(kAnothersDoing.begin(), kAnothersDoing.end(), code) == kAnothersDoing.end()) return;
+    if (!may_be_anothers_doing(code)) return;
     std::stop_source impatient;
     impatient.request_stop();
     try {
@@ -286,9 +273,7 @@ class AxisController final : public Axis {
     require_off_limits(traits_, before);
     require_sole_master(true, stop);  // the move would write over what another one left
     require_enabled(before);
-    if (!before.homed) {
-      throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + traits_.address + " before it is homed");
-    }
+    require_homed(traits_, before);
     make_ready(before, stop);  // disabled by our own stop: this is a new command
     require_reference(before, stop);
     require_wanted(stop);
@@ -353,9 +338,8 @@ class AxisController final : public Axis {
     require_off_limits(traits_, sample);
     require_enabled(sample);
     if (begun && sample.target) require_reference(sample, {});
-    if (sample.homed) return require_sole_master(false);
-    throw Error(ErrorCode::kStageNotHomed, "the drive at " + traits_.address +
-                                               " lost its reference in the move, as after a power cut; home again");
+    require_reference_kept(traits_, sample);
+    require_sole_master(false);
   }
 
   void settle(MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
@@ -376,9 +360,7 @@ class AxisController final : public Axis {
         move.halted = sample.time;
       }
       if (!begun && sample.time - commanded > traits_.start_within) {
-        throw Error(ErrorCode::kStagePosition, "the drive at " + traits_.address + " took the move to " +
-                                                   std::to_string(move.target.value) +
-                                                   " um without a word and does not move: is it ready and enabled?");
+        throw_not_begun(traits_, move.target);
       }
       if (detector.add(sample.time, sample.position, !sample.moving && sample.in_position)) {
         move.position = sample.position;

@@ -160,17 +160,17 @@ class ModbusPort final : public AxisPort {
 
   [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
     const ModbusLinkStats stats = link_.stats();
-    return StageLinkStats{stats.transactions,
-                          stats.retries,
-                          stats.unknown,
-                          stats.rejected,
-                          stats.reconnects,
-                          stats.discarded_bytes,
-                          0,
-                          stats.later,
-                          stats.latency_p50_us,
-                          stats.latency_p99_us,
-                          stats.latency_max_us};
+    return StageLinkStats{.requests = stats.transactions,
+                          .retries = stats.retries,
+                          .unanswered = stats.unknown,
+                          .refused = stats.rejected,
+                          .reconnects = stats.reconnects,
+                          .discarded_bytes = stats.discarded_bytes,
+                          .implausible = 0,
+                          .put_off = stats.later,
+                          .latency_p50_us = stats.latency_p50_us,
+                          .latency_p99_us = stats.latency_p99_us,
+                          .latency_max_us = stats.latency_max_us};
   }
 
  private:
