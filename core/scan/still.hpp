@@ -16,7 +16,7 @@ struct Still {
 };
 
 /// Configures the camera and takes a frame that is exposed from now on. Throws Error kCameraFramesLost after four
-/// triggers without a good frame, kAborted, and what the camera throws.
+/// triggers without a good frame, kCameraNoFrames where nothing at all came, kAborted, and what the camera throws.
 [[nodiscard]] Still take_still(Camera& camera, Clock& clock, const CameraSettings& settings, std::stop_token stop);
 
 struct ExposureFound {

@@ -82,6 +82,7 @@ Json json_of(const DriveCheck& check, const DriveProfile& profile, const std::st
                   {"latency_p50_us", check.link.latency_p50_us},
                   {"latency_max_us", check.link.latency_max_us}};
   json["disagreements"] = check.disagreements;
+  json["doubts"] = check.doubts;
   return json;
 }
 
@@ -115,6 +116,7 @@ std::string text_of(const DriveCheck& check, const DriveProfile& profile, const 
     text << "The drive disagrees with the profile:\n";
     for (const auto& one : check.disagreements) text << "  * " << one << "\n";
   }
+  for (const auto& one : check.doubts) text << "To look at: " << one << "\n";
   return text.str();
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <sstream>
 
 #include <spdlog/spdlog.h>
 
@@ -23,7 +22,6 @@ using std::chrono::milliseconds;
 
 /// Maximum age of a sample that is treated as current while the axis rests.
 constexpr milliseconds kSampleAge{50};
-constexpr milliseconds kLongestLookAhead{2000};  ///< a position is not waited for any longer
 /// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
 constexpr Micrometers kSweepWindow{5.0};
 constexpr milliseconds kSweepGrace{3000};
@@ -65,7 +63,7 @@ class AxisController final : public Axis {
   void home(std::stop_token stop) override {
     const AxisSample before = poller_.sample_after(HostClock::now(), stop);
     require_homing_possible(*port_, before);
-    if (const auto seen = poller_.foreign_write(true); seen && seen->is_restart) poller_.forget_foreign_write();
+    if (const auto seen = poller_.foreign_write(true, stop); seen && seen->is_restart) poller_.forget_foreign_write();
     require_sole_master(false);
     prepared_ = false;  // the drive may have been restarted
     make_ready(before, stop);
@@ -96,13 +94,13 @@ class AxisController final : public Axis {
   }
 
   [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
-    require_near(to);
+    require_near(traits_, to);
     (void)poller_.sample_after(to, {});
     return poller_.mean(from, to);
   }
 
   [[nodiscard]] PositionMean position_at(HostTime at, std::chrono::microseconds reach) override {
-    require_near(at + reach);
+    require_near(traits_, at + reach);
     (void)poller_.sample_after(at + reach, {});
     return poller_.line(at, reach);
   }
@@ -135,7 +133,7 @@ class AxisController final : public Axis {
   /// Nothing is written to a drive that is not what fvd takes it for.
   void make_ready(const AxisSample& sample, const std::stop_token& stop) {
     if (prepared_ && sample.enabled) return;
-    if (!checked_) require_agreement(*port_);
+    if (!checked_) require_agreement(*port_, stop);
     checked_ = true;
     const CommandResult prepared = port_->prepare(settings_.limits, stop);
     require_wanted(stop);
@@ -150,20 +148,12 @@ class AxisController final : public Axis {
   }
 
   /// look: asks the drive now, instead of trusting the looks that are taken all the time.
-  void require_sole_master(bool look) {
-    const auto foreign = poller_.foreign_write(look);
+  void require_sole_master(bool look, const std::stop_token& stop = {}) {
+    const auto foreign = poller_.foreign_write(look, stop);
     if (!foreign) return;
     if (!traits_.tells_homed) poller_.remember_homed(false);  // its memory of the last target is no longer ours
     target_.reset();
     throw_foreign(traits_, *foreign);
-  }
-
-  /// Times of exposures are told by the camera's clock, and nobody can end a wait for them.
-  void require_near(HostTime time) const {
-    const auto ahead = std::chrono::duration_cast<milliseconds>(time - HostClock::now());
-    if (ahead <= kLongestLookAhead) return;
-    throw Error(ErrorCode::kInternal, "the position of the axis at " + traits_.address + " was asked for at a time " +
-                                          std::to_string(ahead.count()) + " ms ahead; is the camera's clock right?");
   }
 
   void require_enabled(const AxisSample& sample) {
@@ -175,10 +165,10 @@ class AxisController final : public Axis {
   }
 
   /// Drives that do not say whether they are homed forget their last target in a restart.
-  void require_reference(const AxisSample& sample) {
+  void require_reference(const AxisSample& sample, const std::stop_token& stop) {
     if (traits_.tells_homed || !target_) return;
     auto read = sample.target;
-    if (!read) read = port_->remembered_target();
+    if (!read) read = port_->remembered_target(stop);
     if (!read || *read == *target_) return;
     poller_.remember_homed(false);
     target_.reset();
@@ -209,7 +199,7 @@ class AxisController final : public Axis {
     } catch (const Error& error) {
       code = error.code();
       message = error.what();
-      if (code == ErrorCode::kStagePosition || code == ErrorCode::kTimeout) blame_other_master(code, message);
+      blame_other_master(code, message);
     } catch (const std::exception& error) {
       message = error.what();
     }
@@ -219,10 +209,13 @@ class AxisController final : public Axis {
     throw Error(code, failure.empty() ? message : message + "; " + failure);
   }
 
-  /// An axis that does not arrive may have been sent elsewhere.
+  /// The axis is yet to be halted: a busy drive is not waited for.
   void blame_other_master(ErrorCode& code, std::string& message) {
+    if (!may_be_anothers_doing(code)) return;
+    std::stop_source impatient;
+    impatient.request_stop();
     try {
-      require_sole_master(true);
+      require_sole_master(true, impatient.get_token());
     } catch (const Error& error) {
       code = error.code();
       message += std::string("; ") + error.what();
@@ -231,16 +224,16 @@ class AxisController final : public Axis {
 
   /// A drive that was busy may have begun all the same: it is looked at before it is asked again.
   CommandResult send_home(const AxisSample& before, const std::stop_token& stop) {
-    for (int attempt = 1;; ++attempt) {
-      CommandResult result = port_->home(settings_.limits, stop);
-      if (!result.later || attempt == kBusyAttempts || stop.stop_requested()) return result;
+    const auto homes = [&](const AxisSample& sample) {
+      return sample.moving || (before.homed && traits_.tells_homed && !sample.homed);
+    };
+    CommandResult result = port_->home(settings_.limits, stop);
+    for (int attempt = 1; result.later && attempt < kBusyAttempts && !stop.stop_requested(); ++attempt) {
       spdlog::warn("the drive at {} puts off its homing: {}", traits_.address, result.error);
-      for (HostTime last = HostClock::now(), asked = last; last - asked <= traits_.start_within;) {
-        const AxisSample sample = poller_.sample_after(last, stop);
-        last = sample.begun;
-        if (sample.moving || (before.homed && traits_.tells_homed && !sample.homed)) return {};
-      }
+      const bool resumes = result.repeatable || seen_to(homes, stop);
+      result = resumes ? port_->resume(stop) : port_->home(settings_.limits, stop);
     }
+    return result;
   }
 
   void wait_until_homed(HostTime started, const std::stop_token& stop) {
@@ -278,13 +271,11 @@ class AxisController final : public Axis {
     const AxisSample before = current_sample(stop);
     require_no_alarm(*port_, before);
     require_off_limits(traits_, before);
+    require_sole_master(true, stop);  // the move would write over what another one left
     require_enabled(before);
-    if (!before.homed) {
-      throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + traits_.address + " before it is homed");
-    }
-    require_sole_master(true);  // the move would write over what another one left
-    make_ready(before, stop);   // disabled by our own stop: this is a new command
-    require_reference(before);
+    require_homed(traits_, before);
+    make_ready(before, stop);  // disabled by our own stop: this is a new command
+    require_reference(before, stop);
     require_wanted(stop);
     const Commanded moving(state_, AxisState::kMoving);
     move.started = HostClock::now();
@@ -295,18 +286,23 @@ class AxisController final : public Axis {
     return move;
   }
 
-  /// Sends the move. Without a usable answer it looks whether the axis obeys, and only if it does not, sends the same
-  /// absolute target once more: an absolute move that did arrive is not repeated by that.
+  /// Sends the move. What had no usable answer and does no harm twice is sent again, and the rest after it; after
+  /// anything else it looks whether the axis obeys, and only if it does not, sends the same absolute target once more:
+  /// an absolute move that did arrive is not repeated by that.
   void start_move(const MoveRecord& move, const MotionLimits& limits, const AxisSample& before,
                   const SettleCriterion& criterion, const std::stop_token& stop) {
     const auto before_target = target_;
+    const auto moves = [&](const AxisSample& sample) { return obeys(sample, move, before, criterion); };
+    bool resumes = false;
+    bool has_begun = false;
     for (int attempt = 1;; ++attempt) {
       CommandResult result;
-      poller_.pause([&] { result = port_->move(move.target_counts, limits, stop); });
+      poller_.pause([&] { result = resumes ? port_->resume(stop) : port_->move(move.target_counts, limits, stop); });
       target_ = move.target_counts.value;
       if (result.outcome == CommandOutcome::kDone) return;
       const bool refused = result.outcome == CommandOutcome::kRefused;
-      if (refused && port_->remembered_target() != target_) target_ = before_target;
+      if (refused && has_begun) return spdlog::warn("the start of a move could not be completed: {}", result.error);
+      if (refused && port_->remembered_target(stop) != target_) target_ = before_target;
       require_wanted(stop);
       if (refused) {
         require_sound(poller_.sample_after(HostClock::now(), stop), false);  // which says why, if the drive does
@@ -314,27 +310,24 @@ class AxisController final : public Axis {
                     "the drive at " + traits_.address + " refused the move: " + result.error);
       }
       spdlog::warn("no answer to a move to {} um: {}", move.target.value, result.error);
-      if (has_begun(move, before, criterion, stop)) {
-        const CommandResult rest = port_->complete_move(stop);
-        if (rest.outcome != CommandOutcome::kDone) {
-          spdlog::warn("the start of a move could not be completed: {}", rest.error);
-        }
-        return;
-      }
-      if (attempt >= (result.later ? kBusyAttempts : 2)) {
+      const bool begins = !result.repeatable && seen_to(moves, stop);
+      has_begun = has_begun || begins;
+      resumes = result.repeatable || begins;
+      if (attempt >= (result.later || begins ? kBusyAttempts : 2)) {
         throw Error(ErrorCode::kStageDisconnected,
                     "the drive at " + traits_.address + " answers no move command: " + result.error);
       }
     }
   }
 
-  bool has_begun(const MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
-                 const std::stop_token& stop) {
+  /// Looks whether the axis does so, for as long as it may take to begin.
+  template <typename Does>
+  bool seen_to(const Does& does, const std::stop_token& stop) {
     const HostTime started = HostClock::now();
     for (HostTime last = started;;) {
       const AxisSample sample = poller_.sample_after(last, stop);
       last = sample.begun;
-      if (obeys(sample, move, before, criterion)) return true;
+      if (does(sample)) return true;
       if (sample.time - started > traits_.start_within) return false;
     }
   }
@@ -344,10 +337,9 @@ class AxisController final : public Axis {
     require_no_alarm(*port_, sample);
     require_off_limits(traits_, sample);
     require_enabled(sample);
-    if (begun && sample.target) require_reference(sample);
-    if (sample.homed) return require_sole_master(false);
-    throw Error(ErrorCode::kStageNotHomed, "the drive at " + traits_.address +
-                                               " lost its reference in the move, as after a power cut; home again");
+    if (begun && sample.target) require_reference(sample, {});
+    require_reference_kept(traits_, sample);
+    require_sole_master(false);
   }
 
   void settle(MoveRecord& move, const AxisSample& before, const SettleCriterion& criterion,
@@ -368,9 +360,7 @@ class AxisController final : public Axis {
         move.halted = sample.time;
       }
       if (!begun && sample.time - commanded > traits_.start_within) {
-        throw Error(ErrorCode::kStagePosition, "the drive at " + traits_.address + " took the move to " +
-                                                   std::to_string(move.target.value) +
-                                                   " um without a word and does not move: is it ready and enabled?");
+        throw_not_begun(traits_, move.target);
       }
       if (detector.add(sample.time, sample.position, !sample.moving && sample.in_position)) {
         move.position = sample.position;

@@ -74,7 +74,7 @@ void AxisPoller::run(const std::stop_token& stop) {
       const MutexLock polling(polling_);
       poll_once();
       read_temperatures();
-      look_for_others();
+      look_for_others(stop);
     }
     MutexLock lock(mutex_);
     const HostTime now = HostClock::now();
@@ -189,11 +189,11 @@ void AxisPoller::read_temperatures() {
   temperatures_ = std::move(read);
 }
 
-void AxisPoller::look_for_others() {
+void AxisPoller::look_for_others(const std::stop_token& stop) {
   const HostTime now = HostClock::now();
   if (!connected() || now - others_looked_for_ < kLookPeriod) return;
   others_looked_for_ = now;
-  auto found = port_.foreign_write();
+  auto found = port_.foreign_write(stop);
   if (!found) return;
   spdlog::warn("{} the drive at {}: {}", found->is_restart ? "a restart of" : "another master writes to",
                port_.traits().address, found->what);
@@ -202,11 +202,11 @@ void AxisPoller::look_for_others() {
   foreign_seen_ = now;
 }
 
-std::optional<ForeignWrite> AxisPoller::foreign_write(bool look) {
+std::optional<ForeignWrite> AxisPoller::foreign_write(bool look, const std::stop_token& stop) {
   if (look) {
     const MutexLock polling(polling_);
     others_looked_for_ = {};
-    look_for_others();
+    look_for_others(stop);
   }
   const MutexLock lock(mutex_);
   // A restart is over, and what it took is gone for good; a master may have gone away.

@@ -41,8 +41,9 @@ class AxisPoller {
   [[nodiscard]] PositionMean line(HostTime at, std::chrono::microseconds reach) const;
   [[nodiscard]] std::vector<StageTemperature> temperatures() const;
 
-  /// What another master wrote within the last ten seconds. look: looks now, too.
-  [[nodiscard]] std::optional<ForeignWrite> foreign_write(bool look);
+  /// What another master wrote within the last ten seconds. look: looks now, too; a stop request ends
+  /// the patience with a busy drive.
+  [[nodiscard]] std::optional<ForeignWrite> foreign_write(bool look, const std::stop_token& stop = {});
   void forget_foreign_write();
 
   /// Runs the action between two samples: on a slow line they would come between the frames of a start.
@@ -64,7 +65,7 @@ class AxisPoller {
   bool lose(const std::string& error);
   void stop_lost_axis() noexcept;
   void read_temperatures() FVD_REQUIRES(polling_);
-  void look_for_others() FVD_REQUIRES(polling_);
+  void look_for_others(const std::stop_token& stop) FVD_REQUIRES(polling_);
   [[nodiscard]] bool far_outside(const AxisSample& sample) const;
 
   AxisPort& port_;

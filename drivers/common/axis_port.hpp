@@ -25,8 +25,9 @@ enum class CommandOutcome {
 
 struct CommandResult {
   CommandOutcome outcome = CommandOutcome::kDone;
-  std::string error;   ///< empty if kDone
-  bool later = false;  ///< of kUnknown: the controller was busy; the line is sound
+  std::string error;        ///< empty if kDone
+  bool later = false;       ///< of kUnknown: the controller was busy; the line is sound
+  bool repeatable = false;  ///< of kUnknown: what was not answered does no harm twice; resume() is right without a look
 };
 
 /// What is known of the controller and its axis once the port is open.
@@ -69,8 +70,8 @@ class AxisPort {
   [[nodiscard]] virtual std::optional<AxisSample> sample(std::string& error) = 0;
 
   /// What the controller says otherwise than it must, read without moving or writing anything; asked before the first
-  /// motion. Throws Error kStageDisconnected.
-  [[nodiscard]] virtual std::vector<std::string> disagreements() { return {}; }
+  /// motion. Throws Error kStageDisconnected, kAborted.
+  [[nodiscard]] virtual std::vector<std::string> disagreements(std::stop_token /*stop*/) { return {}; }
 
   /// Settings, before the first motion and whenever the axis has to be enabled; torque stays as it is. The axis rests.
   [[nodiscard]] virtual CommandResult prepare(const MotionLimits& /*limits*/, std::stop_token /*stop*/) { return {}; }
@@ -84,18 +85,20 @@ class AxisPort {
   /// Starts an absolute move; not repeated by the port where that could start a second motion.
   [[nodiscard]] virtual CommandResult move(StageCounts target, const MotionLimits& limits, std::stop_token stop) = 0;
 
-  /// The rest of a start that had no usable answer although the axis obeyed, for controllers that start on an edge.
-  [[nodiscard]] virtual CommandResult complete_move(std::stop_token /*stop*/) { return {}; }
+  /// The rest of a move or a homing that had no usable answer: from what was not answered on, which is sent again where
+  /// that does no harm, and left out where not. Only for an axis that obeys, or after a `repeatable` result.
+  [[nodiscard]] virtual CommandResult resume(std::stop_token /*stop*/) { return {}; }
 
   /// Halts the axis ahead of all else that waits for the line; sent once.
   [[nodiscard]] virtual CommandResult stop() = 0;
 
-  /// What another master wrote since the last look; each time it is told once. Nothing where that cannot be seen.
-  [[nodiscard]] virtual std::optional<ForeignWrite> foreign_write() { return std::nullopt; }
+  /// What another master wrote since the last look; each time it is told once. Nothing where that cannot be seen. A
+  /// stop request ends the patience with a busy controller, here and below.
+  [[nodiscard]] virtual std::optional<ForeignWrite> foreign_write(std::stop_token /*stop*/) { return std::nullopt; }
 
   /// The target of the last move as the controller remembers it, steps; for controllers that do not tell whether they
   /// are homed. Nothing if it cannot be read.
-  [[nodiscard]] virtual std::optional<std::int64_t> remembered_target() { return std::nullopt; }
+  [[nodiscard]] virtual std::optional<std::int64_t> remembered_target(std::stop_token /*stop*/) { return std::nullopt; }
 
   /// "alarm 0x30: overload".
   [[nodiscard]] virtual std::string alarm_text(int code) const = 0;

@@ -11,6 +11,9 @@ namespace fvd {
 
 namespace {
 
+/// A position is not waited for any longer.
+constexpr std::chrono::milliseconds kLongestLookAhead{2000};
+
 void require_no_emergency_stop(const AxisPort& port, const AxisSample& sample) {
   if (!sample.emergency_stop) return;
   throw Error(ErrorCode::kStageAlarm, "the emergency stop of the drive at " + port.traits().address +
@@ -91,9 +94,9 @@ void require_wanted(const std::stop_token& stop) {
   if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the axis was asked to stop");
 }
 
-void require_agreement(AxisPort& port) {
+void require_agreement(AxisPort& port, const std::stop_token& stop) {
   std::string all;
-  for (const std::string& one : port.disagreements()) all += (all.empty() ? "" : "; ") + one;
+  for (const std::string& one : port.disagreements(stop)) all += (all.empty() ? "" : "; ") + one;
   if (all.empty()) return;
   throw Error(ErrorCode::kBadConfig, "the drive at " + port.traits().address + " disagrees with its profile '" +
                                          port.traits().name + "': " + all +
@@ -109,7 +112,27 @@ void throw_forgotten(const AxisTraits& traits, const std::string& what) {
 void throw_foreign(const AxisTraits& traits, const ForeignWrite& foreign) {
   if (foreign.is_restart) throw_forgotten(traits, " (" + foreign.what + ")");
   throw Error(ErrorCode::kStageTaken, "another master writes to the drive at " + traits.address + ": " + foreign.what +
-                                          "; fvd moves nothing: end that program, see to the part, then home");
+                                          "; fvd moves nothing: end that program and see to the part, then " +
+                                          (traits.tells_homed ? "wait ten seconds" : "home after ten seconds"));
+}
+
+bool may_be_anothers_doing(ErrorCode code) {
+  return code == ErrorCode::kStagePosition || code == ErrorCode::kTimeout || code == ErrorCode::kStageAlarm ||
+         code == ErrorCode::kStageNotHomed;
+}
+
+void throw_not_begun(const AxisTraits& traits, Micrometers target) {
+  throw Error(ErrorCode::kStagePosition, "the drive at " + traits.address + " took the move to " +
+                                             std::to_string(target.value) +
+                                             " um without a word and does not move: is it ready and enabled?");
+}
+
+void require_near(const AxisTraits& traits, HostTime time) {
+  const auto ahead = std::chrono::duration_cast<std::chrono::milliseconds>(time - HostClock::now());
+  if (ahead <= kLongestLookAhead) return;
+  throw Error(ErrorCode::kCameraFramesLost, "the position of the axis at " + traits.address +
+                                                " was asked for at a time " + std::to_string(ahead.count()) +
+                                                " ms ahead; is the camera's clock right?");
 }
 
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings) {
@@ -160,6 +183,17 @@ void require_no_alarm(const AxisPort& port, const AxisSample& sample) {
                                             port.alarm_text(sample.alarm_code) +
                                             "; clear the cause, then reset the alarm");
   }
+}
+
+void require_homed(const AxisTraits& traits, const AxisSample& sample) {
+  if (sample.homed) return;
+  throw Error(ErrorCode::kStageNotHomed, "no absolute move of " + traits.address + " before it is homed");
+}
+
+void require_reference_kept(const AxisTraits& traits, const AxisSample& sample) {
+  if (sample.homed) return;
+  throw Error(ErrorCode::kStageNotHomed,
+              "the drive at " + traits.address + " lost its reference in the move, as after a power cut; home again");
 }
 
 void require_off_limits(const AxisTraits& traits, const AxisSample& sample) {

@@ -2,6 +2,7 @@
 
 /// What must hold before and while an axis moves; each check throws an Error that says what to do.
 
+#include "core/base/error.hpp"
 #include "drivers/common/axis_port.hpp"
 
 namespace fvd {
@@ -32,12 +33,20 @@ struct AxisSettings {
 
 /// Throws Error kAborted if a stop was requested: nothing begins to move for a caller that does not want it any more.
 void require_wanted(const std::stop_token& stop);
-/// Throws Error kBadConfig if the controller is not what the port takes it for, with every reason.
-void require_agreement(AxisPort& port);
+/// Throws Error kBadConfig if the controller is not what the port takes it for, with every reason, and as
+/// AxisPort::disagreements() does.
+void require_agreement(AxisPort& port, const std::stop_token& stop);
 /// Throws Error kStageNotHomed. what: an addition, empty or with a space before it.
 [[noreturn]] void throw_forgotten(const AxisTraits& traits, const std::string& what);
 /// Throws Error kStageTaken, or as throw_forgotten() for a restart.
 [[noreturn]] void throw_foreign(const AxisTraits& traits, const ForeignWrite& foreign);
+/// The error is one that another master can bring about: an axis that he sent elsewhere or disabled, a target of his.
+[[nodiscard]] bool may_be_anothers_doing(ErrorCode code);
+/// Throws Error kStagePosition: the controller said yes to the move, and nothing came of it.
+[[noreturn]] void throw_not_begun(const AxisTraits& traits, Micrometers target);
+/// Throws Error kCameraFramesLost for a time more than two seconds ahead: times of exposures are told by the camera's
+/// clock, and nobody can end a wait for them.
+void require_near(const AxisTraits& traits, HostTime time);
 /// Throws Error kStageLimit if the configured limits reach beyond the controller's own.
 void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings);
 /// Throws Error kStageLimit if the target is beyond the controller's counter.
@@ -51,6 +60,9 @@ void require_sweep_speed(const AxisSettings& settings, double speed_um_per_s);
 void require_homing_possible(const AxisPort& port, const AxisSample& sample);
 /// Throws Error kStageAlarm for an alarm or an emergency stop.
 void require_no_alarm(const AxisPort& port, const AxisSample& sample);
+/// Throws Error kStageNotHomed before a move of an axis without a reference, and in one that lost it.
+void require_homed(const AxisTraits& traits, const AxisSample& sample);
+void require_reference_kept(const AxisTraits& traits, const AxisSample& sample);
 /// Throws Error kStageLimit on a limit switch.
 void require_off_limits(const AxisTraits& traits, const AxisSample& sample);
 /// Throws Error kStagePosition (refused) or kStageDisconnected (no answer) for a command that was not done.

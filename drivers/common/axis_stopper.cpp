@@ -26,7 +26,7 @@ AxisStopper::AxisStopper(AxisPort& port, AxisPoller& poller, const MotionLimits&
 std::string AxisStopper::send() noexcept {
   try {
     CommandResult result;
-    for (int attempt = 0; attempt < kStopAttempts; ++attempt) {
+    for (int attempt = 0; attempt < kStopAttempts && !result.later; ++attempt) {
       result = port_.stop();
       if (result.outcome == CommandOutcome::kDone) return {};
     }

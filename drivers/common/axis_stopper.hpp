@@ -17,7 +17,8 @@ class AxisStopper {
   /// limits: of all moves; they tell how long the axis brakes. Port and poller outlive the stopper.
   AxisStopper(AxisPort& port, AxisPoller& poller, const MotionLimits& limits);
 
-  /// Sends the stop up to three times, until the controller has taken it. Empty, or why it was not taken.
+  /// Sends the stop up to three times, until the controller has taken it; to one that was busy for as long as it
+  /// may be, once. Empty, or why it was not taken.
   std::string send() noexcept;
 
   /// Sends the stop and waits for the standstill, two seconds longer than braking takes at most. Empty when the

@@ -5,9 +5,12 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <netdb.h>
+#include <spdlog/spdlog.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -22,9 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr mode_t kEverybodysFolder = 01777;  // as /tmp
+constexpr const char* kOwnParent = "/tmp";   // where there is no /run/lock
 constexpr mode_t kEverybodysFile = 0666;     // each holder writes its name into it, whoever made it
 
-/// Of several names of a host the lock must be the same.
+/// Of several names of a host the lock must be the same, in whichever order its addresses come: the first of those of
+/// version 4, or of the others where it has none.
 std::string numeric_address(const std::string& host) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
@@ -34,11 +39,14 @@ std::string numeric_address(const std::string& host) {
                 "the drive's host '" + host + "' has no address: " + ::gai_strerror(failure) + "; see /stage/address");
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
-  std::array<char, NI_MAXHOST> text{};
-  if (::getnameinfo(found->ai_addr, found->ai_addrlen, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0) {
-    return host;
+  std::vector<std::pair<bool, std::string>> addresses;
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    std::array<char, NI_MAXHOST> text{};
+    if (::getnameinfo(one->ai_addr, one->ai_addrlen, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0)
+      continue;
+    addresses.emplace_back(one->ai_family != AF_INET, text.data());
   }
-  return text.data();
+  return addresses.empty() ? host : std::min_element(addresses.begin(), addresses.end())->second;
 }
 
 bool is_plain(char c) {
@@ -75,11 +83,13 @@ void sign(int file) {
 }
 
 /// A file that is there is opened without O_CREAT, which the kernel refuses in everybody's folder for files of others.
+/// One that may not be written to, as another user left it, is locked all the same, and keeps its signature.
 int open_lock(const fs::path& path) {
-  constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
-  int file = ::open(path.c_str(), kFlags);
+  constexpr int kFlags = O_CLOEXEC | O_NOFOLLOW;
+  int file = ::open(path.c_str(), kFlags | O_RDWR);
+  if (file < 0 && errno == EACCES) file = ::open(path.c_str(), kFlags | O_RDONLY);
   if (file >= 0 || errno != ENOENT) return file;
-  file = ::open(path.c_str(), kFlags | O_CREAT | O_EXCL, kEverybodysFile);
+  file = ::open(path.c_str(), kFlags | O_RDWR | O_CREAT | O_EXCL, kEverybodysFile);
   if (file < 0) return errno == EEXIST ? open_lock(path) : file;
   (void)::fchmod(file, kEverybodysFile);  // whatever the umask took away
   return file;
@@ -96,7 +106,7 @@ bool is_at(int file, const fs::path& path) {
 
 fs::path drive_lock_folder() {
   std::error_code error;
-  return fs::is_directory("/run/lock", error) ? "/run/lock/fvd" : "/tmp/fvd-lock";
+  return fs::is_directory("/run/lock", error) ? fs::path("/run/lock/fvd") : fs::path(kOwnParent) / "fvd-lock";
 }
 
 std::string drive_lock_name(const StageConfig& config) {
@@ -117,6 +127,10 @@ std::string drive_lock_name(const StageConfig& config) {
 DriveLock::DriveLock(const StageConfig& config) {
   const fs::path folder = drive_lock_folder();
   if (::mkdir(folder.c_str(), kEverybodysFolder) == 0) (void)::chmod(folder.c_str(), kEverybodysFolder);
+  if (folder.parent_path() == kOwnParent) {
+    spdlog::warn("without /run/lock the drive's lock is in {}, which a service with a /tmp of its own does not see",
+                 folder.string());
+  }
   path_ = folder / drive_lock_name(config);
   // A file that its holder has just taken away locks nothing: the next one is taken.
   do {
@@ -134,10 +148,9 @@ DriveLock::~DriveLock() {
 }
 
 void DriveLock::refuse_file() const {
-  throw Error(ErrorCode::kBadConfig, "the drive's lock file " + path_.string() +
-                                         " cannot be opened: " + std::strerror(errno) +
-                                         "; without it two programs might move one axis: let fvd write to " +
-                                         drive_lock_folder().parent_path().string());
+  throw Error(ErrorCode::kBadConfig, "the drive's lock file " + path_.string() + " cannot be opened: " +
+                                         std::strerror(errno) + "; without it two programs might move one axis: give " +
+                                         drive_lock_folder().string() + " the mode 1777, and the file 0666");
 }
 
 void DriveLock::refuse_drive(int failure) const {

@@ -10,7 +10,8 @@
 
 namespace fvd {
 
-/// The folder of all processes of this machine: it depends on the machine and not on who asks.
+/// The folder of all processes of this machine: it depends on the machine and not on who asks, but for one without
+/// /run/lock, where it is in /tmp and the log warns.
 [[nodiscard]] std::filesystem::path drive_lock_folder();
 
 /// Name of the drive's lock file: of its serial port by its real path, or of its address, port and unit (GCS: axis).
@@ -22,7 +23,8 @@ namespace fvd {
 class DriveLock {
  public:
   /// Throws Error kStageTaken naming process and program that hold the lock, kBadConfig if there can be no lock file,
-  /// and as drive_lock_name() does. Waits for nothing.
+  /// and as drive_lock_name() does. Waits for no holder, only for the
+  /// address of a host that is named.
   explicit DriveLock(const StageConfig& config);
   ~DriveLock();
   DriveLock(const DriveLock&) = delete;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "core/base/error.hpp"
 
@@ -78,7 +79,8 @@ std::int64_t with_exchanged_words(const DriveRegister& reg, std::int64_t value) 
 
 class Checker {
  public:
-  Checker(const DriveProfile& profile, ModbusLink& link) : profile_(profile), link_(link) {}
+  Checker(const DriveProfile& profile, ModbusLink& link, std::stop_token stop)
+      : profile_(profile), link_(link), stop_(std::move(stop)) {}
 
   DriveCheck run() {
     read_registers();
@@ -90,10 +92,16 @@ class Checker {
   }
 
  private:
+  ModbusReply read(ModbusTable table, int address, int count) {
+    ModbusReply reply = link_.read(table, address, count, ModbusPriority::kNormal, stop_);
+    if (stop_.stop_requested()) throw Error(ErrorCode::kAborted, "the check of the drive was asked to stop");
+    return reply;
+  }
+
   void read_registers() {
     bool answered = false;
     for (const auto& [name, reg] : registers_of(profile_)) {
-      const ModbusReply reply = link_.read(reg.table, reg.address, reg.words());
+      const ModbusReply reply = read(reg.table, reg.address, reg.words());
       DriveCheck::Register entry{name, reg.address, std::nullopt, reply.error};
       if (reply.outcome == ModbusOutcome::kOk) {
         entry.value = decode(reg, reply.values.data());
@@ -117,7 +125,7 @@ class Checker {
   /// One by one a register may be readable and in a block not: drives refuse blocks with holes.
   void read_blocks() {
     for (const PollBlock& block : profile_.poll) {
-      const ModbusReply reply = link_.read(block.table, block.address, block.count);
+      const ModbusReply reply = read(block.table, block.address, block.count);
       if (reply.outcome == ModbusOutcome::kOk) continue;
       check_.disagreements.push_back("the poll block of " + std::to_string(block.count) + " registers at " +
                                      std::to_string(block.address) + " cannot be read: " + reply.error);
@@ -169,11 +177,12 @@ class Checker {
           values_.contains(profile_.alarm_code.name) ? values_.at(profile_.alarm_code.name) : std::int64_t{0});
       check_.alarm = alarm_text(profile_, code);
       if (alarms_of(profile_, code).empty()) {
-        check_.disagreements.push_back("the profile has no text for " + check_.alarm);
+        check_.doubts.push_back("the profile has no text for " + check_.alarm);
       }
     } else if (values_.contains(profile_.alarm_code.name) && values_.at(profile_.alarm_code.name) != 0) {
-      check_.disagreements.push_back("an alarm code of " + std::to_string(values_.at(profile_.alarm_code.name)) +
-                                     " without the alarm bit: is the mask of /status/alarm right?");
+      // Many drives keep the code of their last alarm after its reset.
+      check_.doubts.push_back("an alarm code of " + std::to_string(values_.at(profile_.alarm_code.name)) +
+                              " without the alarm bit: is the mask of /status/alarm right?");
     }
     if (is(profile_.moving) && is(profile_.in_position)) {
       check_.disagreements.push_back("moving and in position at once: is one of the masks inverted?");
@@ -229,12 +238,15 @@ class Checker {
 
   const DriveProfile& profile_;
   ModbusLink& link_;
+  const std::stop_token stop_;
   DriveCheck check_;
   std::map<std::string, std::int64_t> values_;  // of the registers that could be read
 };
 
 }  // namespace
 
-DriveCheck check_drive(const DriveProfile& profile, ModbusLink& link) { return Checker(profile, link).run(); }
+DriveCheck check_drive(const DriveProfile& profile, ModbusLink& link, std::stop_token stop) {
+  return Checker(profile, link, std::move(stop)).run();
+}
 
 }  // namespace fvd

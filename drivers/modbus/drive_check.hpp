@@ -3,6 +3,7 @@
 /// Does a drive say what its profile expects? Reads only: nothing is enabled, reset or moved.
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,12 @@ struct DriveCheck {
   std::string alarm;  ///< empty without one; whether there is one, the statement "alarm" of status tells
   std::vector<StageTemperature> temperatures;
   std::vector<std::string> disagreements;  ///< what the drive says otherwise than the profile; empty = it fits
+  std::vector<std::string> doubts;         ///< to look at; they keep nothing from moving
   ModbusLinkStats link;
 };
 
-/// Throws Error kStageDisconnected if nothing answers at all. context: blocks for some dozen transactions.
-[[nodiscard]] DriveCheck check_drive(const DriveProfile& profile, ModbusLink& link);
+/// Throws Error kStageDisconnected if nothing answers at all, kAborted after a stop request. context: blocks for some
+/// dozen transactions.
+[[nodiscard]] DriveCheck check_drive(const DriveProfile& profile, ModbusLink& link, std::stop_token stop = {});
 
 }  // namespace fvd

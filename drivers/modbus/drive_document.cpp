@@ -97,11 +97,13 @@ void describe_step(StepDocument& step, Fields& fields) {
       inner.list(key, step.values, {1, kMaxFrameRegisters}, meaning, describe_value, {"", true});
     };
   };
-  const Shape write{"write", [&](Fields& inner) {
-                      values("write", "[register, value], ...: registers that follow each other, one frame")(inner);
-                      inner.boolean("repeatable", step.repeatable,
-                                    "it does no harm twice and is sent until it is answered, three times at most");
-                    }};
+  const Shape write{
+      "write", [&](Fields& inner) {
+        values("write", "[register, value], ...: registers that follow each other, one frame")(inner);
+        inner.boolean(
+            "repeatable", step.repeatable,
+            "it does no harm twice: sent again while the drive is busy, and twice more where no answer comes");
+      }};
   const Shape pulse{"pulse", [&](Fields& inner) {
                       inner.group("pulse", "sets bits, holds them, clears them", [&](Fields& in) {
                         required_name(in, "register", step.reg, "that has the bits");

@@ -1,6 +1,6 @@
 #include "drivers/modbus/drive_sequence.hpp"
 
-#include <sstream>
+#include <algorithm>
 #include <utility>
 
 #include "drivers/modbus/pause.hpp"
@@ -15,6 +15,17 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr int kRepeats = 3;                 // of a write that does no harm twice
 constexpr milliseconds kWaitPollPeriod{2};  // between two readings of a wait's condition
 
+bool does_no_harm_twice(const DriveStep& step) {
+  if (const auto* write = std::get_if<WriteStep>(&step)) return write->repeatable;
+  if (std::holds_alternative<PulseStep>(step)) return false;  // its bits were cleared: the next edge counts
+  const auto* branch = std::get_if<std::shared_ptr<const BranchStep>>(&step);
+  if (branch == nullptr) return true;
+  const auto all = [](const DriveSequence& steps) {
+    return std::all_of(steps.begin(), steps.end(), does_no_harm_twice);
+  };
+  return all((*branch)->then) && all((*branch)->otherwise);
+}
+
 class Runner {
  public:
   Runner(ModbusLink& link, const DriveValues& values, ModbusPriority priority, std::stop_token stop)
@@ -23,8 +34,10 @@ class Runner {
   SequenceResult run(const DriveSequence& sequence, std::size_t first = 0) {
     for (std::size_t i = first; i < sequence.size(); ++i) {
       SequenceResult result = std::visit([this](const auto& s) { return run_step(s); }, sequence[i]);
+      if (result.outcome == ModbusOutcome::kOk) continue;
       result.step = i;
-      if (result.outcome != ModbusOutcome::kOk) return result;
+      result.repeatable = does_no_harm_twice(sequence[i]);
+      return result;
     }
     return {};
   }
@@ -72,25 +85,27 @@ class Runner {
     return ended(reply, "write of " + first.name);
   }
 
-  SequenceResult change(const DriveRegister& reg, std::uint32_t set, std::uint32_t clear) {
-    const std::string what = "change of " + reg.name;
-    const ModbusReply read = link_.read(reg.table, reg.address, reg.words(), priority_, stop_);
-    if (read.outcome != ModbusOutcome::kOk) return ended(read, what);
-    const auto now = static_cast<std::uint32_t>(decode(reg, read.values.data()));
-    const auto words = encode(reg, std::int64_t{(now & ~clear) | set});
-    // Bits that are set already make no second edge.
-    return ended(link_.write(reg.table, reg.address, words, priority_, {reg.write_single, true}), what);
+  /// Bits that are set already make no second edge. What others change meanwhile stays: each attempt reads anew.
+  SequenceResult change(const DriveRegister& reg, std::uint32_t set, std::uint32_t clear, const std::stop_token& stop) {
+    const auto once = [&] {
+      ModbusReply reply = link_.read(reg.table, reg.address, reg.words(), priority_, stop);
+      if (reply.outcome != ModbusOutcome::kOk) return reply;
+      const auto now = static_cast<std::uint32_t>(decode(reg, reply.values.data()));
+      const auto words = encode(reg, std::int64_t{(now & ~clear) | set});
+      return link_.write(reg.table, reg.address, words, priority_, {.single = reg.write_single});
+    };
+    return ended(link_.patiently(once, stop), "change of " + reg.name);
   }
 
-  SequenceResult run_step(const ModifyStep& step) { return change(step.reg, step.set, step.clear); }
+  SequenceResult run_step(const ModifyStep& step) { return change(step.reg, step.set, step.clear, stop_); }
 
   SequenceResult run_step(const PulseStep& step) {
-    SequenceResult result = change(step.reg, step.mask, 0);
+    SequenceResult result = change(step.reg, step.mask, 0, stop_);
     // Without an answer the drive may have set the bit, and an edge that stays set makes the next one none.
-    if (result.outcome == ModbusOutcome::kUnknown) (void)change(step.reg, 0, step.mask);
+    if (result.outcome == ModbusOutcome::kUnknown) (void)change(step.reg, 0, step.mask, {});
     if (result.outcome != ModbusOutcome::kOk) return result;
     const bool on = pause(step.on, stop_);
-    result = change(step.reg, 0, step.mask);  // a stop request leaves no bit set
+    result = change(step.reg, 0, step.mask, {});  // a stop request leaves no bit set
     if (result.outcome != ModbusOutcome::kOk) return result;
     return on && pause(step.off, stop_) ? SequenceResult{} : interrupted("pulse of " + step.reg.name);
   }
@@ -116,7 +131,7 @@ class Runner {
 
   SequenceResult run_step(const ExpectStep& step) {
     for (const RegisterWrite& expected : step.values) {
-      const auto value = read_register(link_, expected.reg, priority_);
+      const auto value = read_register(link_, expected.reg, priority_, stop_);
       if (!value) return {ModbusOutcome::kUnknown, "read of " + expected.reg.name + ": no answer", 0};
       if (*value != number(expected.value)) {
         return {ModbusOutcome::kRejected,
@@ -135,7 +150,7 @@ class Runner {
   }
 
   std::optional<bool> look(const DriveCondition& condition) {
-    return condition.holds([this](const DriveRegister& reg) { return read_register(link_, reg, priority_); });
+    return condition.holds([this](const DriveRegister& reg) { return read_register(link_, reg, priority_, stop_); });
   }
 
   static std::string names(const DriveCondition& condition) {
@@ -158,8 +173,8 @@ SequenceResult run_sequence(ModbusLink& link, const DriveSequence& sequence, con
 }
 
 std::optional<std::int64_t> read_register(ModbusLink& link, const DriveRegister& reg, ModbusPriority priority,
-                                          std::string* why) {
-  const ModbusReply reply = link.read(reg.table, reg.address, reg.words(), priority);
+                                          std::stop_token stop, std::string* why) {
+  const ModbusReply reply = link.read(reg.table, reg.address, reg.words(), priority, std::move(stop));
   if (reply.outcome != ModbusOutcome::kOk) {
     if (why != nullptr) *why = reply.error;
     return std::nullopt;

@@ -27,7 +27,7 @@ CommandResult command_result(const SequenceResult& result) {
     case ModbusOutcome::kUnknown:
       break;
   }
-  return {CommandOutcome::kUnknown, result.error, result.later};
+  return {CommandOutcome::kUnknown, result.error, result.later, result.repeatable};
 }
 
 /// The profile, counting the way that this machine's stage is built.
@@ -42,7 +42,7 @@ class ModbusPort final : public AxisPort {
  public:
   explicit ModbusPort(const StageConfig& config)
       : profile_(profile_for(config)),
-        own_writes_(profile_.watched, !profile_.homed),
+        own_writes_(profile_.watched),
         lock_(drive_lock_of(config)),
         link_(modbus_link_config(config)) {
     link_.observe_writes(
@@ -101,7 +101,9 @@ class ModbusPort final : public AxisPort {
     return sample;
   }
 
-  [[nodiscard]] std::vector<std::string> disagreements() override { return check_drive(profile_, link_).disagreements; }
+  [[nodiscard]] std::vector<std::string> disagreements(std::stop_token stop) override {
+    return check_drive(profile_, link_, std::move(stop)).disagreements;
+  }
 
   [[nodiscard]] CommandResult prepare(const MotionLimits& limits, std::stop_token stop) override {
     CommandResult result = run(profile_.prepare, values({}, limits), std::move(stop));
@@ -114,31 +116,38 @@ class ModbusPort final : public AxisPort {
   }
 
   [[nodiscard]] CommandResult home(const MotionLimits& limits, std::stop_token stop) override {
-    return run(profile_.home, values({}, limits), std::move(stop));
+    return begin(profile_.home, values({}, limits), std::move(stop));
   }
 
   [[nodiscard]] CommandResult move(StageCounts target, const MotionLimits& limits, std::stop_token stop) override {
-    move_ = values(target, limits);
-    const SequenceResult result =
-        run_sequence(link_, profile_.move_absolute, move_, ModbusPriority::kNormal, std::move(stop));
-    unanswered_step_ = result.step;
-    return command_result(result);
+    return begin(profile_.move_absolute, values(target, limits), std::move(stop));
   }
 
   /// Edges that were set are taken back.
-  [[nodiscard]] CommandResult complete_move(std::stop_token stop) override {
-    return command_result(run_sequence(link_, profile_.move_absolute, move_, ModbusPriority::kNormal, std::move(stop),
-                                       unanswered_step_ + 1));
+  [[nodiscard]] CommandResult resume(std::stop_token stop) override {
+    const SequenceResult result =
+        run_sequence(link_, *motion_, values_, ModbusPriority::kNormal, std::move(stop), resume_at_);
+    resume_at_ = result.step + (result.repeatable ? 0 : 1);
+    return command_result(result);
   }
 
   [[nodiscard]] CommandResult stop() override {
     return command_result(run_sequence(link_, profile_.stop, {}, ModbusPriority::kUrgent, {}));
   }
 
-  [[nodiscard]] std::optional<ForeignWrite> foreign_write() override { return own_writes_.foreign(link_); }
+  [[nodiscard]] std::optional<ForeignWrite> foreign_write(std::stop_token stop) override {
+    auto found = own_writes_.foreign(link_, stop);
+    if (!found || !found->is_restart || !profile_.homed) return found;
+    const auto lookup = [&](const DriveRegister& reg) {
+      return read_register(link_, reg, ModbusPriority::kNormal, stop);
+    };
+    found->is_restart = !profile_.homed->holds(lookup).value_or(false);  // a drive that says so forgets it, too
+    return found;
+  }
 
-  [[nodiscard]] std::optional<std::int64_t> remembered_target() override {
-    return profile_.target ? read_register(link_, *profile_.target) : std::nullopt;
+  [[nodiscard]] std::optional<std::int64_t> remembered_target(std::stop_token stop) override {
+    if (!profile_.target) return std::nullopt;
+    return read_register(link_, *profile_.target, ModbusPriority::kNormal, std::move(stop));
   }
 
   [[nodiscard]] std::string alarm_text(int code) const override { return fvd::alarm_text(profile_, code); }
@@ -154,17 +163,17 @@ class ModbusPort final : public AxisPort {
 
   [[nodiscard]] std::optional<StageLinkStats> link_stats() const override {
     const ModbusLinkStats stats = link_.stats();
-    return StageLinkStats{stats.transactions,
-                          stats.retries,
-                          stats.unknown,
-                          stats.rejected,
-                          stats.reconnects,
-                          stats.discarded_bytes,
-                          0,
-                          stats.later,
-                          stats.latency_p50_us,
-                          stats.latency_p99_us,
-                          stats.latency_max_us};
+    return StageLinkStats{.requests = stats.transactions,
+                          .retries = stats.retries,
+                          .unanswered = stats.unknown,
+                          .refused = stats.rejected,
+                          .reconnects = stats.reconnects,
+                          .discarded_bytes = stats.discarded_bytes,
+                          .implausible = 0,
+                          .put_off = stats.later,
+                          .latency_p50_us = stats.latency_p50_us,
+                          .latency_p99_us = stats.latency_p99_us,
+                          .latency_max_us = stats.latency_max_us};
   }
 
  private:
@@ -212,8 +221,8 @@ class ModbusPort final : public AxisPort {
   [[nodiscard]] std::optional<std::pair<Micrometers, Micrometers>> soft_limits() {
     if (!profile_.soft_limits) return std::nullopt;
     std::string why;
-    const auto positive = read_register(link_, profile_.soft_limits->positive, ModbusPriority::kNormal, &why);
-    const auto negative = read_register(link_, profile_.soft_limits->negative, ModbusPriority::kNormal, &why);
+    const auto positive = read_register(link_, profile_.soft_limits->positive, ModbusPriority::kNormal, {}, &why);
+    const auto negative = read_register(link_, profile_.soft_limits->negative, ModbusPriority::kNormal, {}, &why);
     if (!positive || !negative) {
       throw Error(ErrorCode::kStageDisconnected,
                   "the drive at " + link_.description() + " does not tell its limits of travel: " + why);
@@ -236,9 +245,9 @@ class ModbusPort final : public AxisPort {
         std::any_of(alarms.begin(), alarms.end(), [](const DriveAlarm& alarm) { return alarm.position_lost; });
   }
 
-  /// After the first enable: a drive that is being halted or identified is not to be stopped by silence in between.
+  /// Not before the settings: a drive that is being halted or identified is not to be stopped by silence in between.
   void arm_watchdog() {
-    if (!profile_.watchdog || watchdog_armed_) return;
+    if (!profile_.watchdog) return;
     const ModbusReply reply = write_watchdog(profile_.watchdog->armed);
     watchdog_armed_ = reply.outcome != ModbusOutcome::kRejected;
     if (reply.outcome != ModbusOutcome::kOk) spdlog::warn("the drive's watchdog could not be armed: {}", reply.error);
@@ -255,6 +264,13 @@ class ModbusPort final : public AxisPort {
             profile_.acceleration.value(limits.acceleration_um_per_s2)};
   }
 
+  CommandResult begin(const DriveSequence& sequence, const DriveValues& values, std::stop_token stop) {
+    motion_ = &sequence;
+    values_ = values;
+    resume_at_ = 0;
+    return resume(std::move(stop));
+  }
+
   CommandResult run(const DriveSequence& sequence, const DriveValues& values, std::stop_token stop) {
     return command_result(run_sequence(link_, sequence, values, ModbusPriority::kNormal, std::move(stop)));
   }
@@ -266,10 +282,11 @@ class ModbusPort final : public AxisPort {
   AxisTraits traits_;
   std::atomic<bool> answers_{true};
   std::atomic<bool> answered_once_{false};
-  std::atomic<bool> rests_{false};   // as of the last sample
-  bool watchdog_armed_ = false;      // the mover's thread only, as the two below
-  DriveValues move_;                 // the last that was sent
-  std::size_t unanswered_step_ = 0;  // of it
+  std::atomic<bool> rests_{false};         // as of the last sample
+  bool watchdog_armed_ = false;            // the mover's thread only, as the three below
+  const DriveSequence* motion_ = nullptr;  // the move or the homing that was begun last
+  DriveValues values_;                     // of it
+  std::size_t resume_at_ = 0;              // of its steps
 };
 
 }  // namespace

@@ -115,16 +115,23 @@ struct ModbusLink::Impl {
     transport.resynchronise([&] { return stop.stop_requested() || queue.has_urgent(); });
   }
 
-  /// In the thread of who asks: others' requests go on meanwhile.
-  ModbusReply ask(ModbusRequest what, int attempts, bool repeatable, ModbusPriority priority,
+  ModbusReply ask(const ModbusRequest& what, int attempts, bool repeatable, ModbusPriority priority,
                   const std::stop_token& stop) {
-    const auto begin = SteadyClock::now();
-    for (auto wait = kFirstPause;; wait = std::min(2 * wait, kLongestPause)) {
+    const auto once = [&] {
       QueuedRequest request;
       request.what = what;
       request.attempts_left = attempts;
-      ModbusReply reply = queue.submit(std::move(request), priority);
-      if (!reply.later || !repeatable) return reply;
+      return queue.submit(std::move(request), priority);
+    };
+    return repeatable ? patiently(once, stop) : once();
+  }
+
+  /// In the thread of who asks: others' requests go on meanwhile.
+  ModbusReply patiently(const std::function<ModbusReply()>& attempt, const std::stop_token& stop) {
+    const auto begin = SteadyClock::now();
+    for (auto wait = kFirstPause;; wait = std::min(2 * wait, kLongestPause)) {
+      ModbusReply reply = attempt();
+      if (!reply.later) return reply;
       if (SteadyClock::now() + wait > begin + config.patience) {
         reply.error += ", for " + std::to_string(config.patience.count()) + " ms";
         return reply;
@@ -177,6 +184,10 @@ ModbusReply ModbusLink::write(ModbusTable table, int address, std::span<const st
   ModbusReply reply = impl_->ask(what, 1, how.repeatable, priority, stop);
   if (impl_->observer) impl_->observer(what, true, reply.outcome == ModbusOutcome::kOk);
   return reply;
+}
+
+ModbusReply ModbusLink::patiently(const std::function<ModbusReply()>& attempt, const std::stop_token& stop) {
+  return impl_->patiently(attempt, stop);
 }
 
 void ModbusLink::observe_writes(WriteObserver observer) { impl_->observer = std::move(observer); }

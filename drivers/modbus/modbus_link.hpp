@@ -62,6 +62,10 @@ class ModbusLink {
                                   ModbusPriority priority = ModbusPriority::kNormal, ModbusWriting how = {},
                                   std::stop_token stop = {});
 
+  /// Tries again, with growing pauses, for as long as the reply is "later" and the link's patience lasts. A stop
+  /// request ends the patience.
+  [[nodiscard]] ModbusReply patiently(const std::function<ModbusReply()>& attempt, const std::stop_token& stop);
+
   /// Before the first write; called on the writers' threads, and outlives the link.
   void observe_writes(WriteObserver observer);
 

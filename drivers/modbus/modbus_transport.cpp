@@ -51,6 +51,9 @@ constexpr std::size_t kUnitInTcpHeader = 6;
 /// A connection that ends this soon after an answer was ended because of it.
 constexpr std::chrono::seconds kSoonAfterAnswer{1};
 
+/// A connection that brings more of what nobody asked for is replaced.
+constexpr std::size_t kMostUnasked = 64 * std::size_t{1024};
+
 bool is_device_gone(int error) { return error == EIO || error == ENXIO || error == ENODEV || error == EBADF; }
 
 /// The latency timer of an FTDI adapter in ms, which holds short replies back; asks for 1. Empty for other ports.
@@ -166,10 +169,12 @@ bool ModbusTransport::ensure_connected(bool writes, bool& renewed, std::string& 
 /// was asked was answered.
 void ModbusTransport::discard_unasked() {
   std::array<std::uint8_t, 256> chunk{};
-  for (;;) {
+  for (std::size_t discarded = 0;;) {
     const auto count = ::recv(modbus_get_socket(context_.get()), chunk.data(), chunk.size(), MSG_DONTWAIT);
     if (count > 0) {
       discarded_ += static_cast<std::size_t>(count);
+      discarded += static_cast<std::size_t>(count);
+      if (discarded > kMostUnasked) return close();
       continue;
     }
     if (count < 0 && errno == EINTR) continue;
@@ -260,7 +265,8 @@ std::string ModbusTransport::doubt(Bytes frame, int count, Bytes sent, int code)
     constexpr std::uint8_t kLastRead = 4;
     const bool echoes = sent[0] <= kLastRead && frame[0] == config_.unit &&
                         std::equal(sent.begin(), sent.begin() + 4, frame.begin() + 1);
-    if (count < 0 && code == EMBBADCRC && echoes) {
+    // Taken for an answer, its address tells the length: with a large one more is waited for.
+    if (count < 0 && (code == EMBBADCRC || code == ETIMEDOUT) && echoes) {
       return "the line returns what is sent: switch off the local echo of the two-wire adapter";
     }
   }

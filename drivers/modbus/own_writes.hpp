@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,29 +18,26 @@ namespace fvd {
 /// context: thread-safe.
 class OwnWrites {
  public:
-  /// restart_reads_zero: a watched register that reads 0 tells of a restart, which the drive does not tell otherwise.
-  OwnWrites(std::vector<DriveRegister> watched, bool restart_reads_zero);
+  explicit OwnWrites(std::vector<DriveRegister> watched);
 
   /// As ModbusLink::observe_writes() wants it.
   void saw(const ModbusRequest& write, bool sent, bool done);
 
   /// Reads the watched registers. What of them fvd did not write, once per value; nothing at the first look, while a
-  /// write is on its way, and where a register cannot be read.
-  [[nodiscard]] std::optional<ForeignWrite> foreign(ModbusLink& link);
+  /// write is on its way, and unless all can be read. Where all that fvd knows of became 0 at once, the drive was
+  /// restarted. A stop request ends the patience with a busy drive.
+  [[nodiscard]] std::optional<ForeignWrite> foreign(ModbusLink& link, const std::stop_token& stop);
 
  private:
-  struct Watched {
-    DriveRegister reg;
-    std::vector<std::int64_t> possible;  ///< values of which one stands there; empty = not known yet
-  };
+  /// Values of which one stands in a register; empty = not known yet.
+  using Possible = std::vector<std::int64_t>;
 
   [[nodiscard]] std::optional<std::uint64_t> quiet_epoch() const;
-  [[nodiscard]] std::optional<ForeignWrite> judge(Watched& watched, std::int64_t value) const FVD_REQUIRES(mutex_);
+  [[nodiscard]] std::optional<ForeignWrite> judge(const std::vector<std::int64_t>& values) FVD_REQUIRES(mutex_);
 
-  const bool restart_reads_zero_;
   const std::vector<DriveRegister> registers_;
   mutable Mutex mutex_;
-  std::vector<Watched> watched_ FVD_GUARDED_BY(mutex_);
+  std::vector<Possible> possible_ FVD_GUARDED_BY(mutex_);  // of each register
   int on_their_way_ FVD_GUARDED_BY(mutex_) = 0;
   std::uint64_t epoch_ FVD_GUARDED_BY(mutex_) = 0;  // of writes
 };

@@ -23,6 +23,9 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return paths;
 }
 
+/// A gateway answers in place of units that are not there.
+bool is_of_gateway(const std::string& error) { return error == exception_text(0x0A) || error == exception_text(0x0B); }
+
 }  // namespace
 
 std::vector<std::string> serial_ports() {
@@ -62,7 +65,9 @@ std::vector<FoundUnit> scan_units(const UnitScan& scan, const std::function<void
     ModbusRequest request;
     request.read_count = 1;
     std::vector<std::uint16_t> values;
-    const auto answer = transport.transact(request, values, error);
+    auto answer = transport.transact(request, values, error);
+    if (answer == PduAnswer::kLater && !is_of_gateway(error)) answer = transport.transact(request, values, error);
+    if (answer == PduAnswer::kLater && is_of_gateway(error)) continue;
     if (answer == PduAnswer::kNone) {
       // The next unit must not be taken for this one, which may be late.
       transport.resynchronise([&stop] { return stop.stop_requested(); });

@@ -26,7 +26,8 @@ struct UnitScan {
   int last = 247;         ///< >= first
 };
 
-/// Asks unit by unit for holding register 0. A refusal is an answer too. Takes a response timeout for each unit that is
+/// Asks unit by unit for holding register 0. A refusal is an answer too, and so is "busy" to the question and its
+/// repetition; what a gateway answers in a unit's place is none. Takes a response timeout for each unit that is
 /// silent, on a serial line its quiet time as well. on_unit: called before each. Throws Error kBadConfig as check(),
 /// kBadInput for such a range, kStageDisconnected if the line cannot be opened, kAborted after a stop request.
 [[nodiscard]] std::vector<FoundUnit> scan_units(const UnitScan& scan, const std::function<void(int unit)>& on_unit,

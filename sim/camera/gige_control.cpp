@@ -86,7 +86,8 @@ GvcpReply GigeControl::answer(GvcpPeer peer, std::span<const std::uint8_t> packe
   const auto before = std::find_if(done_.begin(), done_.end(), [&](const Done& done) {
     return done.peer == peer && std::equal(done.packet.begin(), done.packet.end(), packet.begin(), packet.end());
   });
-  if (before != done_.end()) return {.acknowledge = before->acknowledge};
+  if (before != done_.end())
+    return before->due > HostClock::now() ? GvcpReply{} : GvcpReply{.acknowledge = before->acknowledge};
   if (code == static_cast<std::uint16_t>(Command::kPacketResend)) {
     resend(packet.subspan(gvcp::kHeaderBytes));
     return {};
@@ -107,6 +108,7 @@ GvcpReply GigeControl::answer(GvcpPeer peer, std::span<const std::uint8_t> packe
     const auto promised = fault->value != 0 ? fault->value : static_cast<int>(fault->delay.count());
     reply.pending = pending(request, promised);
     reply.delay = fault->delay;
+    done_.back().due = HostClock::now() + fault->delay;
     last_heard_ += fault->delay;  // a client that waits for the answer sends no heartbeat
   }
   const bool dropped = fault && fault->fault == CameraFault::kDropAck;

@@ -69,6 +69,7 @@ class GigeControl {
     GvcpPeer peer;
     Bytes packet;
     Bytes acknowledge;
+    HostTime due{};  // a repetition before then is not answered, as the command is still being executed
   };
 
   Bytes execute(GvcpPeer peer, std::span<const std::uint8_t> packet);

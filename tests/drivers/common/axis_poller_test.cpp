@@ -7,6 +7,7 @@
 #include <future>
 #include <stdexcept>
 
+#include "drivers/common/axis_stopper.hpp"
 #include "gtest/gtest.h"
 #include "tests/support/expect_error.hpp"
 
@@ -53,9 +54,10 @@ class ScriptedPort final : public AxisPort {
   [[nodiscard]] CommandResult stop() override {
     if (const AxisPoller* const seen = poller; seen != nullptr) connected_at_stop = seen->connected();
     ++stops;
+    if (busy) return {CommandOutcome::kUnknown, "exception 6: busy", true};
     return {};
   }
-  [[nodiscard]] std::optional<ForeignWrite> foreign_write() override {
+  [[nodiscard]] std::optional<ForeignWrite> foreign_write(std::stop_token /*stop*/) override {
     if (!another_writes.exchange(false)) return std::nullopt;
     return ForeignWrite{"'target' reads 7, and fvd wrote 5"};
   }
@@ -66,6 +68,7 @@ class ScriptedPort final : public AxisPort {
   double speed_um_per_s = 0.0;
   std::atomic<bool> moving{false};
   std::atomic<bool> another_writes{false};
+  std::atomic<bool> busy{false};
   std::atomic<int> stops{0};
   std::atomic<bool> connected_at_stop{true};
   std::atomic<AxisPoller*> poller{nullptr};
@@ -202,6 +205,15 @@ TEST(AxisPoller, TakesNoSampleInAPause) {
     expect_error(ErrorCode::kStageDisconnected, {}, [&] { (void)poller.sample_after(HostClock::now(), {}); });
     EXPECT_EQ(poller.latest().begun, before);
   });
+}
+
+TEST(AxisStopper, SendsNoSecondStopToADriveThatWasBusyForAsLongAsItMay) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0, kMin, kMax);
+  AxisStopper stopper(port, poller, {1000.0, 10000.0});
+  port.busy = true;
+  EXPECT_NE(stopper.send(), "");
+  EXPECT_EQ(port.stops, 1);
 }
 
 }  // namespace

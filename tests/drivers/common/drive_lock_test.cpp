@@ -71,6 +71,8 @@ TEST(ADriveLock, IsTheSameByEveryNameOfTheDrive) {
   one.address = "127.0.0.1";
   other.address = "127.1";
   EXPECT_EQ(drive_lock_name(one), drive_lock_name(other));
+  other.address = "localhost";
+  EXPECT_EQ(drive_lock_name(one), drive_lock_name(other)) << "also where ::1 comes first";
 
   const test::ScratchDir folder;
   std::filesystem::create_symlink("/dev/null", folder.path() / "by-id");

@@ -39,5 +39,14 @@ TEST(ADrivesWatchdog, StaysArmedFromTheOpeningOverEveryMoveAndIsDisarmedAtTheEnd
   EXPECT_EQ(timeout_ms(simulated.drive()), 0U);
 }
 
+TEST(ADrivesWatchdog, IsArmedAgainAfterTheDriveWasRestarted) {
+  test::SimulatedDrive simulated(kArDrive, test::Transport::kTcp);
+  const auto stage = simulated.open_homed();
+  simulated.drive().power_cycle();
+  ASSERT_EQ(timeout_ms(simulated.drive()), 0U);
+  stage->home({});
+  EXPECT_EQ(timeout_ms(simulated.drive()), 1000U);
+}
+
 }  // namespace
 }  // namespace fvd

@@ -10,6 +10,7 @@
 #include "drivers/modbus/drive_profile.hpp"
 #include "gtest/gtest.h"
 #include "tests/support/expect_error.hpp"
+#include "tests/support/gated_bank.hpp"
 #include "tests/support/simulated_drive.hpp"
 
 namespace fvd {
@@ -94,6 +95,26 @@ TEST(ADriveWithItsWordsInOrder, IsNotSuspected) {
     ModbusLink link(modbus_link_config(plant.config()));
     EXPECT_THAT(check_drive(profile, link).disagreements, testing::IsEmpty()) << drive;
   }
+}
+
+TEST(ADriveThatKeepsItsLastErrorCode, IsHomedAllTheSame) {
+  constexpr int kErrorCode = 5007;
+  test::SimulatedDrive plant(test::kDriveCases[4], test::Transport::kTcp);
+  test::GatedBank bank(plant.drive(), {}, [](int address, std::span<std::uint16_t> values) {
+    if (address == kErrorCode) values.front() = 0x2310;
+    return sim::ModbusException::kNone;
+  });
+  sim::FaultScript no_faults;
+  const test::SimulatedLine line(test::Transport::kTcp, bank, no_faults);
+  StageConfig config = plant.config();
+  config.port = std::get<ModbusTcpEndpoint>(line.config().endpoint).port;
+  {
+    ModbusLink link(modbus_link_config(config));
+    const DriveCheck check = check_drive(load_drive_profile(config.profile), link);
+    EXPECT_THAT(check.doubts, testing::ElementsAre(testing::HasSubstr("without the alarm bit")));
+    EXPECT_THAT(check.disagreements, testing::IsEmpty());
+  }
+  EXPECT_NO_THROW(open_modbus_stage(config)->home({}));
 }
 
 }  // namespace

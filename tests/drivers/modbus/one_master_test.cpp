@@ -1,6 +1,8 @@
 /// One master per drive: who comes second writes nothing, and a master on another machine is noticed.
 
+#include <array>
 #include <atomic>
+#include <functional>
 #include <thread>
 
 #include "gtest/gtest.h"
@@ -107,8 +109,75 @@ TEST_P(OneMaster, MistakesNothingOfItsOwnForAnothers) {
   }
 }
 
+TEST_P(OneMaster, FindsADriveThatWasRestartedNotHomedAndHomesIt) {
+  const auto stage = plant_.open_homed();
+  stage->move_to(Micrometers{10.0}, kCriterion, {});
+  plant_.drive().power_cycle();
+  expect_error(ErrorCode::kStageNotHomed, {}, [&] { stage->move_to(Micrometers{20.0}, kCriterion, {}); });
+  EXPECT_NO_THROW(stage->home({})) << "no other master has to go away first";
+  EXPECT_NEAR(stage->move_to(Micrometers{20.0}, kCriterion, {}).position.value, 20.0, 0.5);
+}
+
 INSTANTIATE_TEST_SUITE_P(With, OneMaster, testing::ValuesIn(test::kDriveCases),
                          [](const auto& on) { return testing::PrintToString(on.param); });
+
+constexpr test::DriveCase kAz = test::kDriveCases[0];
+constexpr test::DriveCase kScl = test::kDriveCases[3];
+constexpr test::DriveCase kCia402 = test::kDriveCases[4];
+constexpr int kCia402Controlword = 6000;
+constexpr int kSclOpcode = 124;
+
+void write_word(test::SimulatedDrive& plant, int address, std::uint16_t word) {
+  const std::array words{word};
+  EXPECT_EQ(plant.drive().write(address, words), sim::ModbusException::kNone);
+}
+
+TEST(AnotherMaster, ThatDisablesTheDriveIsNotOverridden) {
+  test::SimulatedDrive plant(kCia402, Transport::kTcp);
+  const auto stage = plant.open_homed();
+  stage->move_to(Micrometers{10.0}, kCriterion, {});
+  write_word(plant, kCia402Controlword, 0);
+  expect_error(ErrorCode::kStageTaken, {"controlword"}, [&] { stage->move_to(Micrometers{20.0}, kCriterion, {}); });
+  expect_error(ErrorCode::kStageTaken, {"controlword"}, [&] { stage->home({}); });
+  EXPECT_FALSE(stage->status().enabled);
+}
+
+TEST(AnotherMaster, ThatSendsAHomedAxisToZeroIsNoRestart) {
+  test::SimulatedDrive plant(kAz, Transport::kTcp);
+  const auto stage = plant.open_homed();
+  stage->move_to(Micrometers{10.0}, kCriterion, {});
+  ASSERT_TRUE(plant.write_target_as_another_master(0));
+  expect_error(ErrorCode::kStageTaken, {"another master"}, [&] { stage->move_to(Micrometers{20.0}, kCriterion, {}); });
+}
+
+/// What another master does while the axis is on a long way.
+void expect_taken_in_motion(const test::DriveCase& drive, const std::function<void(test::SimulatedDrive&)>& other) {
+  test::SimulatedDrive plant(drive, Transport::kTcp);
+  StageConfig config = plant.config();
+  config.speed_um_per_s = 200.0;
+  const auto stage = open_modbus_stage(config);
+  stage->home({});
+  const std::jthread thread([&] {
+    while (plant.axis().true_position_um(HostClock::now()) < 10.0) std::this_thread::yield();
+    other(plant);
+  });
+  expect_error(ErrorCode::kStageTaken, {"another master"},
+               [&] { stage->move_to(Micrometers{1000.0}, kCriterion, {}); });
+  EXPECT_FALSE(plant.axis().moving(HostClock::now()));
+}
+
+TEST(AnotherMaster, ThatDisablesAMovingAxisIsToldOfInPlaceOfAnAlarm) {
+  expect_taken_in_motion(kCia402, [](test::SimulatedDrive& plant) { write_word(plant, kCia402Controlword, 0); });
+}
+
+TEST(AnotherMaster, ThatStartsAMoveIsToldOfInPlaceOfALostReference) {
+  expect_taken_in_motion(kScl, [](test::SimulatedDrive& plant) {
+    write_word(plant, kSclOpcode, 0xE1);
+    while (plant.axis().moving(HostClock::now())) std::this_thread::yield();
+    EXPECT_TRUE(plant.write_target_as_another_master(77));
+    write_word(plant, kSclOpcode, 0x67);
+  });
+}
 
 }  // namespace
 }  // namespace fvd
