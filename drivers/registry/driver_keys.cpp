@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <utility>
 
 #include "core/base/error.hpp"
+#include "drivers/common/network_address.hpp"
 #include "drivers/common/text_line.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 #include "drivers/modbus/modbus_transport.hpp"
@@ -34,6 +36,12 @@ void check_baud(int baud, const int (&accepted)[kCount], Problems& problems) {
   problems.push_back({"/stage/serial_baud", std::to_string(baud) + " is not accepted; expected one of" + bauds});
 }
 
+void check_address(const char* pointer, const std::string& address, Problems& problems) {
+  if (std::string problem = why_no_device(address); !problem.empty()) {
+    problems.push_back({pointer, std::move(problem)});
+  }
+}
+
 /// transport: the word for the serial line of this protocol.
 template <std::size_t kCount>
 void check_line(const StageConfig& stage, const std::string& serial, const int (&bauds)[kCount], Problems& problems) {
@@ -41,6 +49,7 @@ void check_line(const StageConfig& stage, const std::string& serial, const int (
     if (stage.address.empty()) {
       problems.push_back({"/stage/address", "is empty; expected the drive's host or IP address"});
     }
+    check_address("/stage/address", stage.address, problems);
     return;
   }
   if (stage.transport != serial) {
@@ -140,6 +149,7 @@ void describe_replay(StageConfig& stage, Fields& fields) {
 }
 
 void check_aravis(const CameraConfig& camera, Problems& problems) {
+  check_address("/camera/address", camera.address, problems);
   if (!camera.address.empty()) return;
   problems.push_back({"/camera/address",
                       "is empty; expected the camera's IP address, serial number, MAC, user-defined "
