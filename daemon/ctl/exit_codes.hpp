@@ -13,10 +13,11 @@ inline constexpr int kExitVerdictUncertain = 3;  ///< their uncertainty lets nei
 inline constexpr int kExitVerdictInvalid = 4;    ///< a value with limits could not be measured
 inline constexpr int kExitUsage = 64;            ///< wrong arguments
 inline constexpr int kExitBadData = 65;          ///< a file, parameter, job or recipe that cannot be used
-inline constexpr int kExitUnavailable = 69;      ///< no daemon, camera or drive, no answer in time, or it takes no commands now
-inline constexpr int kExitInternal = 70;         ///< a bug on either side
-inline constexpr int kExitConfig = 78;           ///< `measure`, `stage stop`: recipe or configuration was refused
-inline constexpr int kExitIo = 74;               ///< a file could not be read or written
+inline constexpr int kExitUnavailable =
+    69;  ///< no daemon, camera or drive, no answer in time, or it takes no commands now
+inline constexpr int kExitInternal = 70;  ///< a bug on either side
+inline constexpr int kExitConfig = 78;    ///< `measure`, `stage stop`: recipe or configuration was refused
+inline constexpr int kExitIo = 74;        ///< a file could not be read or written
 
 /// The exit code for an Error of this code.
 [[nodiscard]] int exit_code(ErrorCode code) noexcept;
