@@ -10,6 +10,7 @@
 #include "daemon/base/version.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 #include "daemon/recipes/recipe_masks.hpp"
+#include "daemon/station_check.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 
 namespace fvd {
@@ -19,16 +20,22 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
   Options& options = parsed.options;
   CLI::App app("fvd: live focus-variation acquisition daemon", "fvd");
   app.set_version_flag("--version", std::string("fvd ") + kVersion);
-  app.add_option("--config", options.config_file, "configuration file")->capture_default_str()->type_name("FILE");
+  app.add_option("--config", options.config_file,
+                 "configuration file; what conf.d/*.json beside it says is merged into it")
+      ->capture_default_str()
+      ->type_name("FILE");
   app.add_option("--set", options.overrides, "put a value over the file's, e.g. rpc.port=0; may be repeated")
       ->type_name("GROUP.KEY=VALUE")
       ->allow_extra_args(false);
-  app.add_flag("--check-config", options.check_config,
-               "say every problem of the configuration on stderr and exit: 0 = none, 78 = some");
+  app.add_flag(
+      "--check-config", options.check_config,
+      "say every problem of the configuration, its drive profile, its recipes and its folders on stderr and exit: "
+      "0 = none, 78 = some");
   app.add_option("--check-recipe", options.check_recipe,
                  "say every problem of a recipe on stderr and exit: 0 = none, 78 = some")
       ->type_name("FILE");
-  app.add_flag("--dump-config", options.dump_config, "print the configuration in force as JSON and exit");
+  app.add_flag("--dump-config", options.dump_config,
+               "print the configuration in force as JSON, with the origin of every value, and exit");
   app.add_flag("--print-config-schema", options.print_config_schema, "print the configuration's JSON schema and exit");
   app.add_flag("--print-recipe-schema", options.print_recipe_schema, "print the recipes' JSON schema and exit");
   app.add_flag("--print-drive-schema", options.print_drive_schema, "print the drive profiles' JSON schema and exit");
@@ -74,7 +81,14 @@ StartUp start_up(const Options& options, std::ostream& out, std::ostream& err) {
     result.exit = exit_code::kConfig;
     return result;
   }
-  if (options.dump_config) out << config_text(loaded.config);
+  if (options.check_config) {
+    if (const Problems problems = check_station(loaded.config); !problems.empty()) {
+      err << to_text(problems, options.config_file.string()) << std::endl;
+      result.exit = exit_code::kConfig;
+      return result;
+    }
+  }
+  if (options.dump_config) out << config_text_with_origins(loaded);
   if (options.dump_config || options.check_config) result.exit = exit_code::kOk;
   result.config = std::move(loaded.config);
   return result;

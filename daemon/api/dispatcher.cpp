@@ -10,6 +10,7 @@
 #include "daemon/api/json_shapes.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/rpc_errors.hpp"
+#include "daemon/base/log_scope.hpp"
 
 namespace fvd {
 
@@ -174,6 +175,7 @@ Dispatcher::Outcome Dispatcher::run_method(const json& request, const json& id, 
     if (auto given_name = client->get<std::string>(); is_client_name(given_name)) caller.name = std::move(given_name);
   }
   const Call call{caller, name, params, !mode.in_batch && !is_notification};
+  const LogScope scope({.caller = caller.name});
   std::optional<Answer> answer;
   if (method.peek) answer = method.peek(call);
   if (!answer && !mode.may_block) return {.would_block = true};

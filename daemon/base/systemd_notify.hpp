@@ -12,6 +12,8 @@ namespace fvd {
 void notify_ready(const std::string& status);
 /// STATUS= alone.
 void notify_status(const std::string& status);
+/// RELOADING=1: the configuration is being read again; notify_ready() ends it.
+void notify_reloading();
 /// WATCHDOG=1: a sign of life.
 void notify_watchdog();
 /// STOPPING=1: the ordered stop has begun.

@@ -6,9 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include <arpa/inet.h>
-
 #include "daemon/config/config_file.hpp"
+#include "drivers/common/network_address.hpp"
 #include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
@@ -21,11 +20,6 @@ std::string text(double value) {
   std::ostringstream out;
   out << value;
   return out.str();
-}
-
-bool is_numeric_address(const std::string& address) {
-  in6_addr storage{};
-  return inet_pton(AF_INET, address.c_str(), &storage) == 1 || inet_pton(AF_INET6, address.c_str(), &storage) == 1;
 }
 
 /// Empty if the folder can be listed.
@@ -68,10 +62,8 @@ class ConfigCheck {
   }
 
   void check_rpc(const RpcConfig& rpc) {
-    report_if(!is_numeric_address(rpc.address), "/rpc/address", {},
-              "'" + rpc.address +
-                  "' is no numeric address; expected e.g. 127.0.0.1 for this machine only or 0.0.0.0 for every "
-                  "interface");
+    const std::string problem = why_no_listener(rpc.address);
+    report_if(!problem.empty(), "/rpc/address", {}, problem);
   }
 
   void check_travel(const StageConfig& stage) {

@@ -1,5 +1,8 @@
 #include "daemon/config/config_file.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include <nlohmann/json.hpp>
 
 #include "config/field_reader.hpp"
@@ -12,6 +15,8 @@ namespace fvd {
 namespace {
 
 using nlohmann::json;
+
+const std::filesystem::path kPartFolder = "conf.d";
 
 auto description_of(Config& config) {
   return [&config](Fields& fields) { describe(config, fields); };
@@ -43,16 +48,16 @@ void resolve(std::filesystem::path& path, const std::filesystem::path& base) {
   if (!path.empty() && path.is_relative()) path = (base / path).lexically_normal();
 }
 
-}  // namespace
-
-LoadedConfig parse_config(std::string_view json_text, const std::filesystem::path& base, const Overrides& overrides) {
-  LoadedConfig loaded;
-  auto document = parse_strict_json(json_text, loaded.problems);
-  if (!document) return loaded;
-  if (document->is_object()) {
-    for (const std::string& text : overrides) apply_override(*document, text, loaded.problems);
+/// From the merged documents to the structure.
+void read_merged(LoadedConfig& loaded, const std::filesystem::path& base, const Overrides& overrides) {
+  json document = loaded.origins.merged();
+  if (document.is_object()) {
+    for (const std::string& text : overrides) {
+      apply_override(document, text, loaded.problems);
+      loaded.origins.add_override(text.substr(0, text.find('=')));
+    }
   }
-  FieldReader reader(*document, loaded.problems);
+  FieldReader reader(document, loaded.problems);
   describe(loaded.config, reader);
   reader.finish();
   resolve(loaded.config.stage.profile, base);
@@ -60,22 +65,82 @@ LoadedConfig parse_config(std::string_view json_text, const std::filesystem::pat
   loaded.config.stage.replay_dir = loaded.config.camera.replay_dir;
   resolve(loaded.config.stage.replay_z_file, base);
   resolve(loaded.config.paths.recipe_dir, base);
+}
+
+/// The names of the files *.json in the folder beside the configuration file, in the order in which they are merged.
+std::vector<std::filesystem::path> part_files(const std::filesystem::path& folder, Problems& problems) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.ends_with(".json") && !name.starts_with('.')) files.push_back(entry->path());
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    problems.push_back({"", "cannot list folder '" + folder.string() + "': " + error.message()});
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Reads one file into the origins; a problem if that cannot be. name: as messages call it, empty = the main file.
+void add_file(LoadedConfig& loaded, const std::filesystem::path& file, const std::string& name) {
+  Problems found;
+  std::optional<json> document;
+  try {
+    document = parse_strict_json(read_text_file(file), found);
+  } catch (const Error& error) {
+    loaded.problems.push_back({"", error.what()});
+    return;
+  }
+  if (document && !name.empty() && !document->is_object()) {
+    found.push_back({"", "is no JSON object; expected e.g. {\"log\": {\"level\": \"debug\"}}"});
+  }
+  for (const Problem& problem : found) {
+    loaded.problems.push_back({"", (name.empty() ? "" : name + ": ") + problem.message});
+  }
+  if (document) loaded.origins.add_document(name.empty() ? file.string() : name, std::move(*document));
+}
+
+/// Says which of several documents a refused value stands in.
+void name_origins(LoadedConfig& loaded, const std::string& main_file) {
+  for (Problem& problem : loaded.problems) {
+    if (problem.pointer.empty()) continue;
+    const std::string origin = loaded.origins.of(problem.pointer);
+    if (origin.starts_with(kPartFolder.string() + "/"))
+      problem.message += " (in " + origin + ", beside " + main_file + ")";
+  }
+}
+
+}  // namespace
+
+LoadedConfig parse_config(std::string_view json_text, const std::filesystem::path& base, const Overrides& overrides) {
+  LoadedConfig loaded;
+  auto document = parse_strict_json(json_text, loaded.problems);
+  if (!document) return loaded;
+  loaded.origins.add_document("the file", std::move(*document));
+  read_merged(loaded, base, overrides);
   return loaded;
 }
 
 LoadedConfig load_config(const std::filesystem::path& file, const Overrides& overrides) {
   LoadedConfig loaded;
-  try {
-    loaded = parse_config(read_text_file(file), file.parent_path(), overrides);
-  } catch (const Error& error) {
-    loaded.problems.push_back({"", error.what()});
-    return loaded;
+  add_file(loaded, file, "");
+  for (const auto& part : part_files(file.parent_path() / kPartFolder, loaded.problems)) {
+    add_file(loaded, part, (kPartFolder / part.filename()).string());
   }
+  // Nothing follows from a document that could not be read: its values are not those that were meant.
+  if (!loaded.problems.empty()) return loaded;
+  read_merged(loaded, file.parent_path(), overrides);
   for (Problem& problem : check_config(loaded.config, loaded.problems)) loaded.problems.push_back(std::move(problem));
+  name_origins(loaded, file.filename().string());
   return loaded;
 }
 
 std::string config_text(Config config) { return fields_to_json(description_of(config)).dump(2) + "\n"; }
+
+std::string config_text_with_origins(LoadedConfig loaded) {
+  return text_with_origins(fields_to_json(description_of(loaded.config)), loaded.origins);
+}
 
 std::string config_schema_text() {
   Config defaults;

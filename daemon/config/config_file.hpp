@@ -10,6 +10,7 @@
 #include "config/fields.hpp"
 #include "config/problem.hpp"
 #include "daemon/config/config.hpp"
+#include "daemon/config/config_origins.hpp"
 
 namespace fvd {
 
@@ -21,7 +22,8 @@ using Overrides = std::vector<std::string>;
 
 struct LoadedConfig {
   Config config;
-  Problems problems;  ///< empty = usable
+  Problems problems;      ///< empty = usable
+  ConfigOrigins origins;  ///< of every value
 };
 
 /// Text to structure: overrides are applied, then types, ranges and names are checked. Keys that are absent or refused
@@ -34,11 +36,15 @@ struct LoadedConfig {
 /// of reading it; what rests on a value that they are about is not judged. No device is touched.
 [[nodiscard]] Problems check_config(const Config& config, const Problems& read = {});
 
-/// Reads the file and does both; a file that cannot be read is a problem too.
+/// Reads the file and merges into it what lies in the folder conf.d beside it (RFC 7396): every *.json in the order of
+/// the names' bytes, files that begin with a dot left out. Then does both of the above. A file that cannot be read is a
+/// problem, and the only one told then.
 [[nodiscard]] LoadedConfig load_config(const std::filesystem::path& file, const Overrides& overrides = {});
 
 /// The configuration in force, as JSON text.
 [[nodiscard]] std::string config_text(Config config);
+/// The same with the origin of every value in a comment behind it; load_config() reads it.
+[[nodiscard]] std::string config_text_with_origins(LoadedConfig loaded);
 /// JSON Schema of the file; config/fvd.schema.json is this text.
 [[nodiscard]] std::string config_schema_text();
 

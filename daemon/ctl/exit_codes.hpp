@@ -16,7 +16,7 @@ inline constexpr int kExitBadData = 65;          ///< a file, parameter, job or 
 inline constexpr int kExitUnavailable =
     69;  ///< no daemon, camera or drive, no answer in time, or it takes no commands now
 inline constexpr int kExitInternal = 70;  ///< a bug on either side
-inline constexpr int kExitConfig = 78;    ///< `measure`: the recipe was refused
+inline constexpr int kExitConfig = 78;    ///< `measure`, `stage stop`: recipe or configuration was refused
 inline constexpr int kExitIo = 74;        ///< a file could not be read or written
 
 /// The exit code for an Error of this code.

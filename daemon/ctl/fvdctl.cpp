@@ -226,6 +226,11 @@ void add_stage_commands(CLI::App& app, StageArguments& a, const Terminal& termin
   add_length(*accuracy, "--window-um", a.plan.settle.window,
              "largest distance from the target at which the axis counts as settled");
   accuracy->add_option("--speed-um-per-s", a.stage.speed_um_per_s, "speed of moves")->capture_default_str();
+  CLI::App* stop =
+      stage->add_subcommand("stop", "stop the axis of a daemon that crashed, and see that it stands still");
+  stop->add_option("--config", a.config_file, "configuration file of the daemon")->capture_default_str();
+  stop->callback([&] { chosen = [&] { return run_stage_stop(a.config_file, terminal); }; });
+
   accuracy->callback([&] { chosen = [&] { return run_stage_accuracy(a, terminal); }; });
 }
 

@@ -10,9 +10,11 @@
 #include "core/base/error.hpp"
 #include "core/stage/stage_report.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/config/config_file.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/process_command.hpp"
 #include "daemon/ctl/stop_on_signal.hpp"
+#include "daemon/devices/standstill.hpp"
 #include "daemon/export/stage_report_files.hpp"
 #include "drivers/modbus/drive_check.hpp"
 #include "drivers/modbus/modbus_axis.hpp"
@@ -23,6 +25,8 @@ namespace fvd::ctl {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr int kStopLooks = 5;  ///< of a second each; an axis slows down within less
 
 void resolve_endpoint(StageArguments& arguments) {
   StageConfig& stage = arguments.stage;
@@ -178,6 +182,27 @@ int run_stage_accuracy(StageArguments arguments, const Terminal& terminal) {
                  << link->latency_p99_us / 1000.0 << " ms" << std::endl;
   }
   return kExitOk;
+}
+
+int run_stage_stop(const std::filesystem::path& config_file, const Terminal& terminal) {
+  const LoadedConfig loaded = load_config(config_file);
+  if (!loaded.problems.empty()) {
+    terminal.err << to_text(loaded.problems, config_file.string()) << std::endl;
+    return kExitConfig;
+  }
+  if (loaded.config.stage.driver == "replay") {
+    terminal.out << "recorded slices have no axis: there is nothing to stop" << std::endl;
+    return kExitOk;
+  }
+  const auto stage = open_stage(loaded.config.stage);  // stops one that moves
+  SystemClock clock;
+  for (int look = 0; look < kStopLooks; ++look) {
+    if (const auto rest = bring_to_rest(*stage, clock, [] {})) {
+      terminal.out << "the stage stands still at " << rest->value << " um" << std::endl;
+      return kExitOk;
+    }
+  }
+  throw Error(ErrorCode::kStagePosition, "the stage was told to stop and still moves: switch the drive off");
 }
 
 }  // namespace fvd::ctl

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The commands `fvdctl stage check` and `fvdctl stage accuracy`: a drive at the end of a line, without the daemon.
+/// The commands `fvdctl stage check`, `accuracy` and `stop`: a drive at the end of a line, without the daemon.
 
 #include <filesystem>
 #include <string>
@@ -21,6 +21,7 @@ struct StageArguments {
   StageRunPlan plan;
   double lead_um = 0.0;  ///< lead of the screw; 0 = the profile's
   std::filesystem::path out;
+  std::filesystem::path config_file = "/etc/fvd/fvd.json";  ///< of stop
 };
 
 /// Reads registers and writes none. kExitOk if the drive fits its profile, kExitBadData if it disagrees.
@@ -28,5 +29,11 @@ struct StageArguments {
 
 /// Moves the stage and writes stage_accuracy.json, .csv and .png into a new folder `out`.
 [[nodiscard]] int run_stage_accuracy(StageArguments arguments, const Terminal& terminal);
+
+/// Stops the axis of a station that nobody operates any more, as after a crash of the daemon, and measures its
+/// standstill. config_file: the daemon's. kExitOk if it stands still, or if there is none (driver replay); kExitConfig
+/// if the file is refused. Throws Error kStageTaken (nothing is sent while another program has the drive),
+/// kStageDisconnected, kStagePosition.
+[[nodiscard]] int run_stage_stop(const std::filesystem::path& config_file, const Terminal& terminal);
 
 }  // namespace fvd::ctl

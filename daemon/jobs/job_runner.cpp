@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
+#include "daemon/base/log_scope.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/recorded_slices.hpp"
 #include "daemon/jobs/part_temperature.hpp"
@@ -62,6 +63,8 @@ ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config&
 }  // namespace
 
 void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
+  const JobRequest& request = job.status.request;
+  const LogScope scope({job.status.job_id, request.part_id, request.client});
   if (stop.stop_requested()) {
     if (halted()) return refuse(job);
     return end(job, {.state = JobState::kAborted,
@@ -69,8 +72,8 @@ void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
                      .message = "the job was aborted before it began",
                      .used_devices = false});
   }
-  spdlog::info("job {} starts: client {}, seq {}, part '{}', recipe {}", job.status.job_id, job.status.request.client,
-               job.status.request.seq, job.status.request.part_id, job.recipe.id);
+  spdlog::info("job {} starts: client {}, seq {}, part '{}', recipe {}", job.status.job_id, request.client, request.seq,
+               request.part_id, job.recipe.id);
   deps_.preview.clear();
   if (const auto failure = deps_.hub.open()) {
     return end(job, {.error = failure->code, .message = failure->message, .failure = failure});

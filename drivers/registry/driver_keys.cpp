@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <utility>
 
 #include <arpa/inet.h>
 
 #include "core/base/error.hpp"
+#include "drivers/common/network_address.hpp"
 #include "drivers/common/text_line.hpp"
 #include "drivers/modbus/drive_profile.hpp"
 #include "drivers/modbus/modbus_transport.hpp"
@@ -36,6 +38,12 @@ void check_baud(int baud, const int (&accepted)[kCount], Problems& problems) {
   problems.push_back({"/stage/serial_baud", std::to_string(baud) + " is not accepted; expected one of" + bauds});
 }
 
+void check_address(const char* pointer, const std::string& address, Problems& problems) {
+  if (std::string problem = why_no_device(address); !problem.empty()) {
+    problems.push_back({pointer, std::move(problem)});
+  }
+}
+
 /// transport: the word for the serial line of this protocol.
 template <std::size_t kCount>
 void check_line(const StageConfig& stage, const std::string& serial, const int (&bauds)[kCount], Problems& problems) {
@@ -43,6 +51,7 @@ void check_line(const StageConfig& stage, const std::string& serial, const int (
     if (stage.address.empty()) {
       problems.push_back({"/stage/address", "is empty; expected the drive's host or IP address"});
     }
+    check_address("/stage/address", stage.address, problems);
     return;
   }
   if (stage.transport != serial) {
@@ -54,15 +63,6 @@ void check_line(const StageConfig& stage, const std::string& serial, const int (
     problems.push_back({"/stage/serial_device", "is empty; expected a serial port such as /dev/serial/by-id/..."});
   }
   check_baud(stage.serial_baud, bauds, problems);
-}
-
-/// What has the looks of an IPv4 address and is none, such as 192.168.1.300, is no name of anything.
-void check_numeric_address(const std::string& address, const char* pointer, Problems& problems) {
-  in_addr parsed{};
-  const bool numeric =
-      address.find('.') != std::string::npos && address.find_first_not_of("0123456789.") == std::string::npos;
-  if (!numeric || ::inet_pton(AF_INET, address.c_str(), &parsed) == 1) return;
-  problems.push_back({pointer, "'" + address + "' is no IPv4 address: four numbers of 0..255 are expected"});
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ void describe_replay(StageConfig& stage, Fields& fields) {
 }
 
 void check_aravis(const CameraConfig& camera, Problems& problems) {
-  check_numeric_address(camera.address, "/camera/address", problems);
+  check_address("/camera/address", camera.address, problems);
   in_addr parsed{};
   if (!camera.search_address.empty() && ::inet_pton(AF_INET, camera.search_address.c_str(), &parsed) != 1) {
     problems.push_back({"/camera/search_address",
@@ -172,7 +172,6 @@ void check_replay(const CameraConfig& camera, Problems& problems) {
 }
 
 void check_modbus(const StageConfig& stage, Problems& problems) {
-  if (stage.transport == "tcp") check_numeric_address(stage.address, "/stage/address", problems);
   check_line(stage, "rtu", kModbusBauds, problems);
   std::error_code error;
   if (!fs::is_regular_file(stage.profile, error)) {
@@ -188,7 +187,6 @@ void check_modbus(const StageConfig& stage, Problems& problems) {
 }
 
 void check_gcs(const StageConfig& stage, Problems& problems) {
-  if (stage.transport == "tcp") check_numeric_address(stage.address, "/stage/address", problems);
   check_line(stage, "serial", kTextLineBauds, problems);
   if (!stage.gcs_axis.empty() && stage.gcs_axis.find_first_of(" \n\r=") == std::string::npos) return;
   problems.push_back(

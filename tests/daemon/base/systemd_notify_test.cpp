@@ -21,6 +21,11 @@ TEST_F(AServiceManager, HearsTheStatusOnOneLine) {
   EXPECT_EQ(heard(), "STATUS=job failed: WATCHDOG=trigger") << "a message must not become an assignment";
 }
 
+TEST_F(AServiceManager, HearsThatTheServiceReadsItsConfigurationAgain) {
+  notify_reloading();
+  EXPECT_THAT(heard(), ::testing::MatchesRegex("RELOADING=1\nMONOTONIC_USEC=[1-9][0-9]*"));
+}
+
 TEST_F(AServiceManager, HearsThatTheServiceStops) {
   notify_stopping();
   EXPECT_THAT(heard(), ::testing::StartsWith("STOPPING=1\n"));

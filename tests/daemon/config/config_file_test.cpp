@@ -217,6 +217,16 @@ TEST_F(AUsableConfig, NeedsANumericAddressToListenOn) {
   EXPECT_THAT(check_config(config_), IsEmpty());
 }
 
+TEST_F(AUsableConfig, NeedsAddressesThatCanBe) {
+  config_.rpc.address = "224.0.0.1";
+  config_.camera.address = "192.168.1.300";
+  config_.stage.address = "255.255.255.255";
+  EXPECT_THAT(check_config(config_),
+              ::testing::UnorderedElementsAre(problem("/rpc/address", "nobody can listen"),
+                                              problem("/camera/address", "four numbers within 0..255"),
+                                              problem("/stage/address", "stands for many machines")));
+}
+
 TEST_F(AUsableConfig, NeedsACameraAddress) {
   config_.camera.address.clear();
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/address", "is empty")));
@@ -225,10 +235,10 @@ TEST_F(AUsableConfig, NeedsACameraAddress) {
 TEST_F(AUsableConfig, NeedsAddressesThatCanBe) {
   config_.camera.address = "192.168.1.300";
   config_.camera.search_address = "left";
-  config_.stage.address = "10.0.0";
+  config_.stage.address = "10.0.0.256";
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/address", "'192.168.1.300' is no IPv4 address"),
                                                  problem("/camera/search_address", "'left' is no IPv4 address"),
-                                                 problem("/stage/address", "'10.0.0' is no IPv4 address")));
+                                                 problem("/stage/address", "'10.0.0.256' is no IPv4 address")));
   config_.camera.address = "40012345";  // a serial number
   config_.camera.search_address = "192.168.1.255";
   config_.stage.address = "drive.example";
@@ -312,6 +322,67 @@ TEST(ConfigFile, SaysThatAFileCannotBeRead) {
   const test::ScratchDir folder;
   EXPECT_THAT(load_config(folder.path() / "absent.json").problems, ElementsAre(problem("", "absent.json")));
   EXPECT_THAT(load_config(folder.path()).problems, ElementsAre(problem("", "it is a folder")));
+}
+
+class AConfigInParts : public ::testing::Test {
+ protected:
+  void put(const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder_.path() / name).parent_path());
+    std::ofstream(folder_.path() / name) << text;
+  }
+  [[nodiscard]] LoadedConfig load(const Overrides& overrides = {}) const {
+    return load_config(folder_.path() / "fvd.json", overrides);
+  }
+  test::ScratchDir folder_;
+};
+
+TEST_F(AConfigInParts, IsMergedInTheOrderOfTheNames) {
+  put("fvd.json", R"({"rpc": {"port": 1, "max_connections": 3}, "log": {"level": "warn"},
+                      "objectives": [{"name": "20x", "na": 0.4, "magnification": 20, "working_distance_mm": 11}]})");
+  put("conf.d/20-line.json", R"({"rpc": {"port": 3}, "objectives": []})");
+  put("conf.d/10-site.json", R"({"rpc": {"port": 2}, "log": {"level": null}, "compute": {"threads": 7}})");
+  put("conf.d/30-old.json.dpkg-old", "{");
+  put("conf.d/.hidden.json", "{");
+  const LoadedConfig loaded = load();
+  EXPECT_EQ(loaded.config.rpc.port, 3);
+  EXPECT_EQ(loaded.config.rpc.max_connections, 3);
+  EXPECT_EQ(loaded.config.log.level, LogConfig{}.level) << "null takes away";
+  EXPECT_EQ(loaded.config.compute.threads, 7);
+  EXPECT_TRUE(loaded.config.objectives.empty()) << "lists are replaced as a whole";
+}
+
+TEST_F(AConfigInParts, TellsTheOriginOfEveryValue) {
+  put("fvd.json", R"({"rpc": {"port": 1}, "log": {"level": "warn"}, "compute": {"threads": 1}})");
+  put("conf.d/10-site.json", R"({"rpc": {"port": 2}, "log": {"level": null}})");
+  const LoadedConfig loaded = load({"compute.threads=2"});
+  EXPECT_EQ(loaded.origins.of("/rpc/port"), "conf.d/10-site.json");
+  EXPECT_EQ(loaded.origins.of("/log/level"), "default");
+  EXPECT_EQ(loaded.origins.of("/compute/threads"), "--set");
+  const std::string text = config_text_with_origins(loaded);
+  EXPECT_THAT(text, HasSubstr("\"port\": 2,  // conf.d/10-site.json\n"));
+  EXPECT_THAT(text, HasSubstr("\"threads\": 2,  // --set\n"));
+  EXPECT_EQ(config_text(parse_config(text, "").config), config_text(loaded.config)) << "it is read back";
+}
+
+TEST_F(AConfigInParts, SaysWhichPartIsWrong) {
+  put("fvd.json", R"({"rpc": {"port": -1}})");
+  put("conf.d/10-site.json", R"({"log": {"level": "loud"}})");
+  const Problems problems = load().problems;
+  EXPECT_THAT(problems, Contains(problem("/rpc/port", "within 0..65535")));
+  EXPECT_THAT(problems, Contains(problem("/log/level", "(in conf.d/10-site.json, beside fvd.json)")));
+}
+
+TEST_F(AConfigInParts, SaysNothingMoreOfWhatCannotBeRead) {
+  put("fvd.json", R"({"rpc": {"port": 1},})");
+  EXPECT_THAT(load().problems, ElementsAre(problem("", "no valid JSON at line 1, column 21")));
+  put("fvd.json", R"({"camera": {"address": "10.0.0.1"}})");
+  put("conf.d/10-site.json", "{\n\"rpc\" 5}");
+  EXPECT_THAT(load().problems, ElementsAre(problem("", "conf.d/10-site.json: no valid JSON at line 2")));
+  put("conf.d/10-site.json", "[]");
+  EXPECT_THAT(load().problems, ElementsAre(problem("", "conf.d/10-site.json: is no JSON object")));
+  std::filesystem::remove_all(folder_.path() / "conf.d");
+  put("conf.d", "a file");
+  EXPECT_THAT(load().problems, ElementsAre(problem("", "cannot list folder")));
 }
 
 TEST(ConfigFile, ReportsRangesAndCrossFieldProblemsTogether) {

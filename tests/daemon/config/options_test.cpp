@@ -76,12 +76,13 @@ class FvdWithAFile : public Fvd {
   StartUp start(const std::string& text, Options options) {
     options.config_file = folder_.path() / "fvd.json";
     std::ofstream(options.config_file) << text;
+    std::filesystem::create_directories(folder_.path() / "recipes");
     std::filesystem::copy_file(FVD_SOURCE_DIR "/config/drives/oriental-az.json", folder_.path() / "drive.json",
                                std::filesystem::copy_options::overwrite_existing);
     return start_up(options, out_, err_);
   }
   static constexpr const char* kGood =
-      R"({"camera": {"address": "10.0.0.1"}, "stage": {"profile": "drive.json"}, "paths": {"recipe_dir": "."}})";
+      R"({"camera": {"address": "10.0.0.1"}, "stage": {"profile": "drive.json"}, "paths": {"recipe_dir": "recipes"}})";
   test::ScratchDir folder_;
 };
 
@@ -129,9 +130,25 @@ TEST_F(FvdWithAFile, ChecksARecipeWithoutAConfiguration) {
   EXPECT_THAT(err_.str(), HasSubstr("no-such.json"));
 }
 
+TEST_F(FvdWithAFile, ChecksRecipesAndFoldersToo) {
+  std::filesystem::create_directories(folder_.path() / "recipes");
+  std::ofstream(folder_.path() / "recipes/part.json") << R"({"format": 2, "aquire": {}})";
+  std::ofstream(folder_.path() / "file") << "x";
+  const std::string folder = folder_.path().string();
+  const Options check =
+      asking_for(&Options::check_config, {"paths.recipe_dir=recipes", "paths.state_dir=" + folder + "/file/state",
+                                          "paths.runtime_dir=" + folder + "/not/yet"});
+  EXPECT_EQ(start(kGood, check).exit, 78);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("/paths/recipe_dir: recipe part: "), HasSubstr("/aquire: unknown key"),
+                                HasSubstr("/paths/state_dir: '" + folder + "/file' is no folder"),
+                                ::testing::Not(HasSubstr("/paths/runtime_dir"))));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "not")) << "nothing is made";
+}
+
 TEST_F(FvdWithAFile, DumpsTheConfigurationInForce) {
   EXPECT_EQ(start(kGood, asking_for(&Options::dump_config, {"rpc.port=77"})).exit, exit_code::kOk);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("\"port\": 77"), HasSubstr("drive.json"), HasSubstr("queue_slices")));
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("\"port\": 77,  // --set"), HasSubstr("drive.json"), HasSubstr("queue_slices")));
 }
 
 TEST_F(FvdWithAFile, PrintsItsSchemas) {

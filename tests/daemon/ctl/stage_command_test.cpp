@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/fvdctl.hpp"
+#include "drivers/common/drive_lock.hpp"
 #include "gtest/gtest.h"
 #include "tests/support/scratch_dir.hpp"
 #include "tests/support/simulated_drive.hpp"
@@ -150,6 +152,64 @@ TEST_F(StageAccuracy, MovesNothingWhereTakeUpDoesNotFit) {
   EXPECT_NE(run.code, kExitOk);
   EXPECT_NE(run.err.find("-20..60 um"), std::string::npos) << run.err;
   EXPECT_EQ(plant_.drive().moves(), 0);
+}
+
+/// The axis of a daemon that was killed in the middle of a move, and its configuration.
+class AnAbandonedStage : public testing::Test {
+ protected:
+  static constexpr std::int32_t kTarget_steps = 100'000;  // 1000 um, 2 s away at least
+
+  void SetUp() override {
+    (void)plant_.open_homed();  // and given up again
+    plant_.axis().move_to(HostClock::now(), kTarget_steps, 50'000.0, 1e7, 1e7);
+    while (!plant_.axis().moving(HostClock::now())) std::this_thread::yield();  // it starts a little later
+  }
+  Ran stop(const json& changes = json::object()) {
+    const StageConfig stage = plant_.config();
+    json config{{"camera", {{"address", "127.0.0.1"}}},
+                {"stage", {{"profile", stage.profile}, {"address", "127.0.0.1"}, {"port", stage.port}}},
+                {"paths", {{"recipe_dir", folder_.path().string()}}}};
+    config.merge_patch(changes);
+    const auto file = folder_.path() / "fvd.json";
+    std::ofstream(file) << config.dump();
+    return fvdctl({"stage", "stop", "--config", file.string()});
+  }
+  test::ScratchDir folder_;
+  test::SimulatedDrive plant_{test::kDriveCases[0], Transport::kTcp};
+};
+
+TEST_F(AnAbandonedStage, IsStoppedAndSeenToStandStill) {
+  const Ran run = stop();
+  EXPECT_EQ(run.code, kExitOk) << run.err;
+  EXPECT_NE(run.out.find("the stage stands still at "), std::string::npos) << run.out;
+  const HostTime now = HostClock::now();
+  EXPECT_FALSE(plant_.axis().moving(now));
+  EXPECT_LT(plant_.axis().command_steps(now), kTarget_steps) << "stopped on its way";
+}
+
+TEST_F(AnAbandonedStage, IsLeftToAProgramThatHasTheDrive) {
+  const DriveLock other(plant_.config());
+  const Ran run = stop();
+  EXPECT_NE(run.code, kExitOk);
+  EXPECT_NE(run.err.find("the drive is in use by process"), std::string::npos) << run.err;
+  EXPECT_TRUE(plant_.axis().moving(HostClock::now()) || plant_.axis().command_steps(HostClock::now()) == kTarget_steps);
+}
+
+TEST_F(AnAbandonedStage, IsNotTouchedWithABrokenConfiguration) {
+  const Ran run = stop({{"stage", {{"port", 0}}}});
+  EXPECT_EQ(run.code, kExitConfig);
+  EXPECT_NE(run.err.find("/stage/port: 0 is not accepted"), std::string::npos) << run.err;
+}
+
+TEST(StageStop, HasNothingToDoForRecordedSlices) {
+  const test::ScratchDir folder;
+  const auto file = folder.path() / "fvd.json";
+  std::ofstream(file) << json{{"camera", {{"driver", "replay"}, {"replay_dir", folder.path().string()}}},
+                              {"stage", {{"driver", "replay"}}},
+                              {"paths", {{"recipe_dir", folder.path().string()}}}};
+  const Ran run = fvdctl({"stage", "stop", "--config", file.string()});
+  EXPECT_EQ(run.code, kExitOk) << run.err;
+  EXPECT_NE(run.out.find("nothing to stop"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,132 @@
+#include "daemon/service.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "core/runtime/guarded_thread.hpp"
+#include "daemon/app.hpp"
+#include "daemon/base/exit_code.hpp"
+#include "daemon/base/service_log.hpp"
+#include "daemon/base/service_watchdog.hpp"
+#include "daemon/base/systemd_notify.hpp"
+#include "daemon/base/version.hpp"
+#include "daemon/config_reload.hpp"
+#include "daemon/devices/left_threads.hpp"
+#include "daemon/port_probe.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr std::chrono::milliseconds kPortRetryPeriod{200};
+/// Less than the service manager allows for a start (TimeoutStartSec=); it starts the program again then.
+constexpr std::chrono::seconds kPortPatience{60};
+
+std::string text_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "of an unknown kind";
+  }
+}
+
+/// The signals that the main thread waits for; no other thread sees them.
+class ServiceSignals {
+ public:
+  /// To be made before any thread exists, so that all inherit the mask.
+  ServiceSignals() {
+    sigemptyset(&set_);
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set_, signal);
+    sigprocmask(SIG_BLOCK, &set_, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+  }
+  /// The signal that came within that time, -1 if none did.
+  [[nodiscard]] int within(std::chrono::milliseconds time) const {
+    const timespec left{time.count() / 1000, time.count() % 1000 * 1'000'000};
+    return sigtimedwait(&set_, nullptr, &left);
+  }
+
+ private:
+  sigset_t set_{};
+};
+
+bool ends(int signal) { return signal == SIGTERM || signal == SIGINT; }
+
+/// Waits until clients could connect; returns all the same once its patience is over, for the start tells the failure
+/// then. False if a signal to end came meanwhile. Nothing is opened before: the epoch counts starts that serve.
+bool await_port(const RpcConfig& rpc, const ServiceSignals& signals) {
+  if (std::getenv("NOTIFY_SOCKET") == nullptr) return true;  // a person gets the reason at once
+  const HostTime deadline = HostClock::now() + kPortPatience;
+  std::string told;
+  while (const auto reason = why_no_port(rpc)) {
+    if (*reason != told) spdlog::warn("{}; trying again", *reason);
+    if (*reason != told) notify_status("waiting: " + *reason);
+    told = *reason;
+    if (HostClock::now() > deadline) break;
+    if (ends(signals.within(kPortRetryPeriod))) return false;
+  }
+  return true;
+}
+
+void reload(const Options& options, Config& config, const std::string& status) {
+  notify_reloading();
+  const LoadedConfig wanted = load_config(options.config_file, options.overrides);
+  const Reload plan = plan_reload(config, wanted);
+  if (!plan.refusal.empty()) {
+    spdlog::error("the configuration was read again and nothing of it is taken: {}", plan.refusal);
+    return notify_ready(status + "; the last reload was refused, the log says why");
+  }
+  for (const std::string& change : plan.changes) spdlog::info("reloaded {}", change);
+  if (plan.changes.empty()) spdlog::info("the configuration was read again: nothing differs");
+  config = wanted.config;
+  spdlog::set_level(spdlog::level::from_str(config.log.level));
+  notify_ready(status);
+}
+
+/// Feeds the watchdog and reloads until a signal to end comes, which it returns.
+int await_end(const Options& options, Config& config, const ServiceSignals& signals, const std::string& status) {
+  ServiceWatchdog watchdog;
+  for (;;) {
+    watchdog.look(HostClock::now());
+    const int signal = signals.within(ServiceWatchdog::interval());
+    if (ends(signal)) return signal;
+    if (signal == SIGHUP) reload(options, config, status);
+  }
+}
+
+}  // namespace
+
+int serve(const Options& options, Config config) {
+  set_up_service_log();
+  spdlog::set_level(spdlog::level::from_str(config.log.level));
+  spdlog::info("fvd {} starts", kVersion);
+  const ServiceSignals signals;
+  static std::atomic<bool> thread_failed = false;
+  set_thread_failure_handler([](std::string_view name, const std::exception_ptr& failure) {
+    spdlog::critical("thread {} ended by an exception, the program stops: {}", name, text_of(failure));
+    thread_failed = true;
+    ::kill(::getpid(), SIGTERM);
+  });
+  if (!await_port(config.rpc, signals)) return exit_code::kOk;
+  App app(config);
+  spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
+  const std::string status = "listening on port " + std::to_string(app.rpc_port());
+  notify_ready(status);
+  spdlog::info("signal {}: stopping", await_end(options, config, signals, status));
+  process_ends();
+  notify_stopping();
+  return thread_failed ? exit_code::kInternal : exit_code::kOk;
+}
+
+}  // namespace fvd
