@@ -41,7 +41,7 @@ int signal_within(const sigset_t& signals, std::chrono::milliseconds time) {
   return sigtimedwait(&signals, nullptr, &left);
 }
 
-int serve(const Config& config) {
+int serve(const Config& config, bool start_anew) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("fvd"));
   spdlog::set_level(spdlog::level::from_str(config.log.level));
   spdlog::info("fvd {} starts", kVersion);
@@ -59,7 +59,7 @@ int serve(const Config& config) {
     thread_failed = true;
     ::kill(::getpid(), SIGTERM);
   });
-  App app(config);
+  App app(config, start_anew);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
   notify_ready("listening on port " + std::to_string(app.rpc_port()));
   ServiceWatchdog watchdog;
@@ -84,7 +84,7 @@ int main(int argc, char** argv) try {
   const StartUp start = start_up(parsed.options, std::cout, std::cerr);
   if (start.exit) return *start.exit;
   try {
-    const int code = serve(start.config);
+    const int code = serve(start.config, parsed.options.new_database);
     if (!Reaper::left_a_device()) return code;
     spdlog::warn("a device that answers nothing is not closed in order; the system closes its connection");
     spdlog::shutdown();

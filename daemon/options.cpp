@@ -23,6 +23,8 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
   app.add_option("--set", options.overrides, "put a value over the file's, e.g. rpc.port=0; may be repeated")
       ->type_name("GROUP.KEY=VALUE")
       ->allow_extra_args(false);
+  app.add_flag("--new-database", options.new_database,
+               "start though the database is gone: no job of before is known, the epoch goes on");
   app.add_flag("--check-config", options.check_config,
                "say every problem of the configuration on stderr and exit: 0 = none, 78 = some");
   app.add_option("--check-recipe", options.check_recipe,
