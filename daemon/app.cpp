@@ -1,7 +1,10 @@
 #include "daemon/app.hpp"
 
+#include <chrono>
+
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
+#include "daemon/jobs/reconcile_results.hpp"
 
 namespace fvd {
 
@@ -20,14 +23,16 @@ std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
 /// Clears what a killed process left, once the open store says that no other process has the folder.
 JobStore& with_cleared_results(JobStore& store, const PathsConfig& paths) {
   remove_abandoned_directories(paths.state_dir / "results");
+  (void)reconcile_results(store, paths.state_dir / "results");
   return store;
 }
 
 }  // namespace
 
-App::App(const Config& config)
+App::App(const Config& config, bool start_anew)
     : config_(config),
-      store_(prepared_state_dir(config_.paths) / "fvd.sqlite"),
+      store_(prepared_state_dir(config_.paths) / "fvd.sqlite",
+             {std::chrono::seconds(config_.rpc.repeat_window_s), start_anew}),
       engine_(config_, {with_cleared_results(store_, config_.paths), clock_, openers_of(config_)}),
       rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {
   // No device is touched by a program that cannot have its port: another fvd may be measuring with them.

@@ -15,8 +15,9 @@ namespace fvd {
 /// context: made and destroyed on the main thread, with the signals it waits for blocked.
 class App {
  public:
-  /// Opens the store, starts the engine and listens. Throws Error kDatabase, kStorageWrite, kBadConfig.
-  explicit App(const Config& config);
+  /// Opens the store, starts the engine and listens. start_anew: a database that is gone is not missed. Throws
+  /// Error kDatabase, kStorageWrite, kStorageFull, kBadConfig.
+  explicit App(const Config& config, bool start_anew = false);
   /// Ordered stop: aborts the job, halts the stage, gives the devices up, sends the replies to open requests, closes
   /// the connections.
   ~App();

@@ -27,6 +27,8 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
   app.add_option("--set", options.overrides, "put a value over the file's, e.g. rpc.port=0; may be repeated")
       ->type_name("GROUP.KEY=VALUE")
       ->allow_extra_args(false);
+  app.add_flag("--new-database", options.new_database,
+               "start though the database is gone: no job of before is known, the epoch goes on");
   app.add_flag(
       "--check-config", options.check_config,
       "say every problem of the configuration, its drive profile, its recipes and its folders on stderr and exit: "

@@ -13,6 +13,7 @@ namespace fvd {
 struct Options {
   std::filesystem::path config_file = "/etc/fvd/fvd.json";
   Overrides overrides;
+  bool new_database = false;  ///< start though the database is gone
   bool check_config = false;
   bool dump_config = false;
   std::filesystem::path check_recipe;  ///< a recipe's file; empty = none

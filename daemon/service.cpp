@@ -119,7 +119,7 @@ int serve(const Options& options, Config config) {
     ::kill(::getpid(), SIGTERM);
   });
   if (!await_port(config.rpc, signals)) return exit_code::kOk;
-  App app(config);
+  App app(config, options.new_database);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
   const std::string status = "listening on port " + std::to_string(app.rpc_port());
   notify_ready(status);

@@ -47,7 +47,8 @@ std::string_view request_meaning(ErrorCode code) noexcept {
     case ErrorCode::kSeqConflict:
       return "the number belongs to another request: use a new one";
     case ErrorCode::kSeqStale:
-      return "the number is too far behind: continue behind job.latest";
+      return "the number is too far behind or ahead, or its job ended too long ago to be repeated: continue behind "
+             "newest_seq";
     case ErrorCode::kJobFailed:
       return "reserved: a job tells its own error";
     case ErrorCode::kTimeout:

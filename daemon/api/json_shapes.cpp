@@ -26,6 +26,14 @@ std::string shortened(const std::string& text) {
 
 int code_of(const std::optional<ErrorCode>& error) { return error ? rpc_error(*error).code : 0; }
 
+/// As OPC 40001-101 names it: what the result says of the part.
+std::string_view evaluation_of(const JobStatus& job) {
+  if (job.verdict == "pass") return "ok";
+  if (job.verdict == "fail") return "nok";
+  if (job.verdict == "uncertain" || job.verdict == "invalid") return job.verdict;
+  return "undefined";
+}
+
 ordered_json error_of(const std::optional<ErrorCode>& error) {
   return error ? ordered_json(error_name(*error)) : ordered_json("");
 }
@@ -40,6 +48,8 @@ void describe_job_status(Fields& fields) {
   result.text("part_id", "as given");
   result.text("recipe", "recipe id");
   result.text("state", "processing, completed, aborted, failed");
+  result.text("evaluation", "of the part: ok, nok, uncertain, invalid; undefined where nothing was judged");
+  result.text("reason_codes", "why values are missing or uncertain: numbers with commas between; may be empty");
   result.text("phase", "preparing, acquiring, computing, storing; empty when ended");
   result.boolean("done", "the job has ended");
   result.boolean("acquired", "the part may be moved: no more slices, and standstill was measured");
@@ -53,6 +63,8 @@ void describe_job_status(Fields& fields) {
   result.text("error", "the error's name; empty = no error");
   result.text("error_message", "for people, at most 200 bytes");
   result.boolean("durable", "a restart does not change what is told here; false: the end is not stored yet");
+  result.text("ended_utc", "when it ended; empty = it has not");
+  result.integer("age_s", "seconds since it ended; 0 = it has not");
   result.text("warning", "why it is not, at most 200 bytes; no job is taken before it is; empty = no warning");
 }
 
@@ -67,6 +79,8 @@ ordered_json job_status_json(const JobStatus& job) {
           {"part_id", job.request.part_id},
           {"recipe", job.request.recipe},
           {"state", job_state_name(job.state)},
+          {"evaluation", evaluation_of(job)},
+          {"reason_codes", job.reason_codes},
           {"phase", job.phase},
           {"done", done},
           {"acquired", job.acquired},
@@ -80,6 +94,8 @@ ordered_json job_status_json(const JobStatus& job) {
           {"error", error_of(job.error)},
           {"error_message", shortened(job.error_message)},
           {"durable", job.not_durable.empty()},
+          {"ended_utc", job.ended_utc},
+          {"age_s", seconds_since(job.ended_utc)},
           {"warning", shortened(job.not_durable)}};
 }
 
@@ -90,15 +106,18 @@ void describe_machine_status(Fields& fields) {
   result.boolean("busy", "a job runs, or a command that moves the stage");
   result.boolean("acquiring", "the part must not move");
   result.boolean("part_release", "the part may be taken: standstill was measured");
-  result.boolean("result_valid", "the latest job is completed and not acknowledged");
+  result.boolean("result_valid", "a completed job is not acknowledged: result.next");
   result.integer("results_waiting", "ended jobs that are not acknowledged");
-  result.integer("error_code", "why the state is error; 0 = no error");
+  result.boolean("overrun", "more results wait than rpc.fifo_results; none is dropped");
+  result.integer("error_code", "why the state is error: a device, or where results are kept; 0 = no error");
   result.text("error", "the error's name; empty = no error");
   result.text("error_message", "for people, at most 200 bytes");
   result.integer("epoch", "counts the daemon's starts");
   result.integer("hb", "heartbeat: counts up once a second");
   result.integer("seq", "of the running or latest job; 0 = none");
-  result.text("client", "whose seq; empty = no job");
+  result.integer("newest_seq", "of the client that is asked for, 0 = none; its next number is one more");
+  result.text("client", "of that job; empty = no job");
+  result.text("evaluation", "of that job's part: ok, nok, uncertain, invalid; undefined where nothing was judged");
   result.text("job_id", "of the running or latest job; empty = none");
   result.text("recipe", "the prepared recipe; empty = none");
   result.boolean("simulated", "a device is simulated");
@@ -106,21 +125,30 @@ void describe_machine_status(Fields& fields) {
   result.text("objective", "that was confirmed; empty = none");
 }
 
-ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb) {
+std::int64_t newest_seq(const MachineStatus& machine, const std::string& client) {
+  if (!machine.newest_seqs) return 0;
+  const auto found = machine.newest_seqs->find(client);
+  return found == machine.newest_seqs->end() ? 0 : found->second;
+}
+
+ordered_json machine_status_json(const MachineStatus& machine, const std::string& client, std::int64_t hb) {
   return {{"state", scan_state_name(machine.state)},
           {"ready", machine.signals.ready},
           {"busy", machine.signals.busy},
           {"acquiring", machine.signals.acquiring},
           {"part_release", machine.signals.part_release},
-          {"result_valid", machine.job && machine.job->state == JobState::kCompleted && !machine.job->acknowledged},
+          {"result_valid", machine.result_valid},
           {"results_waiting", machine.results_waiting},
+          {"overrun", machine.overrun},
           {"error_code", code_of(machine.error)},
           {"error", error_of(machine.error)},
           {"error_message", shortened(machine.error_message)},
           {"epoch", machine.epoch},
           {"hb", hb},
           {"seq", machine.job ? machine.job->request.seq : 0},
+          {"newest_seq", newest_seq(machine, client)},
           {"client", machine.job ? machine.job->request.client : ""},
+          {"evaluation", machine.job ? evaluation_of(*machine.job) : "undefined"},
           {"job_id", machine.job ? machine.job->job_id : ""},
           {"recipe", machine.recipe},
           {"simulated", machine.simulated},
@@ -147,6 +175,8 @@ void describe_compact(Fields& fields, Presence presence) {
   result.boolean("simulated", "a device was simulated", Presence::kSometimes);
   result.integer("warnings_count", "compact: what lowers trust; the full result says what", Presence::kSometimes);
   describe_compact_evaluation(fields);
+  result.integer("age_s", "seconds since the job ended", Presence::kSometimes);
+  result.text("ended_utc", "full, complete: when the job ended", Presence::kSometimes);
   result.boolean("durable", "false while the end is not stored yet: job.status tells why", Presence::kSometimes);
 }
 
@@ -174,6 +204,7 @@ ordered_json compact_result_json(const JobStatus& job, const std::string& result
                     {"state", job_state_name(job.state)},
                     {"error_code", code_of(job.error)}};
   if (!job.not_durable.empty()) json["durable"] = false;
+  if (!job.ended_utc.empty()) json["age_s"] = seconds_since(job.ended_utc);
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);
   if (result.contains("evaluation")) {
@@ -196,6 +227,16 @@ ordered_json compact_result_json(const JobStatus& job, const std::string& result
   return json;
 }
 
+namespace {
+
+void note_end(const JobStatus& job, ordered_json& json) {
+  if (job.ended_utc.empty()) return;
+  json["ended_utc"] = job.ended_utc;
+  json["age_s"] = seconds_since(job.ended_utc);
+}
+
+}  // namespace
+
 ordered_json complete_result_json(const JobStatus& job, const std::string& result_text, const std::string& directory) {
   ordered_json json{{"job_id", job.job_id},
                     {"seq", job.request.seq},
@@ -205,6 +246,7 @@ ordered_json complete_result_json(const JobStatus& job, const std::string& resul
                     {"error_code", code_of(job.error)},
                     {"directory", directory}};
   if (!job.not_durable.empty()) json["durable"] = false;
+  note_end(job, json);
   if (!result_text.empty()) json["result"] = ordered_json::parse(result_text);
   return json;
 }
@@ -221,6 +263,7 @@ ordered_json full_result_json(const JobStatus& job, const std::string& result_te
                     {"error_message", shortened(job.error_message)},
                     {"directory", directory}};
   if (!job.not_durable.empty()) json["durable"] = false;
+  note_end(job, json);
   if (result_text.empty()) return json;
   const auto result = ordered_json::parse(result_text);
   for (const char* key : kFullGroups) json[key] = result.at(key);

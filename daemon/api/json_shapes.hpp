@@ -17,8 +17,11 @@ namespace fvd {
 [[nodiscard]] nlohmann::ordered_json job_status_json(const JobStatus& job);
 void describe_job_status(Fields& fields);
 
-/// hb: counts up once a second.
-[[nodiscard]] nlohmann::ordered_json machine_status_json(const MachineStatus& machine, std::int64_t hb);
+/// The client's newest sequence number, 0 = none.
+[[nodiscard]] std::int64_t newest_seq(const MachineStatus& machine, const std::string& client);
+/// client: whose newest_seq is told. hb: counts up once a second.
+[[nodiscard]] nlohmann::ordered_json machine_status_json(const MachineStatus& machine, const std::string& client,
+                                                         std::int64_t hb);
 void describe_machine_status(Fields& fields);
 
 /// The main values of a result, picked from the text of result.json; at most 512 bytes as a reply; with an

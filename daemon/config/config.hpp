@@ -17,6 +17,8 @@ struct RpcConfig {
   int port = 7411;                    ///< 0..65535, 0 = any free port, written to <runtime_dir>/rpc.json
   int max_connections = 16;           ///< 1..1000
   int idle_timeout_s = 120;           ///< 1..86400; a connection that sends nothing for this long is closed
+  int repeat_window_s = 600;          ///< 1..31536000; a number is repeated as long as its job ended no longer ago
+  int fifo_results = 1000;            ///< 1..1000000; more results that wait are told as an overrun
 };
 
 struct PathsConfig {
@@ -33,6 +35,13 @@ struct ComputeConfig {
 
 struct LogConfig {
   std::string level = "info";  ///< trace, debug, info, warn, error
+};
+
+/// What is removed to make room: of acknowledged results alone, the oldest first, recorded slices before the rest.
+struct StoreConfig {
+  int keep_days = 0;      ///< 0..36500; older results go; 0 = whatever their age
+  int keep_gib = 0;       ///< 0..1048576; of all results; 0 = whatever their size
+  int keep_free_gib = 0;  ///< 0..1048576; of the disk; 0 = however full it is
 };
 
 /// An objective that can be on the microscope. Which one is there, a person confirms.
@@ -59,6 +68,7 @@ struct Config : DeviceConfigs {
   PathsConfig paths;
   ComputeConfig compute;
   LogConfig log;
+  StoreConfig store;
   std::vector<ObjectiveConfig> objectives;  ///< none = nobody asks which one is on the microscope
   TemperatureConfig temperature;
 };

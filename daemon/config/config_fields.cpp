@@ -21,6 +21,10 @@ void describe(RpcConfig& rpc, Fields& fields) {
   fields.integer("port", rpc.port, {0, 65535}, "TCP port; 0 = any free one, written to <runtime_dir>/rpc.json");
   fields.integer("max_connections", rpc.max_connections, {1, 1000}, "one more gets an error line and is closed");
   fields.integer("idle_timeout_s", rpc.idle_timeout_s, {1, 86400}, "a connection silent for so long is closed");
+  fields.integer("repeat_window_s", rpc.repeat_window_s, {1, 31536000},
+                 "a sequence number whose job ended longer ago is refused, not answered with the old job");
+  fields.integer("fifo_results", rpc.fifo_results, {1, 1000000},
+                 "more results that wait to be acknowledged set overrun; none is dropped");
 }
 
 void describe(PathsConfig& paths, Fields& fields) {
@@ -33,6 +37,13 @@ void describe(ComputeConfig& compute, Fields& fields) {
   fields.integer("threads", compute.threads, {0, 256}, "threads of the computation, 0 = one a core");
   fields.integer("memory_budget_mib", compute.memory_budget_mib, {16, 1048576}, "a job that needs more is refused");
   fields.integer("queue_slices", compute.queue_slices, {1, 64}, "slices between camera and computation");
+}
+
+void describe(StoreConfig& store, Fields& fields) {
+  fields.integer("keep_days", store.keep_days, {0, 36500}, "acknowledged results go when they are older; 0 = never");
+  fields.integer("keep_gib", store.keep_gib, {0, 1048576},
+                 "the oldest acknowledged results go when all take more; 0 = never");
+  fields.integer("keep_free_gib", store.keep_free_gib, {0, 1048576}, "likewise when the disk has less free; 0 = never");
 }
 
 void describe(ObjectiveConfig& objective, Fields& fields) {
@@ -73,6 +84,8 @@ void describe(Config& config, Fields& fields) {
   fields.group("log", "logging", [&](Fields& in) {
     in.choice("level", config.log.level, {"trace", "debug", "info", "warn", "error"}, "least severe level logged");
   });
+  fields.group("store", "what is removed to make room; nothing unless a key says so, nothing that is not acknowledged",
+               [&](Fields& in) { describe(config.store, in); });
   fields.list("objectives", config.objectives, {0, 20},
               "objectives that can be on the microscope; a person confirms which one is there",
               [](Fields& in, ObjectiveConfig& objective) { describe(objective, in); });

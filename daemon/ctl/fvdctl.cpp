@@ -11,6 +11,7 @@
 #include "config/nearest_name.hpp"
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/ctl/backup_commands.hpp"
 #include "daemon/ctl/device_commands.hpp"
 #include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
@@ -56,6 +57,7 @@ struct Arguments {
   SetupArguments setup;
   RecipeArguments recipe;
   ObjectiveArguments objective;
+  BackupArguments backup;
   StudyArguments study;
 };
 
@@ -301,6 +303,7 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_study_commands(
       app, a.study, [&a] { return connect(a); }, a.client, terminal, chosen);
 
+  add_backup_commands(app, a.backup, terminal, chosen);
   add_objective_commands(
       app, a.objective, [&a] { return connect(a); }, terminal, chosen);
 

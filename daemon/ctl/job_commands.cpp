@@ -64,7 +64,10 @@ Json job_key(RpcClient& client, const std::string& job, const std::string& owner
 
 Json start_job(RpcClient& client, const StartOptions& options, const std::string& owner) {
   std::int64_t seq = options.seq.value_or(0);
-  if (!options.seq) seq = client.call("job.latest", {{"client", owner}}).value("seq", std::int64_t{0}) + 1;
+  if (!options.seq) {
+    const Json latest = client.call("job.latest", {{"client", owner}});
+    seq = latest.value("newest_seq", latest.value("seq", std::int64_t{0})) + 1;
+  }
   Json params{{"seq", seq}, {"part_id", options.part_id}, {"client", owner}};
   if (!options.recipe.empty()) params["recipe"] = options.recipe;
   if (options.temperature_c) params["temperature_c"] = *options.temperature_c;

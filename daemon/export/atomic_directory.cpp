@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <iterator>
 #include <system_error>
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 
 namespace fvd {
@@ -39,17 +38,9 @@ fs::path make_temporary(const fs::path& final_dir) {
     const std::string name = "." + final_dir.filename().string() + "." + std::to_string(::getpid()) + "-" +
                              std::to_string(attempt) + std::string(kTemporarySuffix);
     fs::path path = final_dir.parent_path() / name;
-    if (::mkdir(path.c_str(), 0755) == 0) return path;
+    if (file_calls().make_directory(path) == 0) return path;
     if (errno != EEXIST) throw storage_error(errno, "create directory", path);
   }
-}
-
-void rename_to_new(const fs::path& from, const fs::path& to) {
-  // Plain rename() would replace an empty directory that appeared meanwhile.
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
-  const bool unsupported = errno == EINVAL || errno == ENOSYS;
-  if (unsupported && !fs::exists(to) && ::rename(from.c_str(), to.c_str()) == 0) return;
-  throw storage_error(errno, "rename the finished directory to", to);
 }
 
 }  // namespace
@@ -59,8 +50,7 @@ AtomicDirectory::AtomicDirectory(const fs::path& final_dir)
 
 AtomicDirectory::~AtomicDirectory() {
   if (temporary_.empty()) return;
-  std::error_code ignored;
-  fs::remove_all(temporary_, ignored);
+  file_calls().remove_all(temporary_);
 }
 
 void AtomicDirectory::add_file(const fs::path& name, std::string_view bytes) {
@@ -76,7 +66,7 @@ void AtomicDirectory::add_file(const fs::path& name, const ByteProducer& produce
   }
   if (const fs::path folder = name.parent_path();
       !folder.empty() && std::find(folders_.begin(), folders_.end(), folder) == folders_.end()) {
-    if (::mkdir((temporary_ / folder).c_str(), 0755) != 0) {
+    if (file_calls().make_directory(temporary_ / folder) != 0) {
       throw storage_error(errno, "create directory", temporary_ / folder);
     }
     folders_.push_back(folder);
@@ -95,12 +85,13 @@ void AtomicDirectory::commit() {
   while (!unsynced_.empty()) finish_oldest();
   for (const auto& folder : folders_) sync_directory(temporary_ / folder);
   sync_directory(temporary_);
-  rename_to_new(temporary_, final_dir_);
+  if (file_calls().rename_to_new(temporary_, final_dir_) != 0) {
+    throw storage_error(errno, "rename the finished directory to", final_dir_);
+  }
   try {
     sync_directory(final_dir_.parent_path());
   } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(final_dir_, ignored);
+    file_calls().remove_all(final_dir_);
     temporary_.clear();
     throw;
   }

@@ -5,13 +5,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 
 namespace fvd {
 
 void write_all(int fd, std::string_view bytes, const std::filesystem::path& path) {
   while (!bytes.empty()) {
-    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    const ssize_t written = file_calls().write(fd, bytes.data(), bytes.size());
     if (written < 0) {
       if (errno == EINTR) continue;
       throw storage_error(errno, "write", path);
@@ -24,7 +25,7 @@ UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, std::string_view b
     : UnsyncedFile(path, [bytes](const ByteSink& sink) { sink(bytes); }) {}
 
 UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, const ByteProducer& produce)
-    : path_(path), file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644)) {
+    : path_(path), file_(file_calls().create(path)) {
   if (!file_.valid()) throw storage_error(errno, "create", path_);
   try {
     produce([this](std::string_view bytes) {
@@ -32,7 +33,7 @@ UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, const ByteProducer
       size_bytes_ += bytes.size();
     });
   } catch (...) {
-    ::unlink(path_.c_str());
+    file_calls().unlink(path_);
     throw;
   }
   // Only a head start: finish() sees every error, and a file system without it loses nothing but time.
@@ -42,10 +43,10 @@ UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, const ByteProducer
 void UnsyncedFile::finish() {
   try {
     // After a failed fsync the state of the cached pages is unknown: report, never retry.
-    if (::fsync(file_.get()) != 0) throw storage_error(errno, "bring to disk", path_);
-    if (::close(file_.release()) != 0) throw storage_error(errno, "close", path_);
+    if (file_calls().sync(file_.get()) != 0) throw storage_error(errno, "bring to disk", path_);
+    if (file_calls().close(file_.release()) != 0) throw storage_error(errno, "close", path_);
   } catch (...) {
-    ::unlink(path_.c_str());
+    file_calls().unlink(path_);
     throw;
   }
 }
@@ -57,22 +58,20 @@ void write_new_file(const std::filesystem::path& path, const ByteProducer& produ
 }
 
 void write_new_file_at_will(const std::filesystem::path& path, const std::function<void(int fd)>& write) {
-  UniqueFd file(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  UniqueFd file(file_calls().create(path));
   if (!file.valid()) throw storage_error(errno, "create", path);
   try {
     write(file.get());
-    if (::fsync(file.get()) != 0) throw storage_error(errno, "bring to disk", path);
-    if (::close(file.release()) != 0) throw storage_error(errno, "close", path);
+    if (file_calls().sync(file.get()) != 0) throw storage_error(errno, "bring to disk", path);
+    if (file_calls().close(file.release()) != 0) throw storage_error(errno, "close", path);
   } catch (...) {
-    ::unlink(path.c_str());
+    file_calls().unlink(path);
     throw;
   }
 }
 
 void sync_directory(const std::filesystem::path& directory) {
-  const UniqueFd fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!fd.valid()) throw storage_error(errno, "open directory", directory);
-  if (::fsync(fd.get()) != 0) throw storage_error(errno, "bring to disk directory", directory);
+  if (file_calls().sync_directory(directory) != 0) throw storage_error(errno, "bring to disk directory", directory);
 }
 
 }  // namespace fvd

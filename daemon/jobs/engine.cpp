@@ -20,7 +20,8 @@ int thread_count(int configured) {
 
 MachineBoard::Constants constants(const Config& config, const JobStore& store) {
   return {config.camera.simulated || config.stage.simulated, store.epoch(),
-          [&store] { return store.unacknowledged_count(); }};
+          [&store] { return store.unacknowledged_count(); }, [&store] { return store.unacknowledged_results(); },
+          [&store] { return store.newest_seqs(); },          config.rpc.fifo_results};
 }
 
 std::size_t memory_budget_bytes(const Config& config) {
@@ -48,9 +49,11 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
            }),
       ticks_("fvd-machine", kLongestStep),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir, config.objectives}),
+      storage_(deps.store.file(), config.paths.state_dir / "results"),
       following_(deps.store),
+      retention_(deps.store, config.store, config.paths.state_dir / "results"),
       runner_({config, deps.store, board_, hub_, deps.clock, pool_, pages_, preview_, history_, ticks_, calibrations_,
-               following_, deps.make_result,
+               following_, storage_, deps.make_result,
                deps.repeatability ? deps.repeatability
                                   : [this, simulated = config.camera.simulated || config.stage.simulated](
                                         const Recipe& recipe) {
@@ -69,13 +72,18 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              {pool_.threads(), memory_budget_bytes(config), pages_},
              [this](const std::string& recipe_id) { return recipes_.load(recipe_id); },
              [this] { return tasks_.task_stop(); },
-             config.objectives}),
+             config.objectives,
+             storage_}),
       desk_({[&store = deps.store](const std::string& id) { return store.find(id); },
              [this](const std::string& id) { return recipes_.load(id); }, memory_budget_bytes(config),
              calibrations_.folder()},
             studies_, calibrations_, config.camera.simulated || config.stage.simulated),
       study_runner_(desk_, [this] { board_.update([](MachineRecord&) {}); }),
-      thread_(hub_, board_, work_, ticks_, [this] { runner_.store_late_end(); }) {
+      thread_(hub_, board_, work_, ticks_, [this] {
+        runner_.look_after_storage();
+        jobs_.restore_prepared();
+      }) {
+  board_.update([&](MachineRecord& machine) { machine.recipe = deps.store.prepared_recipe(); });
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
     spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,
@@ -99,6 +107,7 @@ void Engine::finish() {
   thread_.finish();
   runner_.store_late_end();  // the last chance, before what may take long
   following_.finish();
+  retention_.finish();
   evaluator_.finish();
   study_runner_.finish();
 }

@@ -15,6 +15,7 @@
 #include "daemon/jobs/machine_thread.hpp"
 #include "daemon/jobs/objective_book.hpp"
 #include "daemon/jobs/result_evaluator.hpp"
+#include "daemon/jobs/retention.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/jobs/study_runner.hpp"
 #include "daemon/jobs/task_runner.hpp"
@@ -22,6 +23,7 @@
 #include "daemon/recipes/recipe_book.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/store/stage_history.hpp"
+#include "daemon/store/storage_watch.hpp"
 
 namespace fvd {
 
@@ -48,6 +50,7 @@ class Engine {
   /// called once.
   void start() {
     following_.start();
+    retention_.start();
     thread_.start();
   }
 
@@ -76,7 +79,9 @@ class Engine {
   WorkQueue work_;
   ThreadTicks ticks_;  // of thread_
   TaskRunner tasks_;
+  StorageWatch storage_;
   FollowingFiles following_;
+  Retention retention_;
   JobRunner runner_;
   ResultEvaluator evaluator_;
   JobQueue jobs_;

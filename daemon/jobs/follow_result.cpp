@@ -11,11 +11,10 @@
 
 #include "core/base/error.hpp"
 #include "core/surface/mask_reason.hpp"
-#include "daemon/export/durable_file.hpp"
 #include "daemon/export/exporter_table.hpp"
+#include "daemon/export/replace_file.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/sha256.hpp"
-#include "daemon/export/storage_error.hpp"
 #include "daemon/surface_files/result_folder.hpp"
 #include "daemon/surface_files/texture_image.hpp"
 
@@ -31,24 +30,6 @@ constexpr std::size_t kEncodingBytesPerPixel = 12;
 
 bool is_of_storage(const Error& error) {
   return error.code() == ErrorCode::kStorageFull || error.code() == ErrorCode::kStorageWrite;
-}
-
-/// Writes a file in place of what is there under its name, which is there or the new one, whole, whatever happens.
-/// Returns its size.
-std::uint64_t replace_file(const fs::path& path, const ByteProducer& produce) {
-  const fs::path temporary = path.parent_path() / ("." + path.filename().string() + ".tmp");
-  std::error_code ignored;
-  fs::remove(temporary, ignored);  // of a process that was killed
-  UnsyncedFile file(temporary, produce);
-  file.finish();
-  std::error_code failure;
-  fs::rename(temporary, path, failure);
-  if (failure) {
-    fs::remove(temporary, ignored);
-    throw storage_error(failure.value(), "rename the finished file to", path);
-  }
-  sync_directory(path.parent_path());
-  return file.size_bytes();
 }
 
 std::string sha256_of_file(const fs::path& path) {

@@ -1,8 +1,11 @@
 #include "daemon/jobs/job_queue.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include "core/base/error.hpp"
 #include "daemon/jobs/objective_book.hpp"
 #include "daemon/jobs/objective_limits.hpp"
+#include "daemon/pipeline/job_storage.hpp"
 
 namespace fvd {
 
@@ -36,9 +39,14 @@ class JobQueue::Claim {
 JobService::Started JobQueue::start(const JobRequest& request) {
   const Claim claim(*this, request);
   if (auto known = deps_.store.find_repeated(request)) {
+    if (known->error == ErrorCode::kInterrupted) {
+      throw Error(ErrorCode::kInterrupted, "job " + known->job_id + " of this number was interrupted, and has no " +
+                                               "result: measure the part again with a new sequence number");
+    }
     // The running job is known better on the board than in the database.
     return {on_board(known->job_id).value_or(*known), true};
   }
+  deps_.runner.look_after_storage();  // as it is now, not as it was half a second ago
   const Offer offered = offer(request);
   AcceptedJob job;
   try {
@@ -64,6 +72,11 @@ JobQueue::Offer JobQueue::offer(const JobRequest& request) {
 AcceptedJob JobQueue::made_durable(const JobRequest& request, const Offer& offer) {
   AcceptedJob job;
   job.recipe = checked_recipe(offer);
+  const CameraSettings& camera = job.recipe.camera;
+  deps_.storage.require_room(
+      job_storage_bytes(job.recipe, camera.width > 0 ? camera.width : offer.devices->camera.sensor_width,
+                        camera.height > 0 ? camera.height : offer.devices->camera.sensor_height),
+      "recipe " + job.recipe.id);
   JobRequest resolved = request;
   resolved.recipe = job.recipe.id;
   job.status = deps_.store.accept(resolved);
@@ -141,11 +154,29 @@ void JobQueue::prepare(const std::string& recipe_id) {
   const MachineRecord now = deps_.board.read();
   now.require(Command::kPrepareRecipe);
   const Recipe recipe = checked_recipe({recipe_id, now.devices, now.objective});
+  deps_.store.remember_prepared(recipe.id);
   deps_.board.update([&](MachineRecord& machine) {
     machine.require(Command::kPrepareRecipe);
     machine.recipe = recipe.id;
     machine.apply(MachineEvent::kRecipePrepared);
   });
+}
+
+void JobQueue::restore_prepared() {
+  if (restored_) return;
+  const MachineRecord now = deps_.board.read();
+  if (now.state.devices != DevicesState::kUp) return;
+  restored_ = true;
+  if (now.recipe.empty() || now.state.prepared) return;
+  try {
+    prepare(now.recipe);
+  } catch (const Error& failure) {
+    spdlog::warn("recipe {}, which was prepared when the daemon ended, is not prepared again: {}", now.recipe,
+                 failure.what());
+    deps_.board.update([&now](MachineRecord& machine) {
+      if (!machine.state.prepared && machine.recipe == now.recipe) machine.recipe.clear();
+    });
+  }
 }
 
 std::optional<StoredJob> JobQueue::stored_evaluation(const JobKey& key) const {

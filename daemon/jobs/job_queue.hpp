@@ -20,6 +20,7 @@
 #include "daemon/jobs/work_queue.hpp"
 #include "daemon/recipes/recipe.hpp"
 #include "daemon/store/job_store.hpp"
+#include "daemon/store/storage_watch.hpp"
 
 namespace fvd {
 
@@ -38,6 +39,7 @@ class JobQueue final : public JobService, public ResultService {
     std::function<Recipe(const std::string& recipe_id)> load_recipe;  ///< throws as load_recipe() does
     std::function<std::stop_source()> task_stop;                      ///< as TaskRunner::task_stop()
     const std::vector<ObjectiveConfig>& objectives;                   ///< of the configuration
+    const StorageWatch& storage;
   };
   explicit JobQueue(Dependencies dependencies) : deps_(std::move(dependencies)) {}
 
@@ -51,6 +53,10 @@ class JobQueue final : public JobService, public ResultService {
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override;
   int acknowledge(const JobKey& key) override;
   [[nodiscard]] std::shared_ptr<DeviceTask> evaluate(const JobKey& key, const std::string& recipe_id) override;
+
+  /// Prepares once, when the devices are up first, the recipe that was prepared when the daemon ended. context: the
+  /// machine's thread.
+  void restore_prepared();
 
   /// Asks the job that waits or runs to end.
   void stop_job();
@@ -73,6 +79,7 @@ class JobQueue final : public JobService, public ResultService {
   [[nodiscard]] std::optional<JobStatus> on_board(const JobKey& key) const;
 
   const Dependencies deps_;
+  bool restored_ = false;
 
   Mutex mutex_;
   Condition claim_ended_;

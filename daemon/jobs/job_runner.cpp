@@ -215,21 +215,44 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
   ended.acquired = ended.acquired || deps_.board.read().state.at_rest;
   ended.error = end.error;
   ended.error_message = end.message;
+  ended.ended_utc = utc_now();
+  ended.verdict = end.result.verdict;
+  ended.reason_codes = end.result.reason_codes;
   // The row is durable before anybody can see the job's end; a database that fails must not hide how it ended.
+  std::optional<StorageProblem> storage;
   try {
     deps_.store.finish(ended, end.result.directory, end.result.text, end.result.files_pending);
   } catch (const Error& failure) {
     spdlog::critical("job {}: its end is not stored yet, no job is taken before it is: {}", ended.job_id,
                      failure.what());
     ended.not_durable = failure.what();
+    storage = StorageProblem{failure.code(), deps_.store.kept_end()};
   }
   deps_.board.update([&](MachineRecord& machine) {
     if (machine.job) ended.acknowledged = machine.job->acknowledged;  // by a client that saw the row
     machine.job = ended;
     machine.apply(MachineEvent::kJobEnded);
+    if (storage) machine.set_storage(storage);
     if (end.used_devices) machine.set_devices(end.failure);
     machine.apply(MachineEvent::kRecipePrepared);  // by the job, on the way
   });
+}
+
+void JobRunner::look_after_storage() {
+  store_late_end();
+  const auto known = deps_.board.read().storage;
+  auto problem = deps_.storage.look();
+  if (const std::string kept = deps_.store.kept_end(); !problem && !kept.empty()) {
+    const bool was_told = known && known->message == kept;  // with the code of its cause
+    problem = was_told ? known : StorageProblem{ErrorCode::kDatabase, kept};
+  }
+  if (problem == known) return;
+  if (problem) {
+    spdlog::error("no job is taken: {}: {}", error_name(problem->code), problem->message);
+  } else {
+    spdlog::info("results can be kept again");
+  }
+  deps_.board.update([&problem](MachineRecord& machine) { machine.set_storage(problem); });
 }
 
 void JobRunner::store_late_end() {

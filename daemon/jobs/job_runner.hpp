@@ -24,6 +24,7 @@
 #include "daemon/recipes/recipe.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/store/stage_history.hpp"
+#include "daemon/store/storage_watch.hpp"
 
 namespace fvd {
 
@@ -48,6 +49,7 @@ class JobRunner {
     ThreadTicks& ticks;  ///< of the machine's thread
     const CalibrationBook& calibrations;
     FollowingFiles& following;
+    const StorageWatch& storage;
     ResultPipeline make_result = store_result;
     RepeatabilityOf repeatability = {};  ///< empty = nobody keeps gauge studies
   };
@@ -59,6 +61,9 @@ class JobRunner {
 
   /// Ends a job that did not begin because the daemon goes: failed, kShuttingDown. Never throws.
   void refuse(const AcceptedJob& job);
+
+  /// store_late_end(), and then tells the board whether results can be kept. Never throws.
+  void look_after_storage();
 
   /// Tries again to store the end of the latest job, if the database could not take it when it came. Never throws.
   void store_late_end();

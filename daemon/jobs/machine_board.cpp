@@ -16,6 +16,11 @@ void MachineRecord::set_devices(const std::optional<DeviceFailure>& why_not) {
   failure = why_not;
 }
 
+void MachineRecord::set_storage(const std::optional<StorageProblem>& why_not) {
+  apply(why_not ? MachineEvent::kStorageBad : MachineEvent::kStorageGood);
+  storage = why_not;
+}
+
 void MachineRecord::require_objective_unused() const {
   if (state.halted) throw Error(ErrorCode::kShuttingDown, "the daemon is shutting down");
   if (state.job != JobStage::kNone) {
@@ -42,6 +47,9 @@ void MachineRecord::require(Command command) const {
       throw Error(ErrorCode::kBusy, "the devices are busy with another command; try again when it is done");
     case Refusal::kOpening:
       throw Error(ErrorCode::kNotReady, "the devices are still being opened");
+    case Refusal::kStorage:
+      throw storage ? Error(storage->code, storage->message)
+                    : Error(ErrorCode::kStorageWrite, "results cannot be kept");
     case Refusal::kDeviceMissing:
       throw Error(ErrorCode::kNotReady, failure ? failure->message : "a device is missing");
   }
@@ -96,12 +104,18 @@ void MachineBoard::publish_locked() {
   status->objective = record_.objective;
   status->job = record_.job;
   status->results_waiting = constants_.results_waiting();
+  status->result_valid = constants_.results_valid && constants_.results_valid() > 0;
+  status->overrun = status->results_waiting > constants_.fifo_results;
+  if (constants_.newest_seqs) status->newest_seqs = constants_.newest_seqs();
   status->simulated = constants_.simulated || (record_.devices && record_.devices->simulated);
   if (record_.devices) status->camera = record_.devices->camera;
   status->epoch = constants_.epoch;
   if (record_.failure) {
     status->error = record_.failure->code;
     status->error_message = record_.failure->message;
+  } else if (record_.storage) {
+    status->error = record_.storage->code;
+    status->error_message = record_.storage->message;
   }
   const MutexLock lock(status_mutex_);
   status_ = std::move(status);

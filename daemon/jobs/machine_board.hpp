@@ -13,23 +13,28 @@
 #include "daemon/jobs/machine_state.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/store/job_status.hpp"
+#include "daemon/store/sequence_numbers.hpp"
+#include "daemon/store/storage_watch.hpp"
 
 namespace fvd {
 
 struct MachineRecord {
   MachineState state;
-  std::string recipe;                    ///< prepared recipe, empty = none
-  std::optional<JobStatus> job;          ///< the running or the latest job
-  std::optional<DeviceFailure> failure;  ///< why the devices cannot be used
-  std::optional<DeviceFacts> devices;    ///< of the devices when they were opened last
-  std::string objective;                 ///< that was confirmed, empty = none
-  bool confirming = false;               ///< another one is being made durable: nothing that rests on it begins
+  std::string recipe;                     ///< prepared recipe, empty = none
+  std::optional<JobStatus> job;           ///< the running or the latest job
+  std::optional<DeviceFailure> failure;   ///< why the devices cannot be used
+  std::optional<StorageProblem> storage;  ///< why results cannot be kept
+  std::optional<DeviceFacts> devices;     ///< of the devices when they were opened last
+  std::string objective;                  ///< that was confirmed, empty = none
+  bool confirming = false;                ///< another one is being made durable: nothing that rests on it begins
 
   /// Ignores an event that its table does not allow.
   void apply(MachineEvent event);
   /// DevicesDown for the reason, or DevicesUp for nothing.
   void set_devices(const std::optional<DeviceFailure>& why_not);
-  /// Throws Error kShuttingDown, kBusy, kNotReady.
+  /// StorageBad for the reason, or StorageGood for nothing.
+  void set_storage(const std::optional<StorageProblem>& why_not);
+  /// Throws Error kShuttingDown, kBusy, kNotReady, and of a problem of the storage.
   void require(Command command) const;
   /// That the objective may be another one from now on. Throws Error kShuttingDown; kBusy while a job is accepted or
   /// runs, while a command has the devices, while another confirmation is made durable.
@@ -43,7 +48,10 @@ class MachineBoard final : public MachineView {
   struct Constants {
     bool simulated = false;  ///< whatever the devices say of themselves
     std::int64_t epoch = 0;
-    std::function<int()> results_waiting;  ///< must not block
+    std::function<int()> results_waiting;  ///< must not block, as the next two
+    std::function<int()> results_valid{};  ///< the completed ones among them
+    std::function<std::shared_ptr<const NewestSeqs>()> newest_seqs{};
+    int fifo_results = 1000;  ///< more that wait are an overrun
   };
   MachineBoard(Constants constants, std::optional<JobStatus> latest_job);
 

@@ -29,6 +29,8 @@ bool is_allowed(const MachineState& machine, MachineEvent event) noexcept {
     case MachineEvent::kDevicesDown:
     case MachineEvent::kStandstillMeasured:
     case MachineEvent::kMotionSeen:
+    case MachineEvent::kStorageGood:
+    case MachineEvent::kStorageBad:
     case MachineEvent::kHalt:
       return true;
     case MachineEvent::kRecipePrepared:
@@ -94,6 +96,12 @@ std::optional<MachineState> after(MachineState machine, MachineEvent event) noex
       break;
     case MachineEvent::kTaskEnded:
       machine.task = TaskState::kNone;
+      break;
+    case MachineEvent::kStorageGood:
+      machine.storable = true;
+      break;
+    case MachineEvent::kStorageBad:
+      machine.storable = false;
       break;
     case MachineEvent::kHalt:
       machine.halted = true;

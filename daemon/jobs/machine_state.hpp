@@ -27,6 +27,7 @@ struct MachineState {
   DevicesState devices = DevicesState::kUnknown;
   TaskState task = TaskState::kNone;
   JobStage job = JobStage::kNone;
+  bool storable = true;  ///< results can be kept
 
   bool operator==(const MachineState&) const = default;
 };
@@ -45,6 +46,8 @@ enum class MachineEvent {
   kLookStarted,
   kMotionStarted,
   kTaskEnded,
+  kStorageGood,
+  kStorageBad,
   kHalt
 };
 inline constexpr std::array kAllMachineEvents{
@@ -52,7 +55,8 @@ inline constexpr std::array kAllMachineEvents{
     MachineEvent::kMotionSeen, MachineEvent::kJobOffered,  MachineEvent::kRecipePrepared,
     MachineEvent::kJobRefused, MachineEvent::kJobAccepted, MachineEvent::kJobAcquired,
     MachineEvent::kJobEnded,   MachineEvent::kLookStarted, MachineEvent::kMotionStarted,
-    MachineEvent::kTaskEnded,  MachineEvent::kHalt};
+    MachineEvent::kTaskEnded,  MachineEvent::kStorageGood, MachineEvent::kStorageBad,
+    MachineEvent::kHalt};
 
 /// The first row that fits:
 ///
@@ -60,6 +64,7 @@ inline constexpr std::array kAllMachineEvents{
 ///   job accepted, or a command that moves       -> executing
 ///   devices not opened yet                      -> preoperational
 ///   devices down                                -> error
+///   results cannot be kept                      -> error
 ///   devices up, recipe prepared                 -> ready
 ///   devices up                                  -> initialized
 [[nodiscard]] constexpr ScanState scan_state(const MachineState& machine) noexcept {
@@ -67,7 +72,7 @@ inline constexpr std::array kAllMachineEvents{
   if (machine.job == JobStage::kHoldsPart || machine.job == JobStage::kAcquired) return ScanState::kExecuting;
   if (machine.task == TaskState::kMoves) return ScanState::kExecuting;
   if (machine.devices == DevicesState::kUnknown) return ScanState::kPreoperational;
-  if (machine.devices == DevicesState::kDown) return ScanState::kError;
+  if (machine.devices == DevicesState::kDown || !machine.storable) return ScanState::kError;
   return machine.prepared ? ScanState::kReady : ScanState::kInitialized;
 }
 
@@ -94,7 +99,7 @@ struct Signals {
 enum class Command { kStartJob, kRunTask, kPrepareRecipe };
 inline constexpr std::array kAllCommands{Command::kStartJob, Command::kRunTask, Command::kPrepareRecipe};
 
-enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOpening, kDeviceMissing };
+enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOpening, kDeviceMissing, kStorage };
 
 /// Why the machine does not take the command now; the first row that fits:
 ///
@@ -102,6 +107,7 @@ enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOp
 ///   halted               | shutting down for all
 ///   job accepted         | job runs for all
 ///   job offered          | job offered | -           | -
+///   results not kept     | storage     | -           | -
 ///   a command looks      | -           | task runs   | -
 ///   a command moves      | taken: a job ends it | task runs | taken
 ///   devices not opened   | opening for all
@@ -111,6 +117,7 @@ enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOp
   if (machine.halted) return Refusal::kShuttingDown;
   if (machine.job == JobStage::kHoldsPart || machine.job == JobStage::kAcquired) return Refusal::kJobRuns;
   if (machine.job == JobStage::kOffered && command == Command::kStartJob) return Refusal::kJobOffered;
+  if (!machine.storable && command == Command::kStartJob) return Refusal::kStorage;
   if (machine.task != TaskState::kNone && command == Command::kRunTask) return Refusal::kTaskRuns;
   if (machine.task == TaskState::kMoves) return Refusal::kNone;
   if (machine.devices == DevicesState::kUnknown) return Refusal::kOpening;
@@ -134,6 +141,8 @@ enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOp
 ///   LookStarted        | run task is taken          | a command looks
 ///   MotionStarted      | run task is taken          | a command moves
 ///   TaskEnded          | a command                  | no command
+///   StorageGood        | always                     | results can be kept
+///   StorageBad         | always                     | results cannot be kept
 ///   Halt               | always                     | halted
 ///
 /// A job or a command that ends because a device is lost ends by its own event and DevicesDown, told as one change: the

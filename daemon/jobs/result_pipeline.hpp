@@ -21,7 +21,12 @@ struct JobResult {
   std::vector<WrittenBytes> written;  ///< what the digests are made of
   std::optional<ErrorCode> error;     ///< why the job failed though it has a result: too few points are valid
   std::string message;
+  std::string verdict;       ///< as JobStatus
+  std::string reason_codes;  ///< likewise
 };
+
+/// Notes what the result says of the part.
+void note_verdict(const Result& result, std::string& verdict, std::string& reason_codes);
 
 /// Gives a job's result for what it acquired, in a directory that may hold recorded slices already. begun: its files
 /// where they are on their way already, else null. Throws Error kStorageFull, kStorageWrite; nothing of the directory

@@ -21,6 +21,7 @@
 #include "daemon/recipes/recipe_service.hpp"
 #include "daemon/store/job_status.hpp"
 #include "daemon/store/objective_table.hpp"
+#include "daemon/store/sequence_numbers.hpp"
 #include "daemon/study/study_desk.hpp"
 
 namespace fvd {
@@ -31,10 +32,13 @@ struct MachineStatus {
   std::string objective;         ///< confirmed objective, empty = none
   std::optional<JobStatus> job;  ///< the running or the latest job
   Signals signals;
-  int results_waiting = 0;  ///< completed and not acknowledged
+  int results_waiting = 0;                        ///< ended jobs that are not acknowledged
+  bool result_valid = false;                      ///< one of them is completed
+  bool overrun = false;                           ///< more wait than the controller should ever leave
+  std::shared_ptr<const NewestSeqs> newest_seqs;  ///< of each client; null = nobody says
   bool simulated = false;
   std::int64_t epoch = 0;          ///< counts the daemon's starts
-  std::optional<ErrorCode> error;  ///< why the state is kError
+  std::optional<ErrorCode> error;  ///< why the state is kError: a device, or where results are kept
   std::string error_message;
   std::optional<CameraInfo> camera;  ///< that is open
 };
@@ -63,7 +67,7 @@ class JobService {
   /// Accepts a job and returns after its row is durable; the scan runs later on the machine's thread. A repeated
   /// request returns the existing job, also while the first is still being made durable: it waits for it then. Throws
   /// Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kObjectiveMismatch, kRegionOutside,
-  /// kMemoryBudget, kSeqConflict, kSeqStale, kStorageFull, kDatabase, kShuttingDown.
+  /// kMemoryBudget, kSeqConflict, kSeqStale, kInterrupted, kStorageFull, kStorageWrite, kDatabase, kShuttingDown.
   virtual Started start(const JobRequest& request) = 0;
 
   /// Throws Error kUnknownJob.
@@ -76,7 +80,7 @@ class JobService {
   virtual JobStatus abort(const JobKey& key) = 0;
 
   /// Loads and checks a recipe and makes it the prepared one. Throws Error kUnknownRecipe, kBadRecipe, kStageLimit,
-  /// kObjectiveMismatch, kRegionOutside, kMemoryBudget, kBusy.
+  /// kObjectiveMismatch, kRegionOutside, kMemoryBudget, kBusy, kDatabase, kStorageFull. A restart does not change it.
   virtual void prepare(const std::string& recipe_id) = 0;
 };
 

@@ -1,5 +1,11 @@
 #include "daemon/store/job_status.hpp"
 
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+
 namespace fvd {
 
 std::string_view job_state_name(JobState state) noexcept {
@@ -14,6 +20,25 @@ std::string_view job_state_name(JobState state) noexcept {
       return "failed";
   }
   return "failed";
+}
+
+std::string utc_now() {
+  const auto now = std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> whole{};
+  std::strftime(whole.data(), whole.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%s.%03dZ", whole.data(),
+                static_cast<int>(now.time_since_epoch().count() % 1000));
+  return text.data();
+}
+
+std::int64_t seconds_since(const std::string& utc) {
+  std::tm then{};
+  if (::strptime(utc.c_str(), "%Y-%m-%dT%H:%M:%S", &then) == nullptr) return 0;
+  return std::max<std::int64_t>(0, std::time(nullptr) - ::timegm(&then));
 }
 
 bool names(const JobKey& key, const JobStatus& job) {

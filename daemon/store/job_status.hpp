@@ -22,6 +22,7 @@ struct JobRequest {
   std::string recipe;                   ///< recipe id; empty = the prepared one
   std::string client = kDefaultClient;  ///< whose seq it is
   std::optional<double> temperature_c = {};  ///< -50..100, of the part; absent = not given
+  std::string session = {};  ///< of the client, which names it as it likes; a number is never repeated in another one
 };
 
 /// OPC 40100-1 result states: processing, completed, aborted, failed.
@@ -41,7 +42,16 @@ struct JobStatus {
   std::string error_message;
   bool acknowledged = false;  ///< result.ack was received
   std::string not_durable;    ///< why its end is not on disk yet; empty = it is, or the job has not ended
+  std::string ended_utc;      ///< 2026-11-30T10:00:00.000Z; empty = it has not ended
+  std::string verdict;        ///< pass, fail, uncertain, invalid; empty = nothing was judged
+  std::string reason_codes;   ///< why values are missing or uncertain, numbers on the wire: "1122,1145"; may be empty
+  std::string removed_utc;    ///< when its result was removed to make room; empty = it was not
 };
+
+/// This moment as ended_utc tells it.
+[[nodiscard]] std::string utc_now();
+/// Seconds since a moment that utc_now() told; 0 for one that lies ahead, because clocks are set, and for no moment.
+[[nodiscard]] std::int64_t seconds_since(const std::string& utc);
 
 /// A sequence number belongs to the client that chose it.
 struct ClientSeq {

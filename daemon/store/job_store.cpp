@@ -1,10 +1,8 @@
 #include "daemon/store/job_store.hpp"
 
-#include <array>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <map>
-#include <sstream>
 
 #include <spdlog/spdlog.h>
 
@@ -12,134 +10,15 @@
 #include "core/base/mutex.hpp"
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_id.hpp"
+#include "daemon/store/job_rows.hpp"
 #include "daemon/store/migrations.hpp"
 #include "daemon/store/recipe_table.hpp"
+#include "daemon/store/storage_reserve.hpp"
+#include "daemon/store/store_marker.hpp"
 
 namespace fvd {
 
 namespace {
-
-constexpr std::array kAllJobStates{JobState::kProcessing, JobState::kCompleted, JobState::kAborted, JobState::kFailed};
-
-/// Columns in the order in which read_row() takes them.
-#define FVD_JOB_COLUMNS                                                                                            \
-  "job_id, client, seq, part_id, recipe, state, error, error_message, acknowledged, slices_done, slices_planned, " \
-  "frames_expected, frames_ok, frames_incomplete, frames_missing, frames_stale, frames_underrun, result_dir, "     \
-  "result_json, acquired, temperature_c, files_pending"
-
-JobState state_from_name(const std::string& name) {
-  for (const JobState state : kAllJobStates) {
-    if (job_state_name(state) == name) return state;
-  }
-  return JobState::kFailed;
-}
-
-StoredJob read_row(const Statement& row) {
-  StoredJob job;
-  int column = 0;
-  const auto text = [&] { return row.text(column++); };
-  const auto integer = [&] { return row.integer(column++); };
-  const auto count = [&] { return static_cast<std::uint64_t>(integer()); };
-  JobStatus& status = job.status;
-  status.job_id = text();
-  status.request.client = text();
-  status.request.seq = integer();
-  status.request.part_id = text();
-  status.request.recipe = text();
-  status.state = state_from_name(text());
-  if (const std::string name = text(); !name.empty()) status.error = error_from_name(name);
-  status.error_message = text();
-  status.acknowledged = integer() != 0;
-  status.slices_done = static_cast<int>(integer());
-  status.slices_planned = static_cast<int>(integer());
-  status.frames.expected = count();
-  status.frames.ok = count();
-  status.frames.incomplete = count();
-  status.frames.missing = count();
-  status.frames.stale = count();
-  status.frames.underrun = count();
-  job.result_dir = text();
-  job.result_json = text();
-  status.acquired = integer() != 0;
-  status.request.temperature_c = row.real(column++);
-  job.files_pending = integer() != 0;
-  return job;
-}
-
-using KeptEnds = std::map<std::string, StoredJob>;  // by job_id
-
-/// The row, or the job's end that the row does not have yet.
-StoredJob as_it_stands(const StoredJob& row, const KeptEnds& kept) {
-  const auto end = kept.find(row.status.job_id);
-  return end == kept.end() ? row : end->second;
-}
-
-std::optional<JobStatus> first_status(Statement& rows, const KeptEnds& kept) {
-  if (!rows.step()) return std::nullopt;
-  return as_it_stands(read_row(rows), kept).status;
-}
-
-std::string number_text(std::int64_t seq, const std::string& client) {
-  return "seq " + std::to_string(seq) + " of client '" + client + "'";
-}
-
-std::string key_text(const JobKey& key) {
-  if (const auto* id = std::get_if<std::string>(&key)) return "'" + *id + "'";
-  const auto& number = std::get<ClientSeq>(key);
-  return "with " + number_text(number.seq, number.client);
-}
-
-std::string temperature_text(const std::optional<double>& temperature_c) {
-  if (!temperature_c) return {};
-  std::ostringstream text;
-  text << ", temperature_c " << *temperature_c;
-  return text.str();
-}
-
-std::int64_t scalar(const Database& database, const char* sql) {
-  Statement query(database, sql);
-  return query.step() ? query.integer(0) : 0;
-}
-
-StoredJob job_in(const Database& database, const KeptEnds& kept, const JobKey& key) {
-  const auto* id = std::get_if<std::string>(&key);
-  Statement query(database, id != nullptr ? "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE job_id = ?"
-                                          : "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
-  if (id != nullptr) {
-    query.bind(*id);
-  } else {
-    const auto& number = std::get<ClientSeq>(key);
-    query.bind(number.client).bind(number.seq);
-  }
-  if (!query.step()) throw Error(ErrorCode::kUnknownJob, "no job " + key_text(key) + " is known");
-  return as_it_stands(read_row(query), kept);
-}
-
-std::optional<JobStatus> repeated_in(const Database& database, const KeptEnds& kept, const JobRequest& request) {
-  const std::string number = number_text(request.seq, request.client);
-  Statement query(database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE client = ? AND seq = ?");
-  query.bind(request.client).bind(request.seq);
-  auto known = first_status(query, kept);
-  if (!known) {
-    Statement highest(database, "SELECT max(seq) FROM jobs WHERE client = ?");
-    highest.bind(request.client);
-    const std::int64_t newest = highest.step() ? highest.integer(0) : 0;
-    if (request.seq < newest - JobStore::kSeqWindow) {
-      throw Error(ErrorCode::kSeqStale, number + " is more than " + std::to_string(JobStore::kSeqWindow) +
-                                            " behind the newest, " + std::to_string(newest) + ": continue from there");
-    }
-    return std::nullopt;
-  }
-  const bool same_recipe = request.recipe.empty() || request.recipe == known->request.recipe;
-  const bool same_temperature = request.temperature_c == known->request.temperature_c;
-  if (known->request.part_id != request.part_id || !same_recipe || !same_temperature) {
-    throw Error(ErrorCode::kSeqConflict, number + " belongs to job " + known->job_id + " (part '" +
-                                             known->request.part_id + "', recipe '" + known->request.recipe + "'" +
-                                             temperature_text(known->request.temperature_c) +
-                                             "): use a new number for a new job");
-  }
-  return known;
-}
 
 std::filesystem::path with_folder(const std::filesystem::path& file) {
   std::error_code error;
@@ -151,30 +30,28 @@ std::filesystem::path with_folder(const std::filesystem::path& file) {
   return file;
 }
 
+/// Where the database is, or may be made.
+std::filesystem::path checked_file(const std::filesystem::path& file, const JobStore::Options& options) {
+  if (!options.start_anew) require_no_lost_database(file);
+  return with_folder(file);
+}
+
+void remember_in(const Database& database, const std::string& recipe_id) {
+  Statement(database, "INSERT OR REPLACE INTO prepared_recipe (one, recipe) VALUES (1, ?)").bind(recipe_id).run();
+}
+
 }  // namespace
 
 struct JobStore::Impl {
-  explicit Impl(const std::filesystem::path& file) : database(with_folder(file)) {}
+  Impl(const std::filesystem::path& path, const Options& given)
+      : options(given),
+        file(path),
+        database(checked_file(path, given)),
+        reserve(std::filesystem::path(path) += ".reserve") {}
 
-  void count_start() {
-    const MutexLock lock(mutex);
-    migrate(database);
-    Transaction transaction(database);
-    database.execute("UPDATE starts SET epoch = epoch + 1");
-    Statement(database,
-              "UPDATE jobs SET state = ?, error = ?, error_message = ?, "
-              "ended_utc = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE state = ?")
-        .bind(job_state_name(JobState::kFailed))
-        .bind(error_name(ErrorCode::kInterrupted))
-        .bind("the daemon stopped while the job ran: measure the part again with a new sequence number")
-        .bind(job_state_name(JobState::kProcessing))
-        .run();
-    epoch = scalar(database, "SELECT epoch FROM starts");
-    transaction.commit();
-    // From here on every job that is not acknowledged has ended, until one is accepted.
-    waiting = static_cast<int>(scalar(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0"));
-  }
-
+  void count_start();
+  void keep_marker_locked() FVD_REQUIRES(mutex);
+  void note_number_locked(const JobRequest& request) FVD_REQUIRES(mutex);
   void store_end_locked(const StoredJob& end) FVD_REQUIRES(mutex);
   void store_kept_ends_locked() FVD_REQUIRES(mutex);
 
@@ -184,6 +61,8 @@ struct JobStore::Impl {
     return kept_ends;
   }
 
+  const Options options;
+  const std::filesystem::path file;
   Mutex mutex;  // held while a commit waits for the disk
   Database database FVD_GUARDED_BY(mutex);
   Mutex read_mutex;  // never held then; never together with mutex
@@ -194,28 +73,79 @@ struct JobStore::Impl {
   CurveWidthTable widths{{database, mutex}, {reader, read_mutex}};
   ObjectiveTable objectives{{database, mutex}, {reader, read_mutex}};
   EvaluationTable evaluations{{database, mutex}, {reader, read_mutex}};
+  ResultTable on_disk{{database, mutex}, {reader, read_mutex}};
+  StorageReserve reserve FVD_GUARDED_BY(mutex);
+  StoreMarker marker FVD_GUARDED_BY(mutex);
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
+  std::atomic<int> results{0};  // of these the completed ones
+  mutable Mutex newest_mutex;   // held for a pointer's copy alone
+  std::shared_ptr<const NewestSeqs> newest FVD_GUARDED_BY(newest_mutex);
 };
 
-JobStore::JobStore(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) { impl_->count_start(); }
+void JobStore::Impl::count_start() {
+  const MutexLock lock(mutex);
+  const auto found = read_marker(database.file());
+  migrate(database);
+  Transaction transaction(database);
+  if (found && found->epoch > scalar(database, "SELECT epoch FROM starts")) {
+    spdlog::warn(
+        "database {}: it is older than the one of before, or new: epoch {} goes on from {}; numbers that may "
+        "have been used are not run again",
+        database.file().string(), found->epoch + 1, found->epoch);
+    Statement(database, "UPDATE starts SET epoch = ?").bind(found->epoch).run();
+    raise_seq_floors(database, found->newest_seq, found->margin);
+  }
+  database.execute("UPDATE starts SET epoch = epoch + 1");
+  Statement(database, "UPDATE jobs SET state = ?, error = ?, error_message = ?, ended_utc = ? WHERE state = ?")
+      .bind(job_state_name(JobState::kFailed))
+      .bind(error_name(ErrorCode::kInterrupted))
+      .bind("the daemon stopped while the job ran: measure the part again with a new sequence number")
+      .bind(utc_now())
+      .bind(job_state_name(JobState::kProcessing))
+      .run();
+  epoch = scalar(database, "SELECT epoch FROM starts");
+  transaction.commit();
+  // From here on every job that is not acknowledged has ended, until one is accepted.
+  waiting = static_cast<int>(scalar(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0"));
+  results =
+      static_cast<int>(scalar(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0 AND state = 'completed'"));
+  marker.newest_seq = newest_seqs_in(database);
+  {
+    const MutexLock newest_lock(newest_mutex);
+    newest = std::make_shared<const NewestSeqs>(marker.newest_seq);
+  }
+  keep_marker_locked();
+}
+
+void JobStore::Impl::keep_marker_locked() {
+  marker.epoch = epoch;
+  write_marker(database.file(), marker);
+}
+
+JobStore::JobStore(const std::filesystem::path& file, const Options& options)
+    : impl_(std::make_unique<Impl>(file, options)) {
+  impl_->count_start();
+}
 
 JobStore::~JobStore() = default;
 
 std::optional<JobStatus> JobStore::find_repeated(const JobRequest& request) const {
   const KeptEnds kept = impl_->kept();
   const MutexLock lock(impl_->read_mutex);
-  return repeated_in(impl_->reader, kept, request);
+  return repeated_in(impl_->reader, kept, request, impl_->options.repeat_window);
 }
 
 JobStatus JobStore::accept(const JobRequest& request) {
   const MutexLock lock(impl_->mutex);
   impl_->store_kept_ends_locked();
+  impl_->reserve.take();
   Transaction transaction(impl_->database);
-  if (const auto known = repeated_in(impl_->database, {}, request)) {
+  if (const auto known = repeated_in(impl_->database, {}, request, impl_->options.repeat_window)) {
     throw Error(ErrorCode::kSeqConflict,
                 number_text(request.seq, request.client) + " was accepted before, as job " + known->job_id);
   }
+  impl_->note_number_locked(request);
   // sqlite_sequence holds the number given last; it never goes back, even if rows are deleted.
   const std::int64_t number =
       1 + scalar(impl_->database, "SELECT coalesce(max(seq), 0) FROM sqlite_sequence WHERE name = 'jobs'");
@@ -223,8 +153,8 @@ JobStatus JobStore::accept(const JobRequest& request) {
   job.job_id = make_job_id(std::chrono::system_clock::now(), impl_->epoch, number);
   job.request = request;
   Statement(impl_->database,
-            "INSERT INTO jobs (number, job_id, client, seq, part_id, recipe, state, temperature_c) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+            "INSERT INTO jobs (number, job_id, client, seq, part_id, recipe, state, temperature_c, session) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(number)
       .bind(job.job_id)
       .bind(request.client)
@@ -233,38 +163,45 @@ JobStatus JobStore::accept(const JobRequest& request) {
       .bind(request.recipe)
       .bind(job_state_name(job.state))
       .bind(request.temperature_c)
+      .bind(request.session)
       .run();
+  remember_in(impl_->database, request.recipe);
   transaction.commit();
+  const MutexLock newest_lock(impl_->newest_mutex);
+  auto newest = std::make_shared<NewestSeqs>(*impl_->newest);
+  std::int64_t& of_client = (*newest)[request.client];
+  of_client = std::max(of_client, request.seq);
+  impl_->newest = std::move(newest);
   return job;
 }
 
+/// Where the disk is full the room that was held for it takes it.
 void JobStore::Impl::store_end_locked(const StoredJob& end) {
-  const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  const JobStatus& ended = end.status;
-  Transaction transaction(database);
-  Statement(database,
-            "UPDATE jobs SET state = ?, error = ?, error_message = ?, slices_done = ?, slices_planned = ?, "
-            "frames_expected = ?, frames_ok = ?, frames_incomplete = ?, frames_missing = ?, frames_stale = ?, "
-            "frames_underrun = ?, result_dir = ?, result_json = ?, acquired = ?, "
-            "files_pending = ?, ended_utc = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE job_id = ?")
-      .bind(job_state_name(ended.state))
-      .bind(ended.error ? error_name(*ended.error) : std::string_view())
-      .bind(ended.error_message)
-      .bind(std::int64_t{ended.slices_done})
-      .bind(std::int64_t{ended.slices_planned})
-      .bind(integer(ended.frames.expected))
-      .bind(integer(ended.frames.ok))
-      .bind(integer(ended.frames.incomplete))
-      .bind(integer(ended.frames.missing))
-      .bind(integer(ended.frames.stale))
-      .bind(integer(ended.frames.underrun))
-      .bind(end.result_dir)
-      .bind(end.result_json)
-      .bind(std::int64_t{ended.acquired})
-      .bind(std::int64_t{end.files_pending})
-      .bind(ended.job_id)
-      .run();
-  transaction.commit();
+  const auto store = [this, &end] {
+    mutex.assert_held();
+    Transaction transaction(database);
+    write_end(database, end);
+    transaction.commit();
+  };
+  try {
+    store();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kStorageFull) throw;
+    reserve.give_back();
+    store();
+  }
+}
+
+/// What is written of it beside the database is never further behind than the margin says.
+void JobStore::Impl::note_number_locked(const JobRequest& request) {
+  const auto known = marker.newest_seq.find(request.client);
+  if (known != marker.newest_seq.end() && request.seq <= known->second + kSeqJump / 2) return;
+  StoreMarker next = marker;
+  next.newest_seq[request.client] = request.seq;
+  next.epoch = epoch;
+  next.margin = kSeqJump;
+  write_marker(database.file(), next);
+  marker = next;
 }
 
 void JobStore::Impl::store_kept_ends_locked() {
@@ -283,10 +220,18 @@ void JobStore::Impl::store_kept_ends_locked() {
 void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json,
                       bool files_pending) {
   StoredJob end{ended, result_dir, result_json, files_pending};
+  if (end.status.ended_utc.empty()) end.status.ended_utc = utc_now();
   const MutexLock lock(impl_->mutex);
   bool was_running = true;  // also where the database cannot be asked
+  bool was_result = false;
+  const auto count = [&] {
+    if (was_running) ++impl_->waiting;
+    if (ended.state == JobState::kCompleted && !was_result) ++impl_->results;
+  };
   try {
-    was_running = job_in(impl_->database, impl_->kept(), ended.job_id).status.state == JobState::kProcessing;
+    const JobStatus before = job_in(impl_->database, impl_->kept(), ended.job_id).status;
+    was_running = before.state == JobState::kProcessing;
+    was_result = before.state == JobState::kCompleted;
     impl_->store_end_locked(end);
     const MutexLock kept_lock(impl_->kept_mutex);
     impl_->kept_ends.erase(ended.job_id);
@@ -297,10 +242,10 @@ void JobStore::finish(const JobStatus& ended, const std::string& result_dir, con
       const MutexLock kept_lock(impl_->kept_mutex);
       impl_->kept_ends[ended.job_id] = std::move(end);
     }
-    if (was_running) ++impl_->waiting;
+    count();
     throw;
   }
-  if (was_running) ++impl_->waiting;
+  count();
 }
 
 void JobStore::note_files(const std::string& job_id, const std::string& result_json, bool files_pending) {
@@ -325,7 +270,7 @@ std::vector<StoredJob> JobStore::with_pending_files() const {
   const MutexLock lock(impl_->read_mutex);
   Statement query(impl_->reader, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE files_pending = 1 ORDER BY number");
   std::vector<StoredJob> jobs;
-  while (query.step()) jobs.push_back(read_row(query));
+  while (query.step()) jobs.push_back(read_job_row(query));
   return jobs;
 }
 
@@ -369,6 +314,31 @@ std::optional<JobStatus> JobStore::next_unacknowledged() const {
 
 int JobStore::unacknowledged_count() const noexcept { return impl_->waiting; }
 
+int JobStore::unacknowledged_results() const noexcept { return impl_->results; }
+
+std::shared_ptr<const NewestSeqs> JobStore::newest_seqs() const {
+  const MutexLock lock(impl_->newest_mutex);
+  return impl_->newest;
+}
+
+std::string JobStore::kept_end() const {
+  const MutexLock lock(impl_->kept_mutex);
+  if (impl_->kept_ends.empty()) return {};
+  const auto& [job_id, end] = *impl_->kept_ends.begin();
+  return "the end of job " + job_id + " is not stored yet: " + end.status.not_durable;
+}
+
+void JobStore::remember_prepared(const std::string& recipe_id) {
+  const MutexLock lock(impl_->mutex);
+  remember_in(impl_->database, recipe_id);
+}
+
+std::string JobStore::prepared_recipe() const {
+  const MutexLock lock(impl_->read_mutex);
+  Statement query(impl_->reader, "SELECT recipe FROM prepared_recipe");
+  return query.step() ? query.text(0) : std::string();
+}
+
 int JobStore::acknowledge(const JobKey& key) {
   const MutexLock lock(impl_->mutex);
   impl_->store_kept_ends_locked();
@@ -379,6 +349,7 @@ int JobStore::acknowledge(const JobKey& key) {
   if (!job.acknowledged) {
     Statement(impl_->database, "UPDATE jobs SET acknowledged = 1 WHERE job_id = ?").bind(job.job_id).run();
     --impl_->waiting;
+    if (job.state == JobState::kCompleted) --impl_->results;
   }
   return impl_->waiting;
 }
@@ -389,6 +360,9 @@ CurveWidthTable& JobStore::curve_widths() noexcept { return impl_->widths; }
 
 ObjectiveTable& JobStore::objectives() noexcept { return impl_->objectives; }
 EvaluationTable& JobStore::evaluations() noexcept { return impl_->evaluations; }
+ResultTable& JobStore::results() noexcept { return impl_->on_disk; }
+
+const std::filesystem::path& JobStore::file() const noexcept { return impl_->file; }
 
 std::int64_t JobStore::epoch() const noexcept { return impl_->epoch; }
 

@@ -2,6 +2,7 @@
 
 /// Jobs on disk: what was accepted stays known, whatever happens to the process.
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,8 @@
 #include "daemon/store/evaluation_table.hpp"
 #include "daemon/store/job_status.hpp"
 #include "daemon/store/objective_table.hpp"
+#include "daemon/store/result_table.hpp"
+#include "daemon/store/sequence_numbers.hpp"
 
 namespace fvd {
 
@@ -22,25 +25,30 @@ namespace fvd {
 /// context: thread-safe. What only reads never waits for a commit.
 class JobStore {
  public:
-  /// A sequence number that is unknown and further back than this from its client's highest is refused as stale.
-  static constexpr std::int64_t kSeqWindow = 1000;
+  struct Options {
+    std::chrono::seconds repeat_window{600};  ///< a number is repeated as long as its job ended no longer ago
+    bool start_anew = false;                  ///< a database that is gone is not missed
+  };
 
-  /// Opens or creates the database and its folder, brings the tables of an older version up to date, counts the start,
-  /// and ends the jobs that were running when the last process died as failed with kInterrupted. Throws Error kDatabase
-  /// (also if another process holds the file, or it was written by a newer version), kStorageFull.
-  explicit JobStore(const std::filesystem::path& file);
+  /// Opens or creates the database and its folder, brings the tables of an older version up to date (a copy is kept
+  /// beside it), counts the start, and ends the jobs that were running when the last process died as failed with
+  /// kInterrupted. An older copy of the database goes on with a higher epoch than any before, and no number that may
+  /// have been used runs again. Throws Error kDatabase (also if another process holds the file, it was written by a
+  /// newer version, or it is gone), kStorageFull, kStorageWrite.
+  explicit JobStore(const std::filesystem::path& file) : JobStore(file, Options{}) {}
+  JobStore(const std::filesystem::path& file, const Options& options);
   ~JobStore();
   JobStore(const JobStore&) = delete;
   JobStore& operator=(const JobStore&) = delete;
 
-  /// The job of this client and sequence number if the request repeats it: same part, same temperature, same recipe;
-  /// a request that names no recipe repeats whichever was taken. Nothing if the number is new. Throws Error
-  /// kSeqConflict if the number belongs to another request, kSeqStale if it is unknown and too old.
+  /// The job of this client and sequence number if the request repeats it, nothing if the number is new; see
+  /// repeated_in(). Throws Error kSeqConflict, kSeqStale.
   [[nodiscard]] std::optional<JobStatus> find_repeated(const JobRequest& request) const;
 
   /// Makes the job's row durable and gives the job its id: unique over all starts, sortable by time, 29 characters.
-  /// request names its recipe. An end that is kept in memory is stored first: no job is taken before. Throws Error
-  /// kSeqConflict if the number is taken, kSeqStale, kDatabase, kStorageFull.
+  /// request names its recipe, which is the prepared one from now on. Room for the row that ends the job is held, and
+  /// an end that is kept in memory is stored first: no job is taken before. Throws Error kSeqConflict if the number is
+  /// taken, kSeqStale, kDatabase, kStorageFull, kStorageWrite.
   JobStatus accept(const JobRequest& request);
 
   /// Makes the end of the job `ended.job_id` durable. ended.state is not kProcessing. Throws Error kUnknownJob;
@@ -65,11 +73,22 @@ class JobStore {
 
   /// The oldest ended job that was not acknowledged.
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const;
-  /// How many there are. Kept in memory: reads no database and waits for nobody.
+  /// How many there are. Kept in memory: reads no database and waits for nobody, as the next three.
   [[nodiscard]] int unacknowledged_count() const noexcept;
+  /// How many of them are completed.
+  [[nodiscard]] int unacknowledged_results() const noexcept;
+  /// The newest number of each client; never null.
+  [[nodiscard]] std::shared_ptr<const NewestSeqs> newest_seqs() const;
+  /// Why the end of a job is not stored yet, its id first; empty = every end is.
+  [[nodiscard]] std::string kept_end() const;
   /// Returns how many remain; repeating it changes nothing. An end that is kept in memory is stored first. Throws Error
   /// kUnknownJob, kBusy if the job has not ended, kDatabase, kStorageFull.
   int acknowledge(const JobKey& key);
+
+  /// Remembers the recipe for jobs that name none. Throws Error kDatabase, kStorageFull.
+  void remember_prepared(const std::string& recipe_id);
+  /// Empty = none was prepared.
+  [[nodiscard]] std::string prepared_recipe() const;
 
   /// In the same file; as long as the store. context: thread-safe.
   [[nodiscard]] RecipeVersions& recipe_versions() noexcept;
@@ -80,8 +99,11 @@ class JobStore {
   /// In the same file; as long as the store. context: thread-safe.
   [[nodiscard]] ObjectiveTable& objectives() noexcept;
   [[nodiscard]] EvaluationTable& evaluations() noexcept;
+  [[nodiscard]] ResultTable& results() noexcept;
 
-  /// Counts the times this database was opened, from 1.
+  [[nodiscard]] const std::filesystem::path& file() const noexcept;
+
+  /// Counts the times this database was opened, from 1; an older copy goes on behind the newest.
   [[nodiscard]] std::int64_t epoch() const noexcept;
 
  private:

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
+#include "daemon/store/database_copy.hpp"
 
 namespace fvd {
 
@@ -182,6 +183,26 @@ CREATE INDEX jobs_with_pending_files ON jobs (number) WHERE files_pending = 1;
 )");
 }
 
+/// Version 11: what a line asks of its jobs, numbers that count as used without a job, and the prepared recipe.
+void keep_what_a_line_asks(Database& database) {
+  database.execute(R"(
+ALTER TABLE jobs ADD COLUMN session TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN verdict TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN reason_codes TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN removed_utc TEXT NOT NULL DEFAULT '';
+UPDATE jobs SET verdict = coalesce(json_extract(result_json, '$.verdict'), '') WHERE json_valid(result_json);
+UPDATE jobs SET acquired = 0 WHERE error = 'interrupted';
+CREATE TABLE seq_floors (
+  client TEXT    NOT NULL PRIMARY KEY,
+  seq    INTEGER NOT NULL
+) STRICT;
+CREATE TABLE prepared_recipe (
+  one    INTEGER NOT NULL PRIMARY KEY CHECK (one = 1),
+  recipe TEXT    NOT NULL
+) STRICT;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -193,6 +214,8 @@ constexpr std::array kSteps{
     MigrationStep{"temperatures of jobs", keep_temperatures_of_jobs},
     MigrationStep{"evaluations of results by other recipes", keep_evaluations},
     MigrationStep{"whether files of a result are pending", keep_whether_files_are_pending},
+    MigrationStep{"sessions, verdicts and removed results of jobs, floors of numbers, the prepared recipe",
+                  keep_what_a_line_asks},
 };
 
 void require_own_file(const Database& database, int version) {
@@ -222,6 +245,11 @@ int schema_version(const Database& database) { return static_cast<int>(scalar(da
 void migrate(Database& database, int version) {
   const int found = schema_version(database);
   require_own_file(database, found);
+  if (found > 0 && found < version) {
+    const std::string copy = database.file().string() + ".v" + std::to_string(found);
+    copy_database(database, copy);
+    spdlog::info("database {}: a copy of version {} is kept as {}", database.file().string(), found, copy);
+  }
   database.use_write_ahead_log();
   for (int from = found; from < version; ++from) {
     const MigrationStep& step = kSteps.at(static_cast<std::size_t>(from));

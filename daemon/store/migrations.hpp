@@ -23,8 +23,8 @@ struct MigrationStep {
 [[nodiscard]] int schema_version(const Database& database);
 
 /// Takes the file from its version to `version`, each step in a transaction of its own: a step that fails leaves the
-/// version before it with all its rows. Throws Error kDatabase if a newer fvd or another program made the file,
-/// kStorageFull.
+/// version before it with all its rows. A copy of the file as it was found is kept beside it, as "<file>.v<version>".
+/// Throws Error kDatabase if a newer fvd or another program made the file, kStorageFull.
 void migrate(Database& database, int version = newest_schema_version());
 
 }  // namespace fvd

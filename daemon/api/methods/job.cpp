@@ -21,6 +21,7 @@ struct StartParams {
   std::string recipe;
   ClientParam client;
   std::optional<double> temperature_c;
+  std::string session;
 
   void describe(Fields& fields) {
     describe_seq(fields, seq, "chosen by the client; the same number is the same job");
@@ -33,6 +34,8 @@ struct StartParams {
       inner.number("temperature_c", value, {-50.0, 100.0},
                    "of the part, degrees Celsius; absent = as the configuration's temperature.file tells");
     });
+    fields.text("session", session, kMaxForeignText_bytes,
+                "of the client, e.g. its start: a number of another one is refused, never repeated");
   }
 };
 
@@ -62,7 +65,8 @@ void describe_started(Fields& fields) {
 void describe_latest(Fields& fields) {
   const ResultFields result(fields);
   result.text("job_id", "empty = the client has started none");
-  result.integer("seq", "the client's highest so far, 0 = none");
+  result.integer("seq", "of the client's job with the highest, 0 = none");
+  result.integer("newest_seq", "the highest that counts as used, 0 = none; the next number is one more");
 }
 
 const std::string& checked_part_id(const std::string& part_id) {
@@ -82,8 +86,8 @@ std::optional<JobStatus> running_job(const MachineView& machine, const JobKey& k
 }
 
 Answer start_job(JobService& jobs, const StartParams& params) {
-  const auto started = jobs.start(
-      {params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked(), params.temperature_c});
+  const auto started = jobs.start({params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked(),
+                                   params.temperature_c, params.session});
   return Reply{{"job_id", started.job.job_id},
                {"seq", params.seq},
                {"client", params.client.client},
@@ -104,16 +108,17 @@ Answer wait_for_job(const Services& services, const Call& call, const WaitParams
 
 void add_job_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
-  methods["job.start"] = {
-      .about = {.summary = "Starts a measurement; answers once its row is on disk",
-                .params = described<StartParams>(),
-                .result = describe_started,
-                .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale, kShuttingDown,
-                           kStageLimit, kObjectiveMismatch, kStorageFull, kDatabase, kMemoryBudget, kRegionOutside},
-                .moves_stage = true,
-                .needs_id = true},
-      .run = with<StartParams>(
-          [&jobs = services.jobs](const Call&, const StartParams& params) { return start_job(jobs, params); })};
+  methods["job.start"] = {.about = {.summary = "Starts a measurement; answers once its row is on disk",
+                                    .params = described<StartParams>(),
+                                    .result = describe_started,
+                                    .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale,
+                                               kInterrupted, kShuttingDown, kStageLimit, kObjectiveMismatch,
+                                               kStorageFull, kStorageWrite, kDatabase, kMemoryBudget, kRegionOutside},
+                                    .moves_stage = true,
+                                    .needs_id = true},
+                          .run = with<StartParams>([&jobs = services.jobs](const Call&, const StartParams& params) {
+                            return start_job(jobs, params);
+                          })};
   methods["job.status"] = {
       .about = {.summary = "What a job is doing",
                 .params = described<OneJobParams>(),
@@ -143,12 +148,15 @@ void add_job_methods(MethodTable& methods, const Services& services) {
                             return job_status_json(jobs.abort(params.key()));
                           })};
   methods["job.latest"] = {
-      .about = {.summary = "A client's job with the highest seq; its next number is one more",
+      .about = {.summary = "A client's job with the highest seq; its next number is one more than newest_seq",
                 .params = described<ClientParam>(),
                 .result = describe_latest},
-      .run = with<ClientParam>([&jobs = services.jobs](const Call&, const ClientParam& params) -> Answer {
-        const auto job = jobs.highest(params.checked());
-        return Reply{{"job_id", job ? job->job_id : ""}, {"seq", job ? job->request.seq : 0}};
+      .run = with<ClientParam>([services](const Call&, const ClientParam& params) -> Answer {
+        const auto job = services.jobs.highest(params.checked());
+        const std::int64_t seq = job ? job->request.seq : 0;
+        return Reply{{"job_id", job ? job->job_id : ""},
+                     {"seq", seq},
+                     {"newest_seq", std::max(seq, newest_seq(*services.machine.snapshot(), params.client))}};
       })};
 }
 

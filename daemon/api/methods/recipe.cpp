@@ -193,7 +193,7 @@ void add_recipe_methods(MethodTable& methods, const Services& services) {
                 .params = described<RecipeParams>(),
                 .result = describe_prepared,
                 .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kShuttingDown, kStageLimit, kObjectiveMismatch,
-                           kRegionOutside, kMemoryBudget}},
+                           kRegionOutside, kMemoryBudget, kDatabase, kStorageFull}},
       .run = with<RecipeParams>([&jobs = services.jobs](const Call&, const RecipeParams& params) {
         jobs.prepare(params.id);
         return Reply{{"recipe", params.id}};

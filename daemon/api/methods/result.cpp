@@ -53,6 +53,12 @@ void describe_acknowledged(Fields& fields) {
 
 Reply result_of(const Services& services, const JobKey& key, const std::string& format) {
   const StoredJob stored = services.results.stored(key);
+  if (!stored.status.removed_utc.empty()) {
+    throw Error(ErrorCode::kUnknownJob, "the result of job " + stored.status.job_id + " was removed at " +
+                                            stored.status.removed_utc +
+                                            " to make room, as the configuration's group store says: job.status " +
+                                            "tells what the job came to");
+  }
   if (format == "compact") return compact_result_json(stored.status, stored.result_json);
   if (format == "complete") return complete_result_json(stored.status, stored.result_json, stored.result_dir);
   return full_result_json(stored.status, stored.result_json, stored.result_dir);

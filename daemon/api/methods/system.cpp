@@ -1,6 +1,7 @@
 /// The machine as a whole.
 
 #include "daemon/api/json_shapes.hpp"
+#include "daemon/api/methods/job_key_params.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/result_fields.hpp"
@@ -61,12 +62,14 @@ void add_system_methods(MethodTable& methods, const Services& services, std::chr
   methods["system.info"] = {
       .about = {.summary = "Who answers", .params = described<NoParams>(), .result = describe_info},
       .peek = [&machine = services.machine](const Call&) { return info_of(*machine.snapshot()); }};
-  methods["system.state"] = {.about = {.summary = "The machine's state, flat and cheap to poll",
-                                       .params = described<NoParams>(),
-                                       .result = describe_machine_status},
-                             .peek = [&machine = services.machine, heartbeat](const Call&) {
-                               return machine_status_json(*machine.snapshot(), heartbeat());
-                             }};
+  methods["system.state"] = {
+      .about = {.summary = "The machine's state, flat and cheap to poll",
+                .params = described<ClientParam>(),
+                .result = describe_machine_status},
+      .peek = with<ClientParam>(
+          [&machine = services.machine, heartbeat](const Call&, const ClientParam& params) -> std::optional<Answer> {
+            return Answer(machine_status_json(*machine.snapshot(), params.checked(), heartbeat()));
+          })};
 }
 
 }  // namespace fvd

@@ -70,7 +70,6 @@ TEST_F(AJobQueue, ShowsAJobOnlyOnceItIsDurableAndKeepsNobodyWaitingMeanwhile) {
       tasks().submit([](const Devices&, std::stop_token) { return std::string("{}"); }, TaskMotion::kMoves);
   ASSERT_TRUE(await_answer(*task));
   EXPECT_EQ(task->outcome()->json, "{}");
-  jobs().prepare("part");
   EXPECT_NE(started.wait_for(milliseconds(0)), std::future_status::ready);
 
   disk.let_go();

@@ -20,7 +20,9 @@ std::vector<MachineState> all_states() {
         for (const auto devices : {DevicesState::kUnknown, DevicesState::kDown, DevicesState::kUp}) {
           for (const auto task : {TaskState::kNone, TaskState::kLooks, TaskState::kMoves}) {
             for (const auto job : {JobStage::kNone, JobStage::kOffered, JobStage::kHoldsPart, JobStage::kAcquired}) {
-              states.push_back({halted, at_rest, prepared, devices, task, job});
+              for (const bool storable : {false, true}) {
+                states.push_back({halted, at_rest, prepared, devices, task, job, storable});
+              }
             }
           }
         }
@@ -32,9 +34,9 @@ std::vector<MachineState> all_states() {
 
 std::string text(const MachineState& machine) {
   return std::string(machine.halted ? "halted " : "") + (machine.at_rest ? "at_rest " : "") +
-         (machine.prepared ? "prepared " : "") + "devices " + std::to_string(static_cast<int>(machine.devices)) +
-         " task " + std::to_string(static_cast<int>(machine.task)) + " job " +
-         std::to_string(static_cast<int>(machine.job));
+         (machine.storable ? "" : "not storable ") + (machine.prepared ? "prepared " : "") + "devices " +
+         std::to_string(static_cast<int>(machine.devices)) + " task " + std::to_string(static_cast<int>(machine.task)) +
+         " job " + std::to_string(static_cast<int>(machine.job));
 }
 
 bool has_job(const MachineState& m) { return m.job == JobStage::kHoldsPart || m.job == JobStage::kAcquired; }
@@ -51,6 +53,7 @@ const std::vector<StateRow> kStateRows{
     {moves, S::kExecuting},
     {[](const MachineState& m) { return m.devices == DevicesState::kUnknown; }, S::kPreoperational},
     {[](const MachineState& m) { return m.devices == DevicesState::kDown; }, S::kError},
+    {[](const MachineState& m) { return !m.storable; }, S::kError},
     {[](const MachineState& m) { return m.prepared; }, S::kReady},
     {[](const MachineState&) { return true; }, S::kInitialized},
 };
@@ -67,6 +70,7 @@ const std::vector<RefusalRow> kRefusalRows{
      Refusal::kShuttingDown},
     {has_job, Refusal::kJobRuns, Refusal::kJobRuns, Refusal::kJobRuns},
     {[](const MachineState& m) { return m.job == JobStage::kOffered; }, Refusal::kJobOffered, kGoOn, kGoOn},
+    {[](const MachineState& m) { return !m.storable; }, Refusal::kStorage, kGoOn, kGoOn},
     {[](const MachineState& m) { return m.task == TaskState::kLooks; }, kGoOn, Refusal::kTaskRuns, kGoOn},
     {moves, Refusal::kNone, Refusal::kTaskRuns, Refusal::kNone},
     {[](const MachineState& m) { return m.devices == DevicesState::kUnknown; }, Refusal::kOpening, Refusal::kOpening,
@@ -117,6 +121,8 @@ const std::vector<EventRow> kEventRows{
     {E::kMotionStarted, taken<Command::kRunTask>, [](MachineState& m) { m.task = TaskState::kMoves; }},
     {E::kTaskEnded, [](const MachineState& m) { return m.task != TaskState::kNone; },
      [](MachineState& m) { m.task = TaskState::kNone; }},
+    {E::kStorageGood, always, [](MachineState& m) { m.storable = true; }},
+    {E::kStorageBad, always, [](MachineState& m) { m.storable = false; }},
     {E::kHalt, always, [](MachineState& m) { m.halted = true; }},
 };
 

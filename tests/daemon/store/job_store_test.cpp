@@ -178,9 +178,9 @@ TEST_F(AJobStore, RefusesUnknownNumbersBehindTheWindow) {
   (void)store_->accept(request(1));
   (void)store_->accept(request(5000));
 
-  EXPECT_FALSE(store_->find_repeated(request(5000 - JobStore::kSeqWindow))) << "the last number of the window is new";
-  FVD_EXPECT_ERROR(kSeqStale, (void)store_->find_repeated(request(4999 - JobStore::kSeqWindow)));
-  FVD_EXPECT_ERROR(kSeqStale, (void)store_->accept(request(4999 - JobStore::kSeqWindow)));
+  EXPECT_FALSE(store_->find_repeated(request(5000 - kSeqWindow))) << "the last number of the window is new";
+  FVD_EXPECT_ERROR(kSeqStale, (void)store_->find_repeated(request(4999 - kSeqWindow)));
+  FVD_EXPECT_ERROR(kSeqStale, (void)store_->accept(request(4999 - kSeqWindow)));
   EXPECT_TRUE(store_->find_repeated(request(1))) << "known, however old";
 }
 

@@ -76,6 +76,19 @@ TEST_F(AFileOfVersion1, HasTheTablesOfANewFileInTheEnd) {
   EXPECT_EQ(schema_version(old_file), schema_version(new_file));
 }
 
+TEST_F(AFileOfVersion1, IsKeptAsACopyBeforeItIsMigrated) {
+  std::vector<Row> before;
+  {
+    Database database(file_);
+    before = rows_of(database);
+    migrate(database);
+  }
+  const Database copy(folder_.path() / "fvd.sqlite.v1");
+  EXPECT_EQ(schema_version(copy), 1);
+  EXPECT_EQ(rows_of(copy), before);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "fvd.sqlite.v1.tmp"));
+}
+
 TEST_F(AFileOfVersion1, StaysAsItIsOnceItIsOfTheNewestVersion) {
   Database database(file_);
   migrate(database);
@@ -99,7 +112,8 @@ TEST_F(AFileOfVersion1, GoesOnAsAStore) {
   EXPECT_EQ(store.find(ClientSeq{4712}).status.state, JobState::kAborted);
   EXPECT_EQ(store.find(ClientSeq{4714}).status.error, ErrorCode::kStageDisconnected);
   EXPECT_EQ(store.find(ClientSeq{4721}).status.error, ErrorCode::kInterrupted) << "it was running";
-  EXPECT_EQ(store.find_repeated({4711, "P-0815", "chapter"}).value().job_id, completed.status.job_id);
+  FVD_EXPECT_ERROR_SAYING(kSeqStale, (void)store.find_repeated({4711, "P-0815", "chapter"}),
+                          HasSubstr(completed.status.job_id));
   FVD_EXPECT_ERROR(kSeqConflict, (void)store.find_repeated({4711, "another", "chapter"}));
   EXPECT_THAT(store.accept({4722, "P-0821", "chapter"}).job_id, ::testing::EndsWith("-00003-000007"));
 }

@@ -1,0 +1,75 @@
+#include "daemon/backup/backup.hpp"
+
+#include <cerrno>
+#include <system_error>
+
+#include "core/base/error.hpp"
+#include "daemon/backup/copied_files.hpp"
+#include "daemon/backup/state_files.hpp"
+#include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
+#include "daemon/export/storage_error.hpp"
+#include "daemon/store/database_copy.hpp"
+
+namespace fvd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> results_in(const fs::path& database_file) {
+  const Database database(database_file);
+  Statement rows(database,
+                 "SELECT result_dir FROM jobs WHERE result_dir <> '' AND removed_utc = '' "
+                 "UNION ALL SELECT result_dir FROM evaluations");
+  std::vector<std::string> names;
+  while (rows.step()) names.push_back(fs::path(rows.text(0)).filename().string());
+  return names;
+}
+
+std::vector<std::string> copy_all(const InstrumentPaths& instrument, const fs::path& to, bool with_results) {
+  copy_database_in_use(instrument.state_dir / kDatabaseFile, to / kDatabaseFile);
+  for (const char* name : kStateFiles) copy_durably(instrument.state_dir / name, to / "state" / name);
+  copy_durably(instrument.recipe_dir, to / "recipes");
+  copy_durably(instrument.config_file, to / "fvd.json");
+  std::vector<std::string> missing;
+  if (!with_results) return missing;
+  // Every row of the copy was written after its folder, and folders of results do not change but by whole files.
+  for (const std::string& name : results_in(to / kDatabaseFile)) {
+    const fs::path folder = instrument.state_dir / "results" / name;
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) {
+      missing.push_back(name);
+      continue;
+    }
+    copy_durably(folder, to / "results" / name);
+  }
+  return missing;
+}
+
+}  // namespace
+
+std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs::path& folder, bool with_results) {
+  const fs::path final_dir = fs::absolute(folder).lexically_normal();
+  std::error_code error;
+  if (fs::exists(final_dir, error)) {
+    throw Error(ErrorCode::kBadInput, final_dir.string() + " exists already: give another name, or move it away");
+  }
+  const fs::path temporary = final_dir.string() + ".tmp";
+  fs::remove_all(temporary, error);  // of one that was cut off
+  if (!fs::create_directories(temporary, error) && error) {
+    throw storage_error(error.value(), "create directory", temporary);
+  }
+  try {
+    std::vector<std::string> missing = copy_all(instrument, temporary, with_results);
+    sync_directory(temporary);
+    if (file_calls().rename_to_new(temporary, final_dir) != 0) throw storage_error(errno, "rename to", final_dir);
+    sync_directory(final_dir.parent_path());
+    return missing;
+  } catch (...) {
+    fs::remove_all(temporary, error);
+    throw;
+  }
+}
+
+}  // namespace fvd

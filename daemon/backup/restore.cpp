@@ -1,0 +1,161 @@
+#include "daemon/backup/restore.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+#include <system_error>
+
+#include "core/base/error.hpp"
+#include "daemon/backup/copied_files.hpp"
+#include "daemon/backup/state_files.hpp"
+#include "daemon/export/durable_file.hpp"
+#include "daemon/export/storage_error.hpp"
+#include "daemon/store/database_copy.hpp"
+#include "daemon/store/migrations.hpp"
+#include "daemon/store/store_marker.hpp"
+
+namespace fvd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Starts of a machine that is lost count for nothing that could be known here.
+constexpr std::int64_t kUnknownStarts = 1000;
+
+struct Known {
+  std::int64_t epoch = 0;
+  NewestSeqs newest_seq;
+};
+
+void join(NewestSeqs& all, const NewestSeqs& more) {
+  for (const auto& [client, seq] : more) all[client] = std::max(all[client], seq);
+}
+
+Known known_to(const Database& database) {
+  Statement epoch(database, "SELECT epoch FROM starts");
+  return {epoch.step() ? epoch.integer(0) : 0, newest_seqs_in(database)};
+}
+
+/// Of a database that is there and can be read. Throws Error kDatabase where a daemon has it.
+std::optional<Known> known_to_the_replaced(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return std::nullopt;
+  const Database database(file);  // refused where a daemon has it
+  try {
+    return known_to(database);
+  } catch (const Error&) {
+    return std::nullopt;  // damaged, or of an older version
+  }
+}
+
+/// The backup's database as this version reads it, with the results where they are here.
+Known prepare_database(const fs::path& from, const fs::path& copy, const fs::path& results) {
+  for (const char* log : {"-wal", "-shm"}) {  // of a restoration that was cut off
+    std::error_code ignored;
+    fs::remove(copy.string() + log, ignored);
+  }
+  copy_database(Database(from), copy);
+  Database database(copy);
+  migrate(database);
+  Transaction transaction(database);
+  Statement(database, "UPDATE jobs SET result_dir = ? || '/' || job_id WHERE result_dir <> ''")
+      .bind(results.string())
+      .run();
+  Statement(database, "UPDATE evaluations SET result_dir = ? || '/' || evaluation_id").bind(results.string()).run();
+  transaction.commit();
+  database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  return known_to(database);
+}
+
+void move(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (!fs::exists(from, error)) return;
+  fs::create_directories(to.parent_path(), error);
+  fs::rename(from, to, error);
+  if (error) throw storage_error(error.value(), "move aside", from);
+}
+
+fs::path unused_folder(const fs::path& state) {
+  for (int number = 1;; ++number) {
+    const fs::path folder = state / ("replaced-" + std::to_string(number));
+    std::error_code error;
+    if (!fs::exists(folder, error)) return folder;
+  }
+}
+
+void put_back_where_missing(const fs::path& from, const fs::path& to, std::vector<std::string>& kept) {
+  std::error_code error;
+  if (!fs::exists(from, error)) return;
+  if (fs::exists(to, error) && !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
+    kept.push_back(to.string());
+    return;
+  }
+  fs::remove(to, error);
+  copy_durably(from, to);
+}
+
+int add_results(const fs::path& from, const fs::path& to) {
+  int added = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(from, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path folder = to / entry->path().filename();
+    std::error_code ignored;
+    if (fs::exists(folder, ignored)) continue;
+    const fs::path hidden = to / ("." + entry->path().filename().string() + ".restored.tmp");
+    fs::remove_all(hidden, ignored);
+    copy_durably(entry->path(), hidden);
+    fs::rename(hidden, folder);
+    ++added;
+  }
+  return added;
+}
+
+}  // namespace
+
+Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrument) {
+  if (std::error_code error; !fs::exists(folder / kDatabaseFile, error)) {
+    throw Error(ErrorCode::kBadInput, folder.string() + " is no backup: it has no " + kDatabaseFile);
+  }
+  const fs::path state = fs::absolute(instrument.state_dir);
+  const fs::path file = state / kDatabaseFile;
+  fs::create_directories(state / "results");
+  const auto replaced = known_to_the_replaced(file);
+  const fs::path incoming = state / "fvd.restored";
+  const Known backup = prepare_database(folder / kDatabaseFile, incoming, state / "results");
+
+  Restored restored;
+  restored.numbers_are_exact = replaced.has_value();
+  StoreMarker marker = read_marker(file).value_or(StoreMarker{});
+  const bool blind = !replaced && marker.epoch == 0;
+  marker.epoch = std::max(marker.epoch, backup.epoch) + (blind ? kUnknownStarts : 1);
+  join(marker.newest_seq, backup.newest_seq);
+  if (replaced) {
+    marker.epoch = std::max(marker.epoch, replaced->epoch + 1);
+    join(marker.newest_seq, replaced->newest_seq);
+  }
+  marker.margin = replaced ? 0 : kSeqJump;
+  restored.epoch = marker.epoch;
+  write_marker(file, marker);  // first: whatever happens from here on, no number runs twice
+
+  const fs::path aside = unused_folder(state);
+  for (const char* name : {kDatabaseFile, "fvd.sqlite-wal", "fvd.sqlite-shm"}) move(state / name, aside / name);
+  for (const char* name : kStateFiles) {
+    if (std::error_code error; !fs::exists(folder / "state" / name, error)) continue;
+    move(state / name, aside / name);
+    copy_durably(folder / "state" / name, state / name);
+    give_to_owner_of(state, state / name);
+  }
+  restored.results = add_results(folder / "results", state / "results");
+  put_back_where_missing(folder / "recipes", instrument.recipe_dir, restored.kept);
+  put_back_where_missing(folder / "fvd.json", instrument.config_file, restored.kept);
+  move(incoming, file);  // last: without it the daemon does not start
+  sync_directory(state);
+  give_to_owner_of(state, file);
+  give_to_owner_of(state, marker_file(file));
+  give_to_owner_of(state, state / "results");
+  if (std::error_code error; fs::exists(aside, error)) restored.replaced = aside;
+  return restored;
+}
+
+}  // namespace fvd

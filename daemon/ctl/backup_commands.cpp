@@ -1,0 +1,70 @@
+#include "daemon/ctl/backup_commands.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+
+#include "config/strict_json.hpp"
+#include "core/base/error.hpp"
+#include "daemon/backup/backup.hpp"
+#include "daemon/backup/restore.hpp"
+#include "daemon/config/config_file.hpp"
+#include "daemon/ctl/exit_codes.hpp"
+
+namespace fvd::ctl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// As the configuration says; one that is not there yet is taken from `instead`.
+InstrumentPaths paths_of(const fs::path& config, const fs::path& instead) {
+  std::error_code error;
+  const fs::path& source = fs::exists(config, error) || instead.empty() ? config : instead;
+  const LoadedConfig loaded = parse_config(read_text_file(source), fs::absolute(config).parent_path());
+  throw_if_any(loaded.problems, ErrorCode::kBadConfig, source.string());
+  return {loaded.config.paths.state_dir, loaded.config.paths.recipe_dir, config};
+}
+
+int backup(const BackupArguments& arguments, const Terminal& terminal) {
+  const auto missing = make_backup(paths_of(arguments.config, {}), arguments.folder, arguments.results);
+  terminal.out << arguments.folder << " holds a backup" << (arguments.results ? " with results" : "") << std::endl;
+  for (const std::string& name : missing) {
+    terminal.err << "fvdctl: result " << name << " is known to the database, but its folder is not there" << std::endl;
+  }
+  return kExitOk;
+}
+
+int restore(const BackupArguments& arguments, const Terminal& terminal) {
+  const fs::path folder = arguments.folder;
+  const Restored restored = restore_backup(folder, paths_of(arguments.config, folder / "fvd.json"));
+  terminal.out << "restored; the next epoch is " << restored.epoch + 1 << ", " << restored.results
+               << " results were added\n";
+  if (!restored.replaced.empty()) terminal.out << "what was there before is in " << restored.replaced.string() << "\n";
+  for (const std::string& kept : restored.kept) {
+    terminal.out << kept << " is there and stays as it is; the backup's is in " << folder.string() << "\n";
+  }
+  terminal.out << (restored.numbers_are_exact
+                       ? "sequence numbers that were used since the backup stay used\n"
+                       : "sequence numbers may have been used since the backup: clients go on behind newest_seq\n")
+               << std::flush;
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_backup_commands(CLI::App& app, BackupArguments& a, const Terminal& terminal, std::function<int()>& chosen) {
+  const auto add = [&](const char* name, const char* help, const char* folder, auto run) {
+    CLI::App* sub = app.add_subcommand(name, help);
+    sub->add_option("folder", a.folder, folder)->required();
+    sub->add_option("--config", a.config, "the daemon's configuration")->capture_default_str()->type_name("FILE");
+    sub->callback([&a, &chosen, terminal, run] { chosen = [&a, terminal, run] { return run(a, terminal); }; });
+    return sub;
+  };
+  add("backup", "copy all that the instrument knows, also while it measures", "to be made; must not exist", backup)
+      ->add_flag("--results", a.results, "with the folders of all results");
+  add("restore", "put a backup back; the daemon must not run", "that `backup` made", restore);
+}
+
+}  // namespace fvd::ctl

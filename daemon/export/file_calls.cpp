@@ -1,0 +1,80 @@
+#include "daemon/export/file_calls.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fvd {
+
+namespace {
+
+FileCalls& real_calls() noexcept {
+  static FileCalls calls;
+  return calls;
+}
+
+std::atomic<FileCalls*> replaced{nullptr};
+
+}  // namespace
+
+// The group may read results: who looks after them need not be the daemon.
+int FileCalls::create(const std::filesystem::path& path) {
+  return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+}
+
+ssize_t FileCalls::write(int fd, const void* bytes, std::size_t count) { return ::write(fd, bytes, count); }
+
+int FileCalls::sync(int fd) { return ::fsync(fd); }
+
+int FileCalls::close(int fd) { return ::close(fd); }
+
+int FileCalls::make_directory(const std::filesystem::path& path) { return ::mkdir(path.c_str(), 0755); }
+
+int FileCalls::sync_directory(const std::filesystem::path& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return -1;
+  const int synced = ::fsync(fd);
+  const int reason = errno;
+  ::close(fd);
+  errno = reason;
+  return synced;
+}
+
+int FileCalls::rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+  // Plain rename() would replace an empty directory that appeared meanwhile.
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return -1;
+  struct stat info {};
+  if (::lstat(to.c_str(), &info) == 0) {
+    errno = EEXIST;
+    return -1;
+  }
+  return ::rename(from.c_str(), to.c_str());
+}
+
+int FileCalls::rename(const std::filesystem::path& from, const std::filesystem::path& to) {
+  return ::rename(from.c_str(), to.c_str());
+}
+
+int FileCalls::unlink(const std::filesystem::path& path) { return ::unlink(path.c_str()); }
+
+void FileCalls::remove_all(const std::filesystem::path& path) noexcept {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
+FileCalls& file_calls() noexcept {
+  FileCalls* const calls = replaced.load();
+  return calls != nullptr ? *calls : real_calls();
+}
+
+ReplacedFileCalls::ReplacedFileCalls(FileCalls& calls) noexcept { replaced = &calls; }
+
+ReplacedFileCalls::~ReplacedFileCalls() { replaced = nullptr; }
+
+}  // namespace fvd

@@ -1,0 +1,119 @@
+#include "daemon/jobs/reconcile_results.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <spdlog/spdlog.h>
+
+#include "config/strict_json.hpp"
+#include "core/base/error.hpp"
+#include "daemon/export/file_calls.hpp"
+#include "daemon/export/result_json.hpp"
+#include "daemon/jobs/result_pipeline.hpp"
+#include "daemon/result/evaluate.hpp"
+
+namespace fvd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Empty where the folder holds all that its result.json lists.
+std::string what_is_missing(const fs::path& folder, const Result& result, const std::string& job_id) {
+  if (result.job.id != job_id) return "it is the result of job " + result.job.id;
+  for (const ResultFile& file : result.files) {
+    if (file.state != FileState::kWritten) continue;
+    std::error_code error;
+    const bool is_there = file.files ? fs::is_directory(folder / file.name, error)
+                                     : fs::file_size(folder / file.name, error) == file.size_bytes && !error;
+    if (!is_there) return file.name + " is missing or cut off";
+  }
+  return {};
+}
+
+/// The job with the result of its folder, or why the folder is none.
+struct Found {
+  std::optional<StoredJob> whole;
+  std::string problem;
+};
+
+Found result_in(const fs::path& folder, const JobStatus& interrupted) {
+  try {
+    StoredJob job{interrupted, folder.string(), read_text_file(folder / "result.json")};
+    const Result result = read_result_json(job.result_json);
+    if (const std::string problem = what_is_missing(folder, result, interrupted.job_id); !problem.empty()) {
+      return {std::nullopt, problem};
+    }
+    JobStatus& status = job.status;
+    status.state = JobState::kCompleted;
+    status.error.reset();
+    status.error_message.clear();
+    if (const auto shortage = shortfall(result)) {
+      status.state = JobState::kFailed;
+      status.error = shortage->code;
+      status.error_message = shortage->message;
+    }
+    status.slices_planned = result.slices.planned;
+    status.slices_done = result.slices.measured;
+    status.frames = result.frames;
+    note_verdict(result, status.verdict, status.reason_codes);
+    job.files_pending = std::any_of(result.files.begin(), result.files.end(), [](const ResultFile& file) {
+      const bool no_digest = file.state == FileState::kWritten && !file.files && file.sha256.empty();
+      return file.state == FileState::kPending || no_digest;
+    });
+    return {std::move(job), {}};
+  } catch (const Error& error) {
+    return {std::nullopt, error.what()};
+  }
+}
+
+/// "J-e3" is an evaluation of job J.
+bool names_an_evaluation(const std::string& name) {
+  const auto mark = name.rfind("-e");
+  return mark != std::string::npos && mark + 2 < name.size() &&
+         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(mark) + 2, name.end(),
+                     [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+int remove_lost_evaluations(JobStore& store, const fs::path& results) {
+  int removed = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(results, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.') || !names_an_evaluation(name) || store.evaluations().find(name)) continue;
+    spdlog::warn("{}: the daemon stopped before this evaluation was known to anybody: removed", entry->path().string());
+    file_calls().remove_all(entry->path());
+    ++removed;
+  }
+  return removed;
+}
+
+}  // namespace
+
+Reconciled reconcile_results(JobStore& store, const fs::path& results) {
+  Reconciled done;
+  for (const JobStatus& interrupted : store.results().interrupted()) {
+    const fs::path folder = results / interrupted.job_id;
+    std::error_code error;
+    if (!fs::exists(folder, error)) continue;
+    const Found found = result_in(folder, interrupted);
+    if (found.whole && !interrupted.acknowledged) {
+      store.finish(found.whole->status, found.whole->result_dir, found.whole->result_json, found.whole->files_pending);
+      spdlog::warn("job {}: the daemon stopped between its result and its row: it is {} with the result in {}",
+                   interrupted.job_id, job_state_name(found.whole->status.state), folder.string());
+      ++done.adopted;
+      continue;
+    }
+    spdlog::warn("job {}: {} is no whole result of it: removed: {}", interrupted.job_id, folder.string(),
+                 found.whole ? "the job was acknowledged as interrupted" : found.problem);
+    file_calls().remove_all(folder);
+    ++done.removed;
+  }
+  done.removed += remove_lost_evaluations(store, results);
+  return done;
+}
+
+}  // namespace fvd

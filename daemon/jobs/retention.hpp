@@ -1,0 +1,56 @@
+#pragma once
+
+/// Makes room for new results: a thread that removes old ones as the configuration says.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "daemon/config/config.hpp"
+#include "daemon/store/job_store.hpp"
+#include "daemon/store/retention_plan.hpp"
+
+namespace fvd {
+
+/// A result is first told as removed, durably, and then removed: a process that is killed between the two goes on at
+/// the next start. Each removal is logged. context: one thread, beside its own.
+class Retention {
+ public:
+  /// What they refer to outlives it.
+  Retention(JobStore& store, const StoreConfig& config, std::filesystem::path results)
+      : store_(store), config_(config), results_(std::move(results)) {}
+  ~Retention() { finish(); }
+  Retention(const Retention&) = delete;
+  Retention& operator=(const Retention&) = delete;
+
+  /// Looks at once, and once a minute. Nothing where no limit is set.
+  void start();
+  void finish();
+
+  /// Looks once. Never throws. context: not after start().
+  void run_once(const std::stop_token& stop = {}) noexcept;
+
+ private:
+  struct Size {
+    std::uint64_t bytes = 0;
+    std::uint64_t slices_bytes = 0;
+  };
+  void run(const std::stop_token& stop);
+  void finish_removals();
+  void make_room(const std::stop_token& stop);
+  [[nodiscard]] Size size_of(const std::string& job_id);
+  void remove_result(const StoredJob& job);
+  void remove_slices(const StoredJob& job);
+
+  JobStore& store_;
+  const StoreConfig config_;
+  const std::filesystem::path results_;
+  std::map<std::string, Size> sizes_;  // of results that do not change any more
+  std::jthread thread_;                // last: ends before anything it uses
+};
+
+}  // namespace fvd

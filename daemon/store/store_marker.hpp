@@ -1,0 +1,33 @@
+#pragma once
+
+/// What is known of the database beside it, so that another one is never silently taken for it.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "daemon/store/sequence_numbers.hpp"
+
+namespace fvd {
+
+/// As the last start, or a restoration, left it.
+struct StoreMarker {
+  std::int64_t epoch = 0;          ///< of the database; one of a lower epoch is an older copy
+  NewestSeqs newest_seq;           ///< of each client
+  std::int64_t margin = kSeqJump;  ///< so far behind may newest_seq be
+};
+
+/// "fvd.epoch" for "fvd.sqlite".
+[[nodiscard]] std::filesystem::path marker_file(const std::filesystem::path& database);
+
+/// Nothing where there is none. Throws Error kDatabase for a file that cannot be read as one.
+[[nodiscard]] std::optional<StoreMarker> read_marker(const std::filesystem::path& database);
+
+/// Durable at the return, the old one or the new one at any moment. Throws Error kStorageWrite, kStorageFull.
+void write_marker(const std::filesystem::path& database, const StoreMarker& marker);
+
+/// Throws Error kDatabase, with what to do, if the database is missing where there was one: its marker or results of
+/// jobs are there.
+void require_no_lost_database(const std::filesystem::path& database);
+
+}  // namespace fvd

@@ -1,0 +1,153 @@
+#include "daemon/backup/backup.hpp"
+
+#include <atomic>
+#include <filesystem>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/backup/restore.hpp"
+#include "daemon/store/job_store.hpp"
+#include "tests/support/expect_error.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// An instrument that has measured.
+class AnInstrument : public testing::Test {
+ protected:
+  AnInstrument() {
+    fs::create_directories(paths_.state_dir / "calibration");
+    fs::create_directories(paths_.state_dir / "studies" / "study-0001");
+    fs::create_directories(paths_.recipe_dir / "masks");
+    test::write_text(paths_.state_dir / "calibration" / "calibration.json", "{}");
+    test::write_text(paths_.state_dir / "studies" / "study-0001" / "study.json", "{}");
+    test::write_text(paths_.state_dir / "stage_history.json", "{\"scans\": 1}");
+    test::write_text(paths_.recipe_dir / "part.json", "{}");
+    test::write_text(paths_.recipe_dir / "masks" / "a.png", "png");
+    test::write_text(paths_.config_file, "{}");
+    open();
+  }
+  void open() {
+    store_.reset();
+    store_ = std::make_unique<JobStore>(paths_.state_dir / "fvd.sqlite");
+  }
+  std::string measure(std::int64_t seq) {
+    JobStatus job = store_->accept({seq, "part", "chapter"});
+    job.state = JobState::kCompleted;
+    const fs::path result = paths_.state_dir / "results" / job.job_id;
+    fs::create_directories(result / "slices");
+    test::write_text(result / "result.json", "{\"seq\": " + std::to_string(seq) + "}");
+    test::write_text(result / "slices" / "z.txt", "1");
+    store_->finish(job, result.string(), "{\"seq\": " + std::to_string(seq) + "}");
+    return job.job_id;
+  }
+  [[nodiscard]] std::int64_t newest() const { return store_->newest_seqs()->at("plc"); }
+
+  test::ScratchDir folder_;
+  InstrumentPaths paths_{folder_ / "state", folder_ / "recipes", folder_ / "fvd.json"};
+  fs::path backup_ = folder_ / "backup";
+  std::unique_ptr<JobStore> store_;
+};
+
+TEST_F(AnInstrument, IsBackedUpWhileItMeasures) {
+  std::atomic<bool> done = false;
+  std::atomic<std::int64_t> measured = 0;
+  std::thread measuring([&] {
+    for (std::int64_t seq = 1; !done || seq < 20; ++seq) {
+      measure(seq);
+      measured = seq;
+    }
+  });
+  while (measured < 5) std::this_thread::yield();
+  const std::int64_t before = measured;
+  const auto missing = make_backup(paths_, backup_, true);
+  done = true;
+  measuring.join();
+
+  EXPECT_TRUE(missing.empty());
+  const JobStore copy(backup_ / "fvd.sqlite", {.start_anew = true});
+  for (std::int64_t seq = 1; seq <= before; ++seq) {
+    const StoredJob job = copy.find(ClientSeq{seq});
+    const fs::path result = backup_ / "results" / job.status.job_id;
+    EXPECT_EQ(test::read_text(result / "result.json"), job.result_json) << seq;
+    EXPECT_TRUE(fs::exists(result / "slices" / "z.txt"));
+  }
+  EXPECT_EQ(test::read_text(backup_ / "recipes" / "masks" / "a.png"), "png");
+  EXPECT_TRUE(fs::exists(backup_ / "state" / "studies" / "study-0001" / "study.json"));
+  EXPECT_TRUE(fs::exists(backup_ / "fvd.json"));
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)make_backup(paths_, backup_, false), HasSubstr("exists already"));
+}
+
+TEST_F(AnInstrument, LeavesNoHalfBackup) {
+  fs::remove_all(paths_.recipe_dir);
+  fs::create_symlink(folder_ / "nowhere", folder_ / "dangling");
+  store_.reset();
+  fs::remove(paths_.state_dir / "fvd.sqlite");
+  FVD_EXPECT_ERROR(kDatabase, (void)make_backup(paths_, backup_, false));
+  EXPECT_FALSE(fs::exists(backup_));
+  EXPECT_FALSE(fs::exists(folder_ / "backup.tmp"));
+}
+
+TEST_F(AnInstrument, IsRestoredAndNoNumberRunsTwice) {
+  const std::string first = measure(1);
+  (void)make_backup(paths_, backup_, true);
+  measure(2);
+  measure(3);
+  const std::int64_t epoch = store_->epoch();
+  test::write_text(paths_.state_dir / "stage_history.json", "{\"scans\": 2}");
+  FVD_EXPECT_ERROR_SAYING(kDatabase, (void)restore_backup(backup_, paths_), HasSubstr("another fvd"));
+  store_.reset();
+  fs::remove_all(paths_.state_dir / "results" / first);
+
+  const Restored restored = restore_backup(backup_, paths_);
+
+  EXPECT_TRUE(restored.numbers_are_exact);
+  EXPECT_EQ(restored.results, 1);
+  EXPECT_EQ(test::read_text(paths_.state_dir / "stage_history.json"), "{\"scans\": 1}");
+  EXPECT_EQ(test::read_text(restored.replaced / "stage_history.json"), "{\"scans\": 2}");
+  EXPECT_TRUE(fs::exists(restored.replaced / "fvd.sqlite"));
+  open();
+  EXPECT_GT(store_->epoch(), epoch);
+  EXPECT_EQ(newest(), 3) << "known from the database that was replaced";
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.job_id, first);
+  EXPECT_TRUE(fs::exists(paths_.state_dir / "results" / first / "result.json"));
+  for (const std::int64_t used : {2, 3}) {
+    FVD_EXPECT_ERROR(kSeqStale, (void)store_->accept({used, "part", "chapter"}));
+  }
+  EXPECT_NO_THROW(measure(4));
+}
+
+TEST_F(AnInstrument, IsRestoredOnAnotherMachine) {
+  const std::string first = measure(1);
+  (void)make_backup(paths_, backup_, true);
+  measure(2);
+  const std::int64_t epoch = store_->epoch();
+  const InstrumentPaths other{folder_ / "other" / "state", folder_ / "other" / "recipes",
+                              folder_ / "other" / "fvd.json"};
+
+  const Restored restored = restore_backup(backup_, other);
+
+  EXPECT_FALSE(restored.numbers_are_exact);
+  EXPECT_TRUE(restored.replaced.empty());
+  EXPECT_EQ(test::read_text(other.recipe_dir / "masks" / "a.png"), "png");
+  EXPECT_TRUE(fs::exists(other.config_file));
+  JobStore store(other.state_dir / "fvd.sqlite");
+  EXPECT_GT(store.epoch(), epoch);
+  EXPECT_EQ(store.find(ClientSeq{1}).result_dir, (other.state_dir / "results" / first).string());
+  EXPECT_TRUE(fs::exists(store.find(ClientSeq{1}).result_dir));
+  FVD_EXPECT_ERROR(kSeqStale, (void)store.accept({2, "part", "chapter"}));
+}
+
+TEST_F(AnInstrument, IsNotRestoredFromAFolderThatIsNoBackup) {
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)restore_backup(folder_ / "nothing", paths_), HasSubstr("no backup"));
+  EXPECT_NO_THROW(measure(1)) << "nothing was touched";
+}
+
+}  // namespace
+}  // namespace fvd

@@ -1,0 +1,55 @@
+#include "daemon/ctl/backup_commands.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/ctl/exit_codes.hpp"
+#include "daemon/store/job_store.hpp"
+#include "tests/daemon/ctl/run_command.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+namespace fs = std::filesystem;
+using test::run_command;
+using ::testing::HasSubstr;
+
+class BackupCommands : public testing::Test {
+ protected:
+  BackupCommands() {
+    fs::create_directories(folder_ / "recipes");
+    test::write_text(config_,
+                     R"({"paths": {"state_dir": ")" + (folder_ / "state").string() + R"(", "recipe_dir": "recipes"}})");
+  }
+  test::ScratchDir folder_;
+  std::string config_ = (folder_ / "fvd.json").string();
+  std::string backup_ = (folder_ / "backup").string();
+};
+
+TEST_F(BackupCommands, CopyAndPutBack) {
+  {
+    JobStore store(folder_ / "state" / "fvd.sqlite");
+    (void)store.accept({1, "part", "chapter"});
+    const auto made = run_command({"backup", backup_, "--config", config_, "--results"});
+    ASSERT_EQ(made.code, ctl::kExitOk) << made.err;
+    EXPECT_NE(run_command({"restore", backup_, "--config", config_}).code, ctl::kExitOk) << "the daemon runs";
+  }
+  fs::remove(config_);
+  const auto restored = run_command({"restore", backup_, "--config", config_});
+  ASSERT_EQ(restored.code, ctl::kExitOk) << restored.err;
+  EXPECT_THAT(restored.out, HasSubstr("replaced-1"));
+  EXPECT_TRUE(fs::exists(config_));
+  EXPECT_EQ(JobStore(folder_ / "state" / "fvd.sqlite").find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
+}
+
+TEST_F(BackupCommands, SayWhatIsWrong) {
+  EXPECT_EQ(run_command({"backup"}).code, ctl::kExitUsage);
+  const auto none = run_command({"backup", backup_, "--config", config_});
+  EXPECT_NE(none.code, ctl::kExitOk);
+  EXPECT_THAT(none.err, HasSubstr("fvd.sqlite"));
+  EXPECT_THAT(run_command({"restore", backup_, "--config", config_}).err, HasSubstr("no backup"));
+}
+
+}  // namespace
+}  // namespace fvd
