@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/access/access_config.hpp"
 #include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
@@ -17,6 +18,9 @@ struct RpcConfig {
   int port = 7411;                    ///< 0..65535, 0 = any free port, written to <runtime_dir>/rpc.json
   int max_connections = 16;           ///< 1..1000
   int idle_timeout_s = 120;           ///< 1..86400; a connection that sends nothing for this long is closed
+  int first_request_s = 5;            ///< 1..86400; one that has not made a valid request by then is closed
+  std::filesystem::path socket;       ///< the unix socket; empty = <runtime_dir>/fvd.sock
+  AccessConfig access;
 };
 
 struct PathsConfig {

@@ -60,6 +60,7 @@ LoadedConfig parse_config(std::string_view json_text, const std::filesystem::pat
   loaded.config.stage.replay_dir = loaded.config.camera.replay_dir;
   resolve(loaded.config.stage.replay_z_file, base);
   resolve(loaded.config.paths.recipe_dir, base);
+  resolve(loaded.config.rpc.access.token_file, base);
   return loaded;
 }
 

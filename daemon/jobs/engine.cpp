@@ -5,6 +5,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include "daemon/base/version.hpp"
+#include "daemon/config/config_file.hpp"
+#include "daemon/export/sha256.hpp"
+
 namespace fvd {
 
 namespace {
@@ -27,6 +31,18 @@ std::size_t memory_budget_bytes(const Config& config) {
   return static_cast<std::size_t>(config.compute.memory_budget_mib) << 20U;
 }
 
+/// A start loads a configuration.
+AuditEntry start_entry(const Config& config) {
+  AuditEntry entry;
+  entry.who = "fvd";
+  entry.role = role_name(Role::kAdminister);
+  entry.what = "configuration.load";
+  entry.detail =
+      std::string("fvd ") + kVersion + ", sha256 of the configuration in force " + sha256_of(config_text(config));
+  entry.outcome = "ok";
+  return entry;
+}
+
 }  // namespace
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
@@ -39,6 +55,9 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
                {config.stage.min, config.stage.max, config.stage.take_up, config.stage.speed_um_per_s},
                deps.store.recipe_versions()),
       board_(constants(config, deps.store), deps.store.latest()),
+      access_(config.rpc.access),
+      control_([] { return HostClock::now(); }, [this] { return board_.read().state.job != JobStage::kNone; }),
+      audit_(deps.store.audit()),
       objectives_(config.objectives, deps.store.objectives(), board_),
       hub_(deps.openers, deps.clock,
            [this](bool at_rest) {
@@ -76,6 +95,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
             studies_, calibrations_, config.camera.simulated || config.stage.simulated),
       study_runner_(desk_, [this] { board_.update([](MachineRecord&) {}); }),
       thread_(hub_, board_, work_, ticks_, [this] { runner_.store_late_end(); }) {
+  audit_.note(start_entry(config));
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
     spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,

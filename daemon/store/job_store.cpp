@@ -194,6 +194,7 @@ struct JobStore::Impl {
   CurveWidthTable widths{{database, mutex}, {reader, read_mutex}};
   ObjectiveTable objectives{{database, mutex}, {reader, read_mutex}};
   EvaluationTable evaluations{{database, mutex}, {reader, read_mutex}};
+  AuditTable audit{{database, mutex}, {reader, read_mutex}};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
 };
@@ -388,6 +389,8 @@ RecipeVersions& JobStore::recipe_versions() noexcept { return impl_->recipes; }
 CurveWidthTable& JobStore::curve_widths() noexcept { return impl_->widths; }
 
 ObjectiveTable& JobStore::objectives() noexcept { return impl_->objectives; }
+
+AuditTable& JobStore::audit() noexcept { return impl_->audit; }
 EvaluationTable& JobStore::evaluations() noexcept { return impl_->evaluations; }
 
 std::int64_t JobStore::epoch() const noexcept { return impl_->epoch; }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "daemon/recipes/recipe_versions.hpp"
+#include "daemon/store/audit_table.hpp"
 #include "daemon/store/curve_width_table.hpp"
 #include "daemon/store/evaluation_table.hpp"
 #include "daemon/store/job_status.hpp"
@@ -80,6 +81,7 @@ class JobStore {
   /// In the same file; as long as the store. context: thread-safe.
   [[nodiscard]] ObjectiveTable& objectives() noexcept;
   [[nodiscard]] EvaluationTable& evaluations() noexcept;
+  [[nodiscard]] AuditTable& audit() noexcept;
 
   /// Counts the times this database was opened, from 1.
   [[nodiscard]] std::int64_t epoch() const noexcept;

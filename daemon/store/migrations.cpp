@@ -182,6 +182,23 @@ CREATE INDEX jobs_with_pending_files ON jobs (number) WHERE files_pending = 1;
 )");
 }
 
+/// Version 11: who asked for what.
+void keep_who_asked_for_what(Database& database) {
+  database.execute(R"(
+CREATE TABLE audit (
+  number   INTEGER PRIMARY KEY AUTOINCREMENT,
+  time_utc TEXT    NOT NULL,
+  who      TEXT    NOT NULL,
+  role     TEXT    NOT NULL,
+  peer     TEXT    NOT NULL,
+  client   TEXT    NOT NULL,
+  what     TEXT    NOT NULL,
+  detail   TEXT    NOT NULL,
+  outcome  TEXT    NOT NULL
+) STRICT;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -193,6 +210,7 @@ constexpr std::array kSteps{
     MigrationStep{"temperatures of jobs", keep_temperatures_of_jobs},
     MigrationStep{"evaluations of results by other recipes", keep_evaluations},
     MigrationStep{"whether files of a result are pending", keep_whether_files_are_pending},
+    MigrationStep{"who asked for what", keep_who_asked_for_what},
 };
 
 void require_own_file(const Database& database, int version) {
