@@ -1,11 +1,7 @@
 #include "daemon/api/access.hpp"
 
-#include <algorithm>
-
 namespace fvd {
 
-bool may_call(const Caller& caller, const MethodDescription& method) {
-  return std::find(method.callers.begin(), method.callers.end(), caller.role) != method.callers.end();
-}
+bool may_call(const Caller& caller, const MethodDescription& method) { return caller.who.role >= method.role; }
 
 }  // namespace fvd

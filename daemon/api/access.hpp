@@ -7,7 +7,7 @@
 
 namespace fvd {
 
-/// True if the caller's role is one that may call the method.
+/// True if the caller's role is the method's or one that may more.
 [[nodiscard]] bool may_call(const Caller& caller, const MethodDescription& method);
 
 }  // namespace fvd

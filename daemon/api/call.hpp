@@ -37,6 +37,12 @@ struct Deferred {
   std::chrono::milliseconds timeout{0};
 };
 
-using Answer = std::variant<Reply, Deferred>;
+/// The caller is somebody else from now on.
+struct LogIn {
+  Identity who;
+  Reply reply;
+};
+
+using Answer = std::variant<Reply, Deferred, LogIn>;
 
 }  // namespace fvd

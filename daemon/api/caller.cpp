@@ -2,18 +2,11 @@
 
 namespace fvd {
 
-std::string_view role_name(Role role) noexcept {
-  switch (role) {
-    case Role::kOperator:
-      return "operator";
-  }
-  return "operator";
-}
-
 std::string text_of(const Caller& caller) {
   std::string text = caller.name + " (connection " + std::to_string(caller.connection);
   if (!caller.peer.empty()) text += ", " + caller.peer;
-  return text + ")";
+  if (!caller.who.name.empty()) text += ", " + caller.who.name;
+  return text + ", " + std::string(role_name(caller.who.role)) + ")";
 }
 
 bool is_client_name(std::string_view name) noexcept {

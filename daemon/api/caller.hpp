@@ -6,22 +6,21 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/clock.hpp"
+#include "daemon/access/role.hpp"
 #include "daemon/store/job_status.hpp"
 
 namespace fvd {
 
-/// What a caller is to the machine.
-enum class Role { kOperator };
-[[nodiscard]] std::string_view role_name(Role role) noexcept;
-
 struct Caller {
   std::uint64_t connection = 0;       ///< counts the connections since the daemon's start, from 1
-  std::string peer;                   ///< address and port of the other end, for the log
+  std::string peer{};                 ///< address and port of the other end, for the log
   std::string name = kDefaultClient;  ///< the client's, as its request gives it
-  Role role = Role::kOperator;
+  Identity who{};                     ///< as the transport recognised him
+  HostTime received{};                ///< when the request came
 };
 
-/// "plc (connection 3, 192.168.0.7:40312)", for the log.
+/// "plc (connection 3, 192.168.0.7:40312, address 192.168.0.7, operate)", for the log.
 [[nodiscard]] std::string text_of(const Caller& caller);
 
 inline constexpr std::size_t kLongestClientName_bytes = 32;

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "config/strict_json.hpp"
+#include "daemon/access/access_error.hpp"
 #include "daemon/api/access.hpp"
 #include "daemon/api/json_shapes.hpp"
 #include "daemon/api/replies.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+
+constexpr std::size_t kLongestDetail_bytes = 240;  // of a row of the audit
 
 bool has_come(const JobStatus& job, bool until_acquired) {
   return job.state != JobState::kProcessing || (until_acquired && job.acquired);
@@ -79,14 +82,13 @@ ordered_json refuse_batch(const json& batch, const std::string& why) {
   return replies;
 }
 
-/// Throws ProtocolError unless the caller may call the method in this form.
+/// Throws AccessError, ProtocolError unless the caller may call the method in this form.
 void require_callable(const std::string& name, const MethodDescription& about, const Caller& caller,
                       bool is_notification) {
   if (!may_call(caller, about)) {
     spdlog::warn("{} was refused to {}", name, text_of(caller));
-    throw ProtocolError{kNotAllowed,
-                        name + " may not be called by the role " + std::string(role_name(caller.role)),
-                        {{"error", kNotAllowedName}, {"retry", false}}};
+    throw AccessError(AccessCode::kNotAllowed, name + " needs the role " + std::string(role_name(about.role)) +
+                                                   ", this caller has " + std::string(role_name(caller.who.role)));
   }
   if (about.needs_id && is_notification) {
     spdlog::warn("a {} without an id was refused to {}: it could not be told what became of it", name, text_of(caller));
@@ -112,7 +114,7 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
   const auto document = parse_strict_json(line, problems, JsonComments::kRefused);
   if (!document) {
     const std::string why = "parse error: " + shortened_parse_error(problems.front().message);
-    return Handled{reply_line(failure_reply(nullptr, json_rpc::kParseError, why)), std::nullopt, true};
+    return Handled{.reply = reply_line(failure_reply(nullptr, json_rpc::kParseError, why)), .is_parse_error = true};
   }
   Outcome answer = document->is_array() ? handle_batch(*document, caller, may_block)
                                         : handle_request(*document, caller, {may_block, false});
@@ -120,24 +122,41 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
   Handled handled;
   if (answer.reply) handled.reply = reply_line(*answer.reply);
   handled.waiting = std::move(answer.waiting);
+  handled.log_in = std::move(answer.log_in);
+  handled.is_accepted = answer.is_accepted;
   return handled;
+}
+
+std::optional<Handled> Dispatcher::try_urgent(std::string_view line, const Caller& caller) const {
+  Problems ignored;  // told when its turn comes
+  const auto document = parse_strict_json(line, ignored, JsonComments::kRefused);
+  if (!document || !document->is_object()) return std::nullopt;
+  const auto name = document->find("method");
+  if (name == document->end() || !name->is_string()) return std::nullopt;
+  const auto method = methods_.find(name->get<std::string>());
+  if (method == methods_.end() || !method->second.about.is_urgent) return std::nullopt;
+  return handle_line(line, caller, false);
 }
 
 Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& caller, bool may_block) const {
   if (batch.empty()) return {failure_reply(nullptr, json_rpc::kInvalidRequest, "an empty batch")};
   ordered_json replies = ordered_json::array();
+  bool accepted = false;
   if (const auto fault = fault_of_batch(batch)) {
     replies = refuse_batch(batch, *fault);
   } else {
     for (const json& request : batch) {
-      // The members before this one were answered from the snapshot: handling the batch again repeats nothing.
+      // The members before this one were answered from the snapshot, or stopped something: handling the batch again
+      // repeats nothing.
       Outcome answer = handle_request(request, caller, {may_block, true});
       if (answer.would_block) return answer;
+      accepted = accepted || answer.is_accepted;
       if (answer.reply) replies.push_back(std::move(*answer.reply));
     }
   }
-  if (replies.empty()) return {};
-  return {std::move(replies)};
+  Outcome outcome{.is_accepted = accepted};
+  if (!replies.empty()) outcome.reply = std::move(replies);
+  return outcome;
 }
 
 Dispatcher::Outcome Dispatcher::handle_request(const json& request, const Caller& caller, Mode mode) const {
@@ -146,9 +165,11 @@ Dispatcher::Outcome Dispatcher::handle_request(const json& request, const Caller
   const bool is_notification = !request.contains("id");
   Outcome answer;
   try {
-    answer = run_method(request, id, caller, mode);
+    run_method(request, id, caller, mode, answer);
   } catch (const ProtocolError& error) {
     answer.reply = failure_reply(id, error.code, error.message, error.data);
+  } catch (const AccessError& error) {
+    answer.reply = failure_reply(id, error.code(), error.what());
   } catch (const Error& error) {
     answer.reply = failure_reply(id, error.code(), error.what(), scan_state_name(services_.machine.snapshot()->state));
   } catch (const std::exception& error) {
@@ -159,7 +180,7 @@ Dispatcher::Outcome Dispatcher::handle_request(const json& request, const Caller
   return answer;
 }
 
-Dispatcher::Outcome Dispatcher::run_method(const json& request, const json& id, Caller caller, Mode mode) const {
+void Dispatcher::run_method(const json& request, const json& id, Caller caller, Mode mode, Outcome& outcome) const {
   const auto& name = request["method"].get_ref<const std::string&>();
   const auto found = methods_.find(name);
   if (found == methods_.end()) {
@@ -174,22 +195,74 @@ Dispatcher::Outcome Dispatcher::run_method(const json& request, const json& id, 
     // A name that is none is refused by the method; until then it stands in no log.
     if (auto given_name = client->get<std::string>(); is_client_name(given_name)) caller.name = std::move(given_name);
   }
-  const Call call{caller, name, params, !mode.in_batch && !is_notification};
   const LogScope scope({.caller = caller.name});
-  std::optional<Answer> answer;
-  if (method.peek) answer = method.peek(call);
-  if (!answer && !mode.may_block) return {.would_block = true};
-  if (!answer && method.about.needs_id) spdlog::info("{} for {}", name, text_of(caller));
+  // Whoever has no role is accepted once he has said who he is.
+  outcome.is_accepted = method.about.role > Role::kNone;
+  if (method.about.needs_control) services_.control.require(caller.who.name);
+  auto answer = answer_of(method, {caller, name, params, !mode.in_batch && !is_notification}, mode.may_block);
+  if (!answer) {
+    outcome.would_block = true;
+  } else if (auto* deferred = std::get_if<Deferred>(&*answer)) {
+    outcome.waiting = WaitingRequest{id, std::move(*deferred)};
+  } else if (auto* log_in = std::get_if<LogIn>(&*answer)) {
+    outcome.is_accepted = true;
+    outcome.log_in = std::move(log_in->who);
+    outcome.reply = success_reply(id, std::move(log_in->reply));
+  } else {
+    outcome.reply = success_reply(id, std::get<Reply>(std::move(*answer)));
+  }
+}
+
+std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& call, bool may_block) const {
+  const MethodDescription& about = method.about;
   try {
-    if (!answer) answer = method.run(call);
-  } catch (const Error& error) {
-    if (method.about.needs_id) {
-      spdlog::warn("{} was refused to {}: {}: {}", name, text_of(caller), error_name(error.code()), error.what());
+    if (method.peek) {
+      if (auto answer = method.peek(call)) {
+        if (about.is_urgent) note(method, call, "ok");
+        return answer;
+      }
     }
+    if (!may_block) return std::nullopt;
+    if (about.moves_stage && call.caller.received != HostTime{} && services_.jobs.stopped_since(call.caller.received)) {
+      throw Error(ErrorCode::kAborted, call.method + " waited, and stage.stop came meanwhile; nothing was moved");
+    }
+    auto answer = method.run(call);
+    note(method, call, "ok");
+    return answer;
+  } catch (const AccessError& error) {
+    spdlog::warn("{} was refused to {}: {}", call.method, text_of(call.caller), error.what());
+    note(method, call, error_name(error.code()));
+    throw;
+  } catch (const Error& error) {
+    if (about.needs_id) {
+      spdlog::warn("{} was refused to {}: {}: {}", call.method, text_of(call.caller), error_name(error.code()),
+                   error.what());
+    }
+    note(method, call, error_name(error.code()));
     throw;
   }
-  if (auto* deferred = std::get_if<Deferred>(&*answer)) return {.waiting = WaitingRequest{id, std::move(*deferred)}};
-  return {success_reply(id, std::get<Reply>(std::move(*answer)))};
+}
+
+void Dispatcher::note(const Method& method, const Call& call, std::string_view outcome) const {
+  const MethodDescription& about = method.about;
+  if (outcome == "ok" && (about.needs_id || about.is_audited)) {
+    spdlog::info("{} for {}", call.method, text_of(call.caller));
+  }
+  if (!about.is_audited) return;
+  json params = call.params;
+  if (params.contains("text")) params["text"] = "...";  // a whole document
+  std::string detail = params.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (detail.size() > kLongestDetail_bytes) detail = detail.substr(0, kLongestDetail_bytes - 3) + "...";
+  const Caller& caller = call.caller;
+  services_.audit.note({0,
+                        {},
+                        caller.who.name,
+                        std::string(role_name(caller.who.role)),
+                        caller.peer,
+                        caller.name,
+                        call.method,
+                        std::move(detail),
+                        std::string(outcome)});
 }
 
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {
@@ -241,6 +314,13 @@ std::string Dispatcher::foreign_protocol() {
 std::string Dispatcher::no_json() {
   return reply_line(failure_reply(nullptr, json_rpc::kParseError,
                                   "parse error: too many lines in a row are no JSON; the connection is closed"));
+}
+
+std::string Dispatcher::not_allowed_here() {
+  return reply_line(
+      failure_reply(nullptr, AccessCode::kNotAllowed,
+                    "from here nobody may do anything: see rpc.allow and rpc.groups in the configuration; "
+                    "the connection is closed"));
 }
 
 std::string Dispatcher::too_many_connections() {

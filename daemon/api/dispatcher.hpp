@@ -23,9 +23,11 @@ struct WaitingRequest {
 
 /// The outcome of handling a line.
 struct Handled {
-  std::optional<std::string> reply;       ///< one line without terminator; absent = nothing to say
-  std::optional<WaitingRequest> waiting;  ///< the answer comes later, through Dispatcher::resume
-  bool is_parse_error = false;            ///< the line was no JSON
+  std::optional<std::string> reply{};       ///< one line without terminator; absent = nothing to say
+  std::optional<WaitingRequest> waiting{};  ///< the answer comes later, through Dispatcher::resume
+  std::optional<Identity> log_in{};         ///< the caller is that one from now on
+  bool is_parse_error = false;              ///< the line was no JSON
+  bool is_accepted = false;                 ///< it asked for something that exists and that the caller may
 };
 
 /// context: thread-safe; keeps no state between calls.
@@ -43,6 +45,9 @@ class Dispatcher {
   /// line has to go to handle().
   [[nodiscard]] std::optional<Handled> try_handle(std::string_view line, const Caller& caller) const;
 
+  /// The same for a line with a single urgent request that may overtake others.
+  [[nodiscard]] std::optional<Handled> try_urgent(std::string_view line, const Caller& caller) const;
+
   /// Every method with its description.
   [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
 
@@ -57,6 +62,8 @@ class Dispatcher {
   [[nodiscard]] static std::string foreign_protocol();
   /// The reply to the last of too many lines that are no JSON.
   [[nodiscard]] static std::string no_json();
+  /// The reply to a connection from where nobody may do anything.
+  [[nodiscard]] static std::string not_allowed_here();
   /// The reply to a connection above the limit.
   [[nodiscard]] static std::string too_many_connections();
 
@@ -73,13 +80,18 @@ class Dispatcher {
   struct Outcome {
     std::optional<OrderedJson> reply{};
     std::optional<WaitingRequest> waiting{};
+    std::optional<Identity> log_in{};
+    bool is_accepted = false;
     bool would_block = false;  ///< nothing was executed: handle() has to take the line
   };
 
   [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;
   [[nodiscard]] Outcome handle_request(const Json& request, const Caller& caller, Mode mode) const;
   [[nodiscard]] Outcome handle_batch(const Json& batch, const Caller& caller, bool may_block) const;
-  [[nodiscard]] Outcome run_method(const Json& request, const Json& id, Caller caller, Mode mode) const;
+  void run_method(const Json& request, const Json& id, Caller caller, Mode mode, Outcome& outcome) const;
+  /// The method's answer; nothing if it would block and may not. Notes who asked and what came of it.
+  [[nodiscard]] std::optional<Answer> answer_of(const Method& method, const Call& call, bool may_block) const;
+  void note(const Method& method, const Call& call, std::string_view outcome) const;
 
   Services services_;
   const MethodTable methods_;

@@ -138,6 +138,11 @@ std::string_view error_meaning(ErrorCode code) noexcept {
   return {};
 }
 
+std::string_view error_meaning(AccessCode code) noexcept {
+  return code == AccessCode::kNotAllowed ? "this caller may not do that: ask who looks after the instrument"
+                                         : "somebody else has control: wait until he gives it up, or ask him";
+}
+
 std::string result_codes_markdown() {
   std::string text = "| code in `c` and `reason_code` | name | meaning, what to do |\n|---|---|---|\n";
   for (const ResultCode& row : kResultCodes) {

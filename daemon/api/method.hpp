@@ -18,13 +18,17 @@ namespace fvd {
 /// From it follow the check of the parameters, rpc.discover and the tables of daemon/README.md.
 struct MethodDescription {
   std::string summary;
-  DescribeFields params;                          ///< on values of its own, at their defaults
-  DescribeFields result;                          ///< likewise; every key is required unless it is optional
-  std::vector<ErrorCode> errors{};                ///< beside those of JSON-RPC and kInternal
-  std::vector<Role> callers = {Role::kOperator};  ///< who may call it
-  bool moves_stage = false;                       ///< the part is not free while it runs
-  bool may_wait = false;                          ///< the reply may come later; in a batch it comes at once or not
-  bool needs_id = false;                          ///< refused as a notification: somebody has to know what became of it
+  Role role = Role::kAdminister;    ///< the least that may call it
+  DescribeFields params;            ///< on values of its own, at their defaults
+  DescribeFields result;            ///< likewise; every key is required unless it is optional
+  std::vector<ErrorCode> errors{};  ///< beside those of JSON-RPC and kInternal
+  bool moves_stage = false;         ///< the part is not free while it runs
+  bool may_wait = false;            ///< the reply may come later; in a batch it comes at once or not
+  bool needs_control = false;       ///< refused while another has control of the instrument
+  /// Overtakes what the same connection asked for before, if peek answers it: nothing holds a stop back.
+  bool is_urgent = false;
+  bool is_audited = false;  ///< who asked for it is written down
+  bool needs_id = false;    ///< refused as a notification: somebody has to know what became of it
 };
 
 /// context: peek and run on any thread.

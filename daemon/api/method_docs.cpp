@@ -52,12 +52,6 @@ ordered_json params_json(const DescribeFields& describe) {
   return params;
 }
 
-ordered_json callers_json(const MethodDescription& about) {
-  ordered_json names = ordered_json::array();
-  for (const Role role : about.callers) names.push_back(role_name(role));
-  return names;
-}
-
 ordered_json errors_json(const MethodDescription& about) {
   ordered_json errors = ordered_json::array();
   for (const ErrorCode code : about.errors) {
@@ -107,14 +101,10 @@ std::string traits_text(const MethodDescription& about) {
   std::string text;
   const auto add = [&text](const std::string& trait) { text += (text.empty() ? "" : ", ") + trait; };
   if (about.moves_stage) add("MOVES the stage");
+  if (about.needs_control) add("needs control");
+  if (about.is_urgent) add("never waits");
   if (about.may_wait) add("may wait");
   if (about.needs_id) add("needs an id");
-  return text;
-}
-
-std::string callers_text(const MethodDescription& about) {
-  std::string text;
-  for (const Role role : about.callers) text += (text.empty() ? "" : ", ") + std::string(role_name(role));
   return text;
 }
 
@@ -128,10 +118,10 @@ std::string errors_text(const MethodDescription& about) {
 }
 
 void write_methods(const MethodTable& methods, std::ostream& out) {
-  out << "| method | what | caller | besides | result, [not always] | errors |\n|---|---|---|---|---|---|\n";
+  out << "| method | what | role | besides | result, [not always] | errors |\n|---|---|---|---|---|---|\n";
   for (const auto& [name, method] : methods) {
     const MethodDescription& about = method.about;
-    out << "| `" << name << "` | " << about.summary << " | " << callers_text(about) << " | " << traits_text(about)
+    out << "| `" << name << "` | " << about.summary << " | " << role_name(about.role) << " | " << traits_text(about)
         << " | " << keys_text(about.result) << " | " << errors_text(about) << " |\n";
   }
 }
@@ -154,8 +144,11 @@ void write_errors(std::ostream& out) {
     bool retry;
     std::string_view meaning;
   };
-  std::map<int, Row> errors{
-      {kNotAllowed, {kNotAllowedName, false, "this caller may not do that: ask who looks after the instrument"}}};
+  std::map<int, Row> errors;
+  for (const AccessCode code : {AccessCode::kNotAllowed, AccessCode::kNoControl}) {
+    const RpcError wire = rpc_error(code);
+    errors[wire.code] = {std::string(error_name(code)), wire.retry, error_meaning(code)};
+  }
   for (int i = 0; i <= static_cast<int>(kLastErrorCode); ++i) {
     const auto code = static_cast<ErrorCode>(i);
     const RpcError wire = rpc_error(code);
@@ -180,9 +173,12 @@ ordered_json openrpc_document(const MethodTable& methods) {
                          {"params", params_json(about.params)},
                          {"result", {{"name", "result"}, {"schema", result_schema(about.result)}}},
                          {"errors", errors_json(about)},
-                         {"x-callers", callers_json(about)},
+                         {"x-role", role_name(about.role)},
                          {"x-moves-stage", about.moves_stage},
                          {"x-may-wait", about.may_wait},
+                         {"x-needs-control", about.needs_control},
+                         {"x-urgent", about.is_urgent},
+                         {"x-audited", about.is_audited},
                          {"x-needs-id", about.needs_id}});
   }
   return {{"openrpc", "1.2.6"}, {"info", {{"title", "fvd"}, {"version", kVersion}}}, {"methods", described}};

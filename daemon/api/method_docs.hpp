@@ -10,7 +10,8 @@
 
 namespace fvd {
 
-/// OpenRPC 1.2.6. Beyond it, of every method: x-callers, x-moves-stage, x-may-wait, x-needs-id.
+/// OpenRPC 1.2.6. Beyond it, of every method: x-role, x-moves-stage, x-may-wait, x-needs-control, x-urgent,
+/// x-audited, x-needs-id.
 [[nodiscard]] nlohmann::ordered_json openrpc_document(const MethodTable& methods);
 
 /// Tables of the methods, of their parameters, and of the error codes, in Markdown.

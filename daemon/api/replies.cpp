@@ -33,6 +33,11 @@ ordered_json failure_reply(const json& id, ErrorCode code, const std::string& me
   return failure_reply(id, wire.code, message, std::move(data));
 }
 
+ordered_json failure_reply(const json& id, AccessCode code, const std::string& message) {
+  const RpcError wire = rpc_error(code);
+  return failure_reply(id, wire.code, message, {{"error", error_name(code)}, {"retry", wire.retry}});
+}
+
 std::string reply_line(const ordered_json& reply) {
   return reply.dump(-1, ' ', true, ordered_json::error_handler_t::replace);
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.hpp"
+#include "daemon/access/access_error.hpp"
 
 namespace fvd {
 
@@ -31,6 +32,9 @@ inline constexpr std::size_t kMaxForeignText_bytes = 64;
 /// With the error's name and whether to retry; state: the machine's, left out if empty.
 [[nodiscard]] nlohmann::ordered_json failure_reply(const nlohmann::json& id, ErrorCode code, const std::string& message,
                                                    std::string_view state = {});
+
+[[nodiscard]] nlohmann::ordered_json failure_reply(const nlohmann::json& id, AccessCode code,
+                                                   const std::string& message);
 
 /// One line without terminator, ASCII.
 [[nodiscard]] std::string reply_line(const nlohmann::ordered_json& reply);

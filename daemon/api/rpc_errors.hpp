@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/base/error.hpp"
+#include "daemon/access/access_error.hpp"
 
 namespace fvd {
 
@@ -31,9 +32,10 @@ inline constexpr int kInternalError = -32603;
 }
 }  // namespace json_rpc
 
-/// A caller whose role may not call the method.
-inline constexpr int kNotAllowed = 1004;
-inline constexpr const char* kNotAllowedName = "not_allowed";
+/// As the errors of the machine, those of the callers: stable names.
+[[nodiscard]] constexpr std::string_view error_name(AccessCode code) noexcept {
+  return code == AccessCode::kNotAllowed ? "not_allowed" : "no_control";
+}
 
 struct RpcError {
   int code = 0;
@@ -42,5 +44,8 @@ struct RpcError {
 
 /// One code for every ErrorCode; no two share one.
 [[nodiscard]] RpcError rpc_error(ErrorCode code) noexcept;
+[[nodiscard]] constexpr RpcError rpc_error(AccessCode code) noexcept {
+  return code == AccessCode::kNotAllowed ? RpcError{1004, false} : RpcError{1003, true};
+}
 
 }  // namespace fvd

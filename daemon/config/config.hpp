@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/access/access_config.hpp"
 #include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
@@ -19,6 +20,9 @@ struct RpcConfig {
   int idle_timeout_s = 120;           ///< 1..86400; a connection that sends nothing for this long is closed
   int repeat_window_s = 600;          ///< 1..31536000; a number is repeated as long as its job ended no longer ago
   int fifo_results = 1000;            ///< 1..1000000; more results that wait are told as an overrun
+  int first_request_s = 5;            ///< 1..86400; one that has not made a valid request by then is closed
+  std::filesystem::path socket;       ///< the unix socket; empty = <runtime_dir>/fvd.sock
+  AccessConfig access;
 };
 
 struct PathsConfig {

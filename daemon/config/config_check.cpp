@@ -6,6 +6,11 @@
 #include <string_view>
 #include <utility>
 
+#include <sys/un.h>
+
+#include "core/base/error.hpp"
+#include "daemon/access/address_range.hpp"
+#include "daemon/access/token_file.hpp"
 #include "daemon/config/config_file.hpp"
 #include "drivers/common/network_address.hpp"
 #include "drivers/registry/driver_table.hpp"
@@ -64,6 +69,44 @@ class ConfigCheck {
   void check_rpc(const RpcConfig& rpc) {
     const std::string problem = why_no_listener(rpc.address);
     report_if(!problem.empty(), "/rpc/address", {}, problem);
+    const auto address = address_bytes(rpc.address);
+    report_if(
+        address && !is_loopback(*address) && rpc.access.allow.empty() && rpc.access.token_file.empty(), "/rpc/address",
+        {"/rpc/allow", "/rpc/token_file"},
+        "'" + rpc.address +
+            "' is reached from the network, and nothing says who may move the stage from there; give /rpc/allow or "
+            "/rpc/token_file, or listen on 127.0.0.1");
+    check_allowed(rpc.access);
+    check_tokens(rpc.access);
+    const fs::path socket = rpc.socket.empty() ? config_.paths.runtime_dir / "fvd.sock" : rpc.socket;
+    report_if(socket.string().size() >= sizeof sockaddr_un::sun_path,
+              rpc.socket.empty() ? "/paths/runtime_dir" : "/rpc/socket", {},
+              "'" + socket.string() + "' is too long for a socket, which may have " +
+                  std::to_string(sizeof sockaddr_un::sun_path - 1) + " characters; give a shorter /rpc/socket");
+  }
+
+  void check_allowed(const AccessConfig& access) {
+    std::vector<std::optional<AddressRange>> ranges;
+    for (std::size_t i = 0; i < access.allow.size(); ++i) {
+      const std::string pointer = "/rpc/allow/" + std::to_string(i) + "/address";
+      const auto range = AddressRange::parse(access.allow[i].address);
+      report_if(!range, pointer, {},
+                "'" + access.allow[i].address +
+                    "' is no address and no range; expected e.g. 192.168.1.10, or 192.168.1.0/24 with zeros behind the "
+                    "prefix");
+      report_if(range && std::find(ranges.begin(), ranges.end(), range) != ranges.end(), pointer, {},
+                "'" + access.allow[i].address + "' stands there already: which role does it have?");
+      ranges.push_back(range);
+    }
+  }
+
+  void check_tokens(const AccessConfig& access) {
+    if (access.token_file.empty()) return;
+    try {
+      (void)read_credentials(access.token_file);
+    } catch (const Error& error) {
+      report_if(true, "/rpc/token_file", {}, error.what());
+    }
   }
 
   void check_travel(const StageConfig& stage) {

@@ -16,15 +16,50 @@ void path(Fields& fields, std::string_view name, std::filesystem::path& value, s
   value = text;
 }
 
+void describe_role(Fields& fields, std::string_view name, Role& role, std::string_view meaning) {
+  std::vector<std::string> names;
+  for (const Role given : kGivenRoles) names.emplace_back(role_name(given));
+  std::string text(role_name(role));
+  fields.choice(name, text, names, meaning);
+  role = role_from_name(text).value_or(role);
+}
+
+void describe(AccessConfig& access, Fields& fields) {
+  constexpr IntegerRange kRules{0, 100};
+  fields.list("allow", access.allow, kRules, "who may connect to the TCP port; of several that fit the narrowest holds",
+              [](Fields& in, AddressRule& rule) {
+                in.text("address", rule.address, kMaxName, "an address, or a range as 192.168.1.0/24");
+                in.require("address");
+                describe_role(in, "role", rule.role, "what it may");
+                in.require("role");
+              });
+  describe_role(fields, "loopback_role", access.loopback_role,
+                "of 127.0.0.1 and ::1 where allow does not name them; every process of this machine can connect there");
+  fields.list("groups", access.groups, kRules, "whose members may what by the unix socket; root may all",
+              [](Fields& in, GroupRule& rule) {
+                in.text("group", rule.group, kMaxName, "of the system");
+                in.require("group");
+                describe_role(in, "role", rule.role, "what its members may");
+                in.require("role");
+              });
+  path(fields, "token_file", access.token_file,
+       "lines 'name role hash' as fvdctl token new prints them; relative to the configuration file; empty = none");
+}
+
 void describe(RpcConfig& rpc, Fields& fields) {
   fields.text("address", rpc.address, kMaxName, "numeric IPv4 or IPv6 address to listen on");
   fields.integer("port", rpc.port, {0, 65535}, "TCP port; 0 = any free one, written to <runtime_dir>/rpc.json");
-  fields.integer("max_connections", rpc.max_connections, {1, 1000}, "one more gets an error line and is closed");
+  fields.integer("max_connections", rpc.max_connections, {1, 1000},
+                 "one more gets an error line and is closed; one is kept for who has control");
   fields.integer("idle_timeout_s", rpc.idle_timeout_s, {1, 86400}, "a connection silent for so long is closed");
   fields.integer("repeat_window_s", rpc.repeat_window_s, {1, 31536000},
                  "a sequence number whose job ended longer ago is refused, not answered with the old job");
   fields.integer("fifo_results", rpc.fifo_results, {1, 1000000},
                  "more results that wait to be acknowledged set overrun; none is dropped");
+  fields.integer("first_request_s", rpc.first_request_s, {1, 86400},
+                 "a connection that has made no valid request by then is closed");
+  path(fields, "socket", rpc.socket, "unix socket for programs of this machine; empty = <runtime_dir>/fvd.sock");
+  describe(rpc.access, fields);
 }
 
 void describe(PathsConfig& paths, Fields& fields) {

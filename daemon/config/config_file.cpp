@@ -65,6 +65,7 @@ void read_merged(LoadedConfig& loaded, const std::filesystem::path& base, const 
   loaded.config.stage.replay_dir = loaded.config.camera.replay_dir;
   resolve(loaded.config.stage.replay_z_file, base);
   resolve(loaded.config.paths.recipe_dir, base);
+  resolve(loaded.config.rpc.access.token_file, base);
 }
 
 /// The names of the files *.json in the folder beside the configuration file, in the order in which they are merged.

@@ -27,8 +27,8 @@ struct LoadedConfig {
 };
 
 /// Text to structure: overrides are applied, then types, ranges and names are checked. Keys that are absent or refused
-/// have their default. base: the file's folder, against which profile, replay_dir and recipe_dir are taken if relative;
-/// state_dir and runtime_dir stay relative to the current directory. Never throws for bad input.
+/// have their default. base: the file's folder, against which profile, replay_dir, recipe_dir and token_file are taken
+/// if relative; state_dir and runtime_dir stay relative to the current directory. Never throws for bad input.
 [[nodiscard]] LoadedConfig parse_config(std::string_view json_text, const std::filesystem::path& base,
                                         const Overrides& overrides = {});
 

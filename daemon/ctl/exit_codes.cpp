@@ -50,6 +50,7 @@ int exit_code_of_rpc(int code) noexcept {
     case -32600:  // invalid request
     case -32601:  // unknown method
     case -32602:  // invalid parameters
+    case 1004:    // not allowed
     case 1005:    // unknown recipe
     case 1006:    // invalid recipe
     case 1007:    // unknown job
@@ -67,6 +68,7 @@ int exit_code_of_rpc(int code) noexcept {
       return kExitBadData;
     case 1001:  // not ready
     case 1002:  // busy
+    case 1003:  // another has control
     case 1011:  // timeout
     case 1013:  // shutting down
       return kExitUnavailable;

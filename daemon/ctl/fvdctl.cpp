@@ -11,6 +11,7 @@
 #include "config/nearest_name.hpp"
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/ctl/access_commands.hpp"
 #include "daemon/ctl/backup_commands.hpp"
 #include "daemon/ctl/device_commands.hpp"
 #include "daemon/ctl/evaluation_text.hpp"
@@ -38,6 +39,8 @@ constexpr std::chrono::seconds kCommandTimeout{330};  ///< the daemon gives a co
 struct Arguments {
   std::string address;
   std::string runtime_dir = "/run/fvd";
+  std::string token_file;
+  AccessArguments access;
   std::string job;
   std::string seq = "auto";
   std::string client = kClientName;
@@ -62,8 +65,10 @@ struct Arguments {
 };
 
 RpcClient connect(const Arguments& arguments) {
-  return RpcClient(arguments.address.empty() ? read_endpoint(arguments.runtime_dir)
+  RpcClient client(arguments.address.empty() ? read_endpoint(arguments.runtime_dir)
                                              : parse_endpoint(arguments.address));
+  if (!arguments.token_file.empty()) log_in(client, arguments.token_file);
+  return client;
 }
 
 void print(std::ostream& out, const Json& json) {
@@ -307,6 +312,9 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_objective_commands(
       app, a.objective, [&a] { return connect(a); }, terminal, chosen);
 
+  add_access_commands(
+      app, a.access, [&a] { return connect(a); }, terminal, chosen);
+
   sub = command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
                 [&] { return run_suggest(a.suggest_source, a.suggest_choice, terminal); });
   sub->add_option("source", a.suggest_source,
@@ -341,9 +349,10 @@ int run(std::vector<std::string> arguments, const Terminal& terminal) {
   app.set_version_flag("--version", std::string("fvdctl ") + kVersion);
   app.require_subcommand(1);
   CLI::Option* address = app.add_option("--address", values.address, "host:port of the daemon");
-  app.add_option("--runtime-dir", values.runtime_dir, "where the daemon's rpc.json tells its port")
+  app.add_option("--runtime-dir", values.runtime_dir, "where the daemon's rpc.json tells its socket and its port")
       ->excludes(address)
       ->capture_default_str();
+  app.add_option("--token-file", values.token_file, "say who calls by the token in this file");
   app.add_option("--client", values.client, "whose sequence numbers are meant; a plain PLC is plc")
       ->capture_default_str();
   add_commands(app, values, terminal, chosen);

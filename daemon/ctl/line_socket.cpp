@@ -10,6 +10,7 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 
 #include "core/base/error.hpp"
 
@@ -50,9 +51,9 @@ AddressList resolve(const RpcEndpoint& endpoint) {
 }
 
 /// The connected socket, or errno in `error`.
-UniqueFd connect_to(const addrinfo& address, SteadyClock::time_point deadline, int& error) {
-  UniqueFd fd(::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (!fd.valid() || ::connect(fd.get(), address.ai_addr, address.ai_addrlen) == 0) {
+UniqueFd connect_to(const sockaddr& address, socklen_t size, SteadyClock::time_point deadline, int& error) {
+  UniqueFd fd(::socket(address.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!fd.valid() || ::connect(fd.get(), &address, size) == 0) {
     error = fd.valid() ? 0 : errno;
     return fd;
   }
@@ -61,28 +62,44 @@ UniqueFd connect_to(const addrinfo& address, SteadyClock::time_point deadline, i
     if (!wait_ready(fd.get(), POLLOUT, deadline)) {
       error = ETIMEDOUT;
     } else {
-      socklen_t size = sizeof error;
-      if (::getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+      socklen_t error_size = sizeof error;
+      if (::getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &error, &error_size) != 0) error = errno;
     }
   }
   return error == 0 ? std::move(fd) : UniqueFd();
+}
+
+UniqueFd connect_to_socket(const std::string& path, SteadyClock::time_point deadline, int& error) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  error = ENAMETOOLONG;
+  if (path.size() >= sizeof address.sun_path) return UniqueFd();
+  path.copy(address.sun_path, path.size());
+  return connect_to(reinterpret_cast<const sockaddr&>(address), sizeof address, deadline, error);
+}
+
+UniqueFd connect_to_host(const RpcEndpoint& endpoint, SteadyClock::time_point deadline, int& error) {
+  const AddressList addresses = resolve(endpoint);
+  UniqueFd fd;
+  for (const addrinfo* address = addresses.get(); address != nullptr && !fd.valid(); address = address->ai_next) {
+    fd = connect_to(*address->ai_addr, address->ai_addrlen, deadline, error);
+  }
+  const int on = 1;  // requests are single small segments; waiting for more only adds latency
+  if (fd.valid()) (void)::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  return fd;
 }
 
 }  // namespace
 
 LineSocket::LineSocket(const RpcEndpoint& endpoint, std::chrono::milliseconds timeout) : endpoint_(endpoint) {
   const auto deadline = SteadyClock::now() + timeout;
-  const AddressList addresses = resolve(endpoint);
   int error = EHOSTUNREACH;
-  for (const addrinfo* address = addresses.get(); address != nullptr && !socket_.valid(); address = address->ai_next) {
-    socket_ = connect_to(*address, deadline, error);
-  }
+  socket_ = endpoint.socket.empty() ? connect_to_host(endpoint, deadline, error)
+                                    : connect_to_socket(endpoint.socket, deadline, error);
   if (!socket_.valid()) {
     throw Error(ErrorCode::kNotReady,
                 "cannot connect to " + endpoint_.text() + ": " + errno_text(error) + ": is fvd running there?");
   }
-  const int on = 1;  // requests are single small segments; waiting for more only adds latency
-  (void)::setsockopt(socket_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
 }
 
 void LineSocket::send_line(std::string_view line, std::chrono::milliseconds timeout) {

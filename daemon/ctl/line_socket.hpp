@@ -1,6 +1,6 @@
 #pragma once
 
-/// A TCP connection that carries lines of text; every call has a deadline.
+/// A TCP connection, or one by a unix socket, that carries lines of text; every call has a deadline.
 
 #include <chrono>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-/// JSON-RPC 2.0 over one TCP connection, one line per message, one request at a time.
+/// JSON-RPC 2.0 over one connection, one line per message, one request at a time.
 
 #include <chrono>
 #include <stdexcept>

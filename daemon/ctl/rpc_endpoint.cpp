@@ -11,6 +11,7 @@
 namespace fvd::ctl {
 
 std::string RpcEndpoint::text() const {
+  if (!socket.empty()) return socket;
   const bool ipv6 = host.find(':') != std::string::npos;
   return (ipv6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
@@ -44,6 +45,11 @@ RpcEndpoint read_endpoint(const std::filesystem::path& runtime_dir) {
   if (json.is_object() && json.contains("address") && json["address"].is_string() && json.contains("port") &&
       json["port"].is_number_integer()) {
     RpcEndpoint endpoint{json["address"].get<std::string>(), json["port"].get<int>()};
+    std::error_code ignored;
+    if (const auto socket = json.find("socket"); socket != json.end() && socket->is_string()) {
+      auto socket_file = socket->get<std::string>();
+      if (std::filesystem::is_socket(socket_file, ignored)) endpoint.socket = std::move(socket_file);
+    }
     if (endpoint.port >= 1 && endpoint.port <= 65535) return endpoint;
   }
   throw Error(ErrorCode::kBadInput, path.string() + " is not of the form {\"address\": \"127.0.0.1\", \"port\": 7411}");

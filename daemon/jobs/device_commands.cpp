@@ -168,6 +168,17 @@ DeviceTask::Work home_work() {
   };
 }
 
+DeviceTask::Work reset_work() {
+  return [](const Devices& devices, const std::stop_token&) {
+    const StageStatus stage = devices.stage.status();
+    if (stage.alarm) {
+      throw Error(ErrorCode::kStageAlarm,
+                  "the drive still has its alarm: " + stage.alarm_text + "; see its manual, clear it, then home");
+    }
+    return ordered_json{{"z_um", stage.position.value}, {"homed", stage.homed}}.dump();
+  };
+}
+
 DeviceTask::Work move_work(Micrometers target) {
   return [target](const Devices& devices, const std::stop_token& stop) {
     check_limits(devices.objective, devices.stage.info(),

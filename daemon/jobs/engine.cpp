@@ -5,6 +5,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include "daemon/base/version.hpp"
+#include "daemon/config/config_file.hpp"
+#include "daemon/export/sha256.hpp"
+
 namespace fvd {
 
 namespace {
@@ -28,6 +32,18 @@ std::size_t memory_budget_bytes(const Config& config) {
   return static_cast<std::size_t>(config.compute.memory_budget_mib) << 20U;
 }
 
+/// A start loads a configuration.
+AuditEntry start_entry(const Config& config) {
+  AuditEntry entry;
+  entry.who = "fvd";
+  entry.role = role_name(Role::kAdminister);
+  entry.what = "configuration.load";
+  entry.detail =
+      std::string("fvd ") + kVersion + ", sha256 of the configuration in force " + sha256_of(config_text(config));
+  entry.outcome = "ok";
+  return entry;
+}
+
 }  // namespace
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
@@ -40,6 +56,9 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
                {config.stage.min, config.stage.max, config.stage.take_up, config.stage.speed_um_per_s},
                deps.store.recipe_versions()),
       board_(constants(config, deps.store), deps.store.latest()),
+      access_(config.rpc.access),
+      control_([] { return HostClock::now(); }, [this] { return board_.read().state.job != JobStage::kNone; }),
+      audit_(deps.store.audit()),
       objectives_(config.objectives, deps.store.objectives(), board_),
       hub_(deps.openers, deps.clock,
            [this](bool at_rest) {
@@ -84,6 +103,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
         jobs_.restore_prepared();
       }) {
   board_.update([&](MachineRecord& machine) { machine.recipe = deps.store.prepared_recipe(); });
+  audit_.note(start_entry(config));
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
     spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,

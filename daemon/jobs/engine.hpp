@@ -8,6 +8,8 @@
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
+#include "daemon/jobs/audit_log.hpp"
+#include "daemon/jobs/control_lease.hpp"
 #include "daemon/jobs/following_files.hpp"
 #include "daemon/jobs/job_queue.hpp"
 #include "daemon/jobs/job_runner.hpp"
@@ -54,7 +56,9 @@ class Engine {
     thread_.start();
   }
 
-  [[nodiscard]] Services services() { return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_}; }
+  [[nodiscard]] Services services() {
+    return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_, control_, audit_, access_};
+  }
 
   /// The instrument's constants, in <state_dir>/calibration. context: any thread.
   [[nodiscard]] CalibrationBook& calibrations() { return calibrations_; }
@@ -74,6 +78,9 @@ class Engine {
   RecipeBook recipes_;
   PreviewHub preview_;
   MachineBoard board_;
+  AccessRules access_;
+  ControlLease control_;
+  AuditLog audit_;
   ObjectiveBook objectives_;
   DeviceHub hub_;
   WorkQueue work_;

@@ -55,16 +55,17 @@ JobService::Started JobQueue::start(const JobRequest& request) {
     deps_.board.update([](MachineRecord& machine) { machine.apply(MachineEvent::kJobRefused); });
     throw;
   }
-  accept(job);
+  accept(job, offered);
   return {job.status, false};
 }
 
 JobQueue::Offer JobQueue::offer(const JobRequest& request) {
   Offer offer;
+  const HostTime stopped = last_stop_;
   deps_.board.update([&](MachineRecord& machine) {
     machine.require(Command::kStartJob);
     machine.apply(MachineEvent::kJobOffered);
-    offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices, machine.objective};
+    offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices, machine.objective, stopped};
   });
   return offer;
 }
@@ -85,7 +86,7 @@ AcceptedJob JobQueue::made_durable(const JobRequest& request, const Offer& offer
   return job;
 }
 
-void JobQueue::accept(const AcceptedJob& job) {
+void JobQueue::accept(const AcceptedJob& job, const Offer& offer) {
   std::stop_source stop;
   std::stop_source task_stop{std::nostopstate};
   bool posted = false;
@@ -93,7 +94,8 @@ void JobQueue::accept(const AcceptedJob& job) {
     machine.apply(MachineEvent::kJobAccepted);
     machine.recipe = job.recipe.id;
     machine.job = job.status;
-    if (machine.state.halted) stop.request_stop();  // stop_job() was called before it could reach this job
+    // stop_job() or stop_motion() was called before it could reach this job
+    if (machine.state.halted || last_stop_.load() != offer.stopped) stop.request_stop();
     task_stop = deps_.task_stop();
     {
       const MutexLock lock(mutex_);
@@ -130,15 +132,31 @@ JobStatus JobQueue::job(const JobKey& key) const {
 std::optional<JobStatus> JobQueue::highest(const std::string& client) const { return deps_.store.highest(client); }
 
 JobStatus JobQueue::abort(const JobKey& key) {
-  const auto job = on_board(key);
-  if (!job) return deps_.store.find(key).status;
+  const auto job = try_abort(key);
+  return job ? *job : deps_.store.find(key).status;
+}
+
+std::optional<JobStatus> JobQueue::try_abort(const JobKey& key) {
+  auto job = on_board(key);
+  if (!job) return std::nullopt;
   std::optional<std::stop_source> stop;
   {
     const MutexLock lock(mutex_);
     if (stoppable_ == job->job_id) stop = stop_;
   }
   if (stop && job->state == JobState::kProcessing) stop->request_stop();
-  return *job;
+  return job;
+}
+
+JobService::Stopped JobQueue::stop_motion() {
+  last_stop_ = HostClock::now();  // first: a job that is accepted from now on sees it, one before is on the board
+  const MachineState now = deps_.board.read().state;
+  if (now.task == TaskState::kMoves) deps_.task_stop().request_stop();
+  if (now.job == JobStage::kHoldsPart) stop_job();
+  // Wakes the machine's thread, which looks after a stage that moves although nobody uses it.
+  (void)deps_.work.post({.run = [] {}, .refuse = [] {}});
+  if (now.job == JobStage::kHoldsPart) return Stopped::kJob;
+  return now.task == TaskState::kMoves ? Stopped::kCommand : Stopped::kNothing;
 }
 
 void JobQueue::stop_job() {

@@ -2,6 +2,7 @@
 
 /// Accepts jobs, one at a time, and tells of them and their results.
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -47,6 +48,9 @@ class JobQueue final : public JobService, public ResultService {
   [[nodiscard]] JobStatus job(const JobKey& key) const override;
   [[nodiscard]] std::optional<JobStatus> highest(const std::string& client) const override;
   JobStatus abort(const JobKey& key) override;
+  std::optional<JobStatus> try_abort(const JobKey& key) override;
+  Stopped stop_motion() override;
+  [[nodiscard]] bool stopped_since(HostTime time) const override { return last_stop_.load() > time; }
   void prepare(const std::string& recipe_id) override;
 
   [[nodiscard]] StoredJob stored(const JobKey& key) const override;
@@ -68,18 +72,20 @@ class JobQueue final : public JobService, public ResultService {
     std::string recipe_id;
     std::optional<DeviceFacts> devices;
     std::string objective;  ///< that was confirmed
+    HostTime stopped{};     ///< when motion was stopped last
   };
 
   [[nodiscard]] static RequestKey key_of(const JobRequest& request) { return {request.client, request.seq}; }
   [[nodiscard]] Offer offer(const JobRequest& request);
   [[nodiscard]] AcceptedJob made_durable(const JobRequest& request, const Offer& offer);
-  void accept(const AcceptedJob& job);
+  void accept(const AcceptedJob& job, const Offer& offer);
   [[nodiscard]] Recipe checked_recipe(const Offer& offer) const;
   [[nodiscard]] std::optional<StoredJob> stored_evaluation(const JobKey& key) const;
   [[nodiscard]] std::optional<JobStatus> on_board(const JobKey& key) const;
 
   const Dependencies deps_;
   bool restored_ = false;
+  std::atomic<HostTime> last_stop_{HostTime{}};  ///< of stop_motion()
 
   Mutex mutex_;
   Condition claim_ended_;

@@ -15,10 +15,14 @@
 #include "core/base/error.hpp"
 #include "core/hw/camera.hpp"
 #include "core/stage/step_history.hpp"
+#include "daemon/access/access_rules.hpp"
 #include "daemon/config/config.hpp"
+#include "daemon/jobs/control_lease.hpp"
 #include "daemon/jobs/device_task.hpp"
+#include "daemon/jobs/jog.hpp"
 #include "daemon/jobs/machine_state.hpp"
 #include "daemon/recipes/recipe_service.hpp"
+#include "daemon/store/audit_table.hpp"
 #include "daemon/store/job_status.hpp"
 #include "daemon/store/objective_table.hpp"
 #include "daemon/store/sequence_numbers.hpp"
@@ -78,6 +82,16 @@ class JobService {
 
   /// Asks the job to end; returns at once with its status. No effect on a job that has ended. Throws Error kUnknownJob.
   virtual JobStatus abort(const JobKey& key) = 0;
+  /// The same for the running or the latest job; nothing, and no effect, for any other. Blocks for nothing.
+  virtual std::optional<JobStatus> try_abort(const JobKey& key) = 0;
+
+  /// What a stop ended.
+  enum class Stopped { kNothing, kCommand, kJob };
+  /// Ends whatever moves the stage, or is about to: a command, a job that still holds the part, one that is being
+  /// accepted. What was asked for before it begins no motion after it. Blocks for nothing.
+  virtual Stopped stop_motion() = 0;
+  /// True if the last stop_motion() came after that time.
+  [[nodiscard]] virtual bool stopped_since(HostTime time) const = 0;
 
   /// Loads and checks a recipe and makes it the prepared one. Throws Error kUnknownRecipe, kBadRecipe, kStageLimit,
   /// kObjectiveMismatch, kRegionOutside, kMemoryBudget, kBusy, kDatabase, kStorageFull. A restart does not change it.
@@ -116,6 +130,12 @@ class TaskService {
   virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) = 0;
   /// As submit(preview_work(settings)); while a job runs, the newest of its slices instead, scaled down.
   virtual std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) = 0;
+
+  /// Moves as long as it is repeated; returns when that begins, and what becomes of it is told to who repeats it.
+  /// Throws what submit() does, and why the same jog ended just before.
+  virtual void jog(const JogRequest& request) = 0;
+  /// True if such a jog goes on until the request's time. Blocks for nothing.
+  [[nodiscard]] virtual bool extend_jog(const JogRequest& request) = 0;
 
   /// What all scans so far say of the stage; nothing before the first.
   [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
@@ -163,6 +183,17 @@ class StudyService {
   [[nodiscard]] virtual std::vector<Calibration> calibrations() const = 0;
 };
 
+/// Who asked for what. context: every function thread-safe.
+class AuditService {
+ public:
+  virtual ~AuditService() = default;
+
+  /// Of now. Blocks for nothing.
+  virtual void note(AuditEntry entry) = 0;
+  /// As AuditTable::newest().
+  [[nodiscard]] virtual std::vector<AuditEntry> newest(int most, std::int64_t before) = 0;
+};
+
 /// All that the API is built on; each may be another object.
 struct Services {
   MachineView& machine;
@@ -172,6 +203,9 @@ struct Services {
   RecipeService& recipes;
   ObjectiveService& objectives;
   StudyService& studies;
+  ControlLease& control;
+  AuditService& audit;
+  const AccessRules& access;
 };
 
 }  // namespace fvd

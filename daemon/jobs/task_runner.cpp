@@ -33,6 +33,29 @@ std::shared_ptr<DeviceTask> TaskRunner::preview(const CameraSettings& settings) 
   return std::make_shared<DeviceTask>(DeviceTask::Outcome{std::move(*picture), std::nullopt, {}});
 }
 
+std::shared_ptr<JogHold> TaskRunner::last_jog() {
+  const MutexLock lock(mutex_);
+  return jog_;
+}
+
+bool TaskRunner::extend_jog(const JogRequest& request) {
+  const auto running = last_jog();
+  return running && running->extend(request);
+}
+
+void TaskRunner::jog(const JogRequest& request) {
+  if (const auto before = last_jog()) {
+    if (const auto failure = before->take_failure(request)) throw *failure;
+  }
+  if (HostClock::now() >= request.until) {
+    throw Error(ErrorCode::kTimeout, "the request waited for longer than it asked to move; nothing was moved");
+  }
+  auto hold = std::make_shared<JogHold>(request);
+  (void)submit(jog_work(hold), TaskMotion::kMoves);
+  const MutexLock lock(mutex_);
+  jog_ = std::move(hold);
+}
+
 std::optional<StepHistorySummary> TaskRunner::stage_history() const { return deps_.history.summary(); }
 
 std::stop_source TaskRunner::task_stop() {

@@ -39,6 +39,8 @@ class TaskRunner final : public TaskService {
 
   std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) override;
   std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override;
+  void jog(const JogRequest& request) override;
+  [[nodiscard]] bool extend_jog(const JogRequest& request) override;
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override;
 
   /// Ends the command that was taken last, if it still waits or runs. May be called inside MachineBoard::update().
@@ -47,11 +49,13 @@ class TaskRunner final : public TaskService {
  private:
   void run(DeviceTask& task, const std::stop_token& stop);
   void refuse(DeviceTask& task);
+  [[nodiscard]] std::shared_ptr<JogHold> last_jog();
   [[nodiscard]] DeviceTask::Outcome performed(const DeviceTask& task, const std::stop_token& stop) const;
 
   const Dependencies deps_;
   Mutex mutex_;
-  std::stop_source stop_ FVD_GUARDED_BY(mutex_);  // of the command taken last
+  std::stop_source stop_ FVD_GUARDED_BY(mutex_);         // of the command taken last
+  std::shared_ptr<JogHold> jog_ FVD_GUARDED_BY(mutex_);  // the last one; null before the first
 };
 
 }  // namespace fvd

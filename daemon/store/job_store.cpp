@@ -76,6 +76,7 @@ struct JobStore::Impl {
   ResultTable on_disk{{database, mutex}, {reader, read_mutex}};
   StorageReserve reserve FVD_GUARDED_BY(mutex);
   StoreMarker marker FVD_GUARDED_BY(mutex);
+  AuditTable audit{{database, mutex}, {reader, read_mutex}};
   std::int64_t epoch = 0;       // set before the store is used
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
   std::atomic<int> results{0};  // of these the completed ones
@@ -359,6 +360,8 @@ RecipeVersions& JobStore::recipe_versions() noexcept { return impl_->recipes; }
 CurveWidthTable& JobStore::curve_widths() noexcept { return impl_->widths; }
 
 ObjectiveTable& JobStore::objectives() noexcept { return impl_->objectives; }
+
+AuditTable& JobStore::audit() noexcept { return impl_->audit; }
 EvaluationTable& JobStore::evaluations() noexcept { return impl_->evaluations; }
 ResultTable& JobStore::results() noexcept { return impl_->on_disk; }
 

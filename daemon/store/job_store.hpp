@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/recipes/recipe_versions.hpp"
+#include "daemon/store/audit_table.hpp"
 #include "daemon/store/curve_width_table.hpp"
 #include "daemon/store/evaluation_table.hpp"
 #include "daemon/store/job_status.hpp"
@@ -100,6 +101,7 @@ class JobStore {
   [[nodiscard]] ObjectiveTable& objectives() noexcept;
   [[nodiscard]] EvaluationTable& evaluations() noexcept;
   [[nodiscard]] ResultTable& results() noexcept;
+  [[nodiscard]] AuditTable& audit() noexcept;
 
   [[nodiscard]] const std::filesystem::path& file() const noexcept;
 

@@ -203,6 +203,23 @@ CREATE TABLE prepared_recipe (
 )");
 }
 
+/// Version 12: who asked for what.
+void keep_who_asked_for_what(Database& database) {
+  database.execute(R"(
+CREATE TABLE audit (
+  number   INTEGER PRIMARY KEY AUTOINCREMENT,
+  time_utc TEXT    NOT NULL,
+  who      TEXT    NOT NULL,
+  role     TEXT    NOT NULL,
+  peer     TEXT    NOT NULL,
+  client   TEXT    NOT NULL,
+  what     TEXT    NOT NULL,
+  detail   TEXT    NOT NULL,
+  outcome  TEXT    NOT NULL
+) STRICT;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -216,6 +233,7 @@ constexpr std::array kSteps{
     MigrationStep{"whether files of a result are pending", keep_whether_files_are_pending},
     MigrationStep{"sessions, verdicts and removed results of jobs, floors of numbers, the prepared recipe",
                   keep_what_a_line_asks},
+    MigrationStep{"who asked for what", keep_who_asked_for_what},
 };
 
 void require_own_file(const Database& database, int version) {

@@ -7,19 +7,22 @@
 #include <string>
 #include <system_error>
 
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "core/base/error.hpp"
 
 namespace fvd {
 
-void write_port_file(const std::filesystem::path& port_file, const std::string& address, int port) {
+void write_port_file(const std::filesystem::path& port_file, const std::string& address, int port,
+                     const std::filesystem::path& socket) {
   std::error_code error;
   std::filesystem::create_directories(port_file.parent_path(), error);
   const auto temporary = port_file.string() + ".tmp";
   errno = 0;
   std::ofstream out(temporary);
-  out << "{\"address\": \"" << address << "\", \"port\": " << port << ", \"pid\": " << ::getpid() << "}\n";
+  out << "{\"address\": \"" << address << "\", \"port\": " << port
+      << ", \"socket\": " << nlohmann::json(socket.string()) << ", \"pid\": " << ::getpid() << "}\n";
   out.close();
   if (!out || ::rename(temporary.c_str(), port_file.c_str()) != 0) {
     throw Error(ErrorCode::kStorageWrite,

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
 #include <utility>  // before Asio 1.74, which forgets it
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
@@ -19,11 +21,14 @@
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/transport/port_file.hpp"
 #include "daemon/transport/rpc_session.hpp"
+#include "daemon/transport/tcp_options.hpp"
+#include "daemon/transport/unix_socket.hpp"
 #include "daemon/transport/worker.hpp"
 
 namespace fvd {
 
 namespace asio = boost::asio;
+namespace local = asio::local;
 using asio::ip::tcp;
 using ErrorCodeOf = boost::system::error_code;
 
@@ -31,6 +36,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kShutdownGrace{500};  // for the replies that are owed when the server ends
 constexpr std::chrono::milliseconds kShutdownPollPeriod{5};
+constexpr std::chrono::milliseconds kAcceptPause{100};
 constexpr std::chrono::seconds kTickInterval{1};     // of the network thread
 constexpr std::chrono::seconds kLongestHandler{10};  // handlers wait for nothing: one that takes this long hangs
 
@@ -42,15 +48,22 @@ struct RpcServer::Impl {
         services(s),
         dispatcher(all_methods(s), s),
         acceptor(context),
-        accept_pause(context),
+        local_acceptor(context),
         shutdown_timer(context),
         port_file(runtime_dir / "rpc.json"),
-        host{context, dispatcher, worker, std::chrono::seconds(c.idle_timeout_s),
+        host{context,
+             dispatcher,
+             worker,
+             std::chrono::seconds(c.idle_timeout_s),
+             std::chrono::seconds(c.first_request_s),
              [this](const std::shared_ptr<RpcSession>& session) { sessions.erase(session); }},
         worker("fvd-rpc-work") {
     listen();
-    write_port_file(port_file, config.address, port);
-    accept();
+    local_socket.emplace(c.socket.empty() ? runtime_dir / "fvd.sock" : c.socket);
+    local_acceptor.assign(local::stream_protocol(), local_socket->take_listener());
+    write_port_file(port_file, config.address, port, std::filesystem::absolute(local_socket->file()));
+    accept(acceptor, [this](tcp::socket& socket) { return caller_at(socket); });
+    accept(local_acceptor, [this](local::stream_protocol::socket& socket) { return caller_at(socket); });
     services.machine.on_change([this] { asio::post(context, [this] { resume_all(); }); });
     thread = start_thread("fvd-rpc", [this](const std::stop_token&) { run(); });
   }
@@ -80,14 +93,21 @@ struct RpcServer::Impl {
     port = acceptor.local_endpoint().port();
   }
 
-  void accept();
+  /// Goes on accepting. recognise: who is at the other end.
+  template <typename Acceptor, typename Recognise>
+  void accept(Acceptor& from, Recognise recognise);
+  [[nodiscard]] Caller caller_at(tcp::socket& socket) const;
+  [[nodiscard]] Caller caller_at(local::stream_protocol::socket& socket) const;
+  void admit(RpcSession::Socket socket, Caller caller);
   void run() {
     ThreadTicks ticks("fvd-rpc", kLongestHandler);
     for (; !context.stopped(); context.run_for(kTickInterval)) ticks.tick(HostClock::now());
   }
   /// Answers what has come by now, then ends the network thread; at the deadline at the latest.
   void shut_down(std::chrono::steady_clock::time_point deadline);
-  [[nodiscard]] bool has_room();
+  /// The one with control; while nobody has it whoever may have it.
+  [[nodiscard]] bool may_control(const Identity& who) const;
+  [[nodiscard]] bool has_room(const Identity& who);
   void resume_all();
 
   const RpcConfig config;
@@ -95,7 +115,8 @@ struct RpcServer::Impl {
   Dispatcher dispatcher;
   asio::io_context context;
   tcp::acceptor acceptor;
-  asio::steady_timer accept_pause;
+  std::optional<UnixSocket> local_socket;
+  local::stream_protocol::acceptor local_acceptor;
   asio::steady_timer shutdown_timer;
   std::filesystem::path port_file;
   int port = 0;
@@ -106,35 +127,77 @@ struct RpcServer::Impl {
   std::jthread thread;  // last
 };
 
-void RpcServer::Impl::accept() {
-  acceptor.async_accept([this](ErrorCodeOf error, tcp::socket socket) {
+template <typename Acceptor, typename Recognise>
+void RpcServer::Impl::accept(Acceptor& from, Recognise recognise) {
+  from.async_accept([this, &from, recognise](ErrorCodeOf error, auto socket) {
     if (error == asio::error::operation_aborted) return;
     if (error) {
       // Most likely no file descriptor is free: an immediate retry would only use CPU time.
       spdlog::warn("a connection could not be accepted: {}", error.message());
-      accept_pause.expires_after(std::chrono::milliseconds(100));
-      accept_pause.async_wait([this](ErrorCodeOf stopped) {
-        if (!stopped) accept();
+      const auto pause = std::make_shared<asio::steady_timer>(context, kAcceptPause);
+      pause->async_wait([this, &from, recognise, pause](ErrorCodeOf stopped) {
+        if (!stopped && from.is_open()) accept(from, recognise);
       });
       return;
     }
-    const auto session = std::make_shared<RpcSession>(host, std::move(socket), ++connections);
-    const bool room = has_room();
-    sessions.insert(session);
-    if (room) {
-      session->start();
-    } else {
-      session->refuse();
-    }
-    accept();
+    Caller caller = recognise(socket);
+    admit(RpcSession::Socket(std::move(socket)), std::move(caller));
+    accept(from, recognise);
   });
 }
 
-bool RpcServer::Impl::has_room() {
-  if (sessions.size() < static_cast<std::size_t>(config.max_connections)) return true;
-  // A client that went away during a wait looks half-closed; its old connection must not keep it from reconnecting.
-  const auto leaving = std::find_if(sessions.begin(), sessions.end(), [](const std::shared_ptr<RpcSession>& session) {
-    return session->is_half_closed();
+Caller RpcServer::Impl::caller_at(tcp::socket& socket) const {
+  ErrorCodeOf gone;
+  const std::string address = socket.remote_endpoint(gone).address().to_string(gone);
+  Caller caller;
+  caller.peer = peer_of(socket.native_handle());
+  if (const auto bytes = address_bytes(address)) caller.who = services.access.of_address(*bytes, address);
+  return caller;
+}
+
+Caller RpcServer::Impl::caller_at(local::stream_protocol::socket& socket) const {
+  const LocalPeer peer = local_peer_of(socket.native_handle());
+  Caller caller;
+  caller.peer = "process " + std::to_string(peer.pid);
+  caller.who = services.access.of_local_peer(peer);
+  return caller;
+}
+
+void RpcServer::Impl::admit(RpcSession::Socket socket, Caller caller) {
+  caller.connection = ++connections;
+  // Whoever has no role may get one by a token.
+  const bool allowed = caller.who.role > Role::kNone || services.access.has_tokens();
+  const bool room = allowed && has_room(caller.who);
+  if (!allowed) spdlog::warn("a connection is refused: {}", text_of(caller));
+  const auto session = std::make_shared<RpcSession>(host, std::move(socket), std::move(caller));
+  sessions.insert(session);
+  if (room) return session->start();
+  session->refuse(allowed ? Dispatcher::too_many_connections() : Dispatcher::not_allowed_here());
+}
+
+bool RpcServer::Impl::may_control(const Identity& who) const {
+  const auto holder = services.control.holder();
+  return holder ? holder->who == who.name : who.role >= Role::kOperate;
+}
+
+bool RpcServer::Impl::has_room(const Identity& who) {
+  std::size_t taken = 0;
+  std::size_t by_others = 0;
+  for (const auto& session : sessions) {
+    if (session->is_refused()) continue;
+    ++taken;
+    if (!may_control(session->caller().who)) ++by_others;
+  }
+  const auto most = static_cast<std::size_t>(config.max_connections);
+  const bool controls = may_control(who);
+  if (!controls && by_others + 1 >= most) return false;  // one place is kept for who has control
+  if (taken < most) return true;
+  // A client that went away during a wait looks half-closed; its old connection must not keep it from reconnecting. Nor
+  // may an old one of who has control keep him from his.
+  const bool holds = controls && services.control.holder();
+  const auto leaving = std::find_if(sessions.begin(), sessions.end(), [&](const auto& session) {
+    if (session->is_refused()) return false;
+    return session->is_half_closed() || (holds && session->caller().who.name == who.name);
   });
   if (leaving == sessions.end()) return false;
   // A copy, for closing takes it out of the set. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
@@ -152,6 +215,7 @@ void RpcServer::Impl::resume_all() {
 void RpcServer::Impl::shut_down(std::chrono::steady_clock::time_point deadline) {
   ErrorCodeOf ignored;
   acceptor.close(ignored);
+  local_acceptor.close(ignored);
   resume_all();
   const bool all_is_said =
       std::all_of(sessions.begin(), sessions.end(), [](const auto& session) { return session->is_answered(); });

@@ -1,5 +1,6 @@
 #include "daemon/transport/rpc_session.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include <boost/asio/post.hpp>
@@ -11,7 +12,6 @@
 namespace fvd {
 
 namespace asio = boost::asio;
-using asio::ip::tcp;
 
 namespace {
 
@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
 /// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
+constexpr std::string_view kTerminators("\n\r\0", 3);
 constexpr std::chrono::seconds kRefusalGrace{1};  // for a refused client to read the reason
 
 }  // namespace
@@ -37,12 +38,8 @@ void RpcSession::work(std::function<Result(const Dispatcher&)> what, void (RpcSe
   });
 }
 
-RpcSession::RpcSession(const RpcSessionHost& host, tcp::socket socket, std::uint64_t connection)
-    : host_(host),
-      socket_(std::move(socket)),
-      caller_{connection, peer_of(socket_.native_handle())},
-      idle_(host.context),
-      wait_(host.context) {}
+RpcSession::RpcSession(const RpcSessionHost& host, Socket socket, Caller caller)
+    : host_(host), socket_(std::move(socket)), caller_(std::move(caller)), idle_(host.context), wait_(host.context) {}
 
 void RpcSession::start() {
   tune(socket_.native_handle());
@@ -50,9 +47,9 @@ void RpcSession::start() {
   read();
 }
 
-void RpcSession::refuse() {
+void RpcSession::refuse(std::string reason) {
   tune(socket_.native_handle());
-  refuse_with(Dispatcher::too_many_connections());
+  refuse_with(std::move(reason));
   read();
 }
 
@@ -67,13 +64,17 @@ void RpcSession::close() {
   ErrorCodeOf ignored;
   idle_.cancel();
   wait_.cancel();
-  socket_.shutdown(tcp::socket::shutdown_both, ignored);
+  socket_.shutdown(Socket::shutdown_both, ignored);
   socket_.close(ignored);
   host_.on_close(shared_from_this());
 }
 
 void RpcSession::watch_idle() {
-  idle_.expires_after(host_.idle_timeout);
+  if (is_accepted_) {
+    idle_.expires_after(host_.idle_timeout);
+  } else {
+    idle_.expires_at(begun_ + std::min(host_.first_request, host_.idle_timeout));
+  }
   idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
     // A connection with an open request is not idle; the request has a timeout of its own.
     // One that expired while a request was answered was put off meanwhile: its handler comes all the same.
@@ -107,7 +108,7 @@ void RpcSession::close_if_all_is_said() {
 void RpcSession::process() {
   std::size_t begin = 0;
   while (!has_request() && !refused_) {
-    const std::size_t end = input_.find_first_of(std::string_view("\n\r\0", 3), begin);
+    const std::size_t end = input_.find_first_of(kTerminators, begin);
     if (end == std::string::npos) break;
     const std::string_view line(input_.data() + begin, end - begin);
     begin = end + 1;
@@ -115,6 +116,7 @@ void RpcSession::process() {
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
     if (begins_foreign_protocol(line)) return refuse_with(Dispatcher::foreign_protocol());
     watch_idle();
+    caller_.received = std::chrono::steady_clock::now();
     if (auto handled = host_.dispatcher.try_handle(line, caller_)) {
       take(std::move(*handled));
     } else {
@@ -125,12 +127,36 @@ void RpcSession::process() {
   }
   if (refused_) return;
   input_.erase(0, begin);
+  looked_at_ -= std::min(looked_at_, begin);
+  if (has_request()) overtake();
+  if (refused_) return;
   // Also limits the input that collects behind an open request.
   if (input_.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
   close_if_all_is_said();
 }
 
+void RpcSession::overtake() {
+  while (!refused_) {
+    const std::size_t end = input_.find_first_of(kTerminators, looked_at_);
+    if (end == std::string::npos) return;
+    const std::string_view line(input_.data() + looked_at_, end - looked_at_);
+    // A line of another protocol is refused when its turn comes, and nothing behind it is read.
+    if (begins_foreign_protocol(line)) return;
+    Caller caller = caller_;
+    caller.received = std::chrono::steady_clock::now();
+    auto handled = host_.dispatcher.try_urgent(line, caller);
+    if (!handled) {
+      looked_at_ = end + 1;
+      continue;
+    }
+    input_.erase(looked_at_, end + 1 - looked_at_);
+    if (handled->reply) send(std::move(*handled->reply));
+  }
+}
+
 void RpcSession::take(Handled handled) {
+  if (handled.log_in) caller_.who = *std::move(handled.log_in);
+  is_accepted_ = is_accepted_ || handled.is_accepted;
   watch_idle();
   parse_errors_in_a_row_ = handled.is_parse_error ? parse_errors_in_a_row_ + 1 : 0;
   if (parse_errors_in_a_row_ == kMaxParseErrorsInARow) return refuse_with(Dispatcher::no_json());
@@ -206,7 +232,7 @@ void RpcSession::write() {
                       self->unsent_.pop_front();
                       if (!self->unsent_.empty()) return self->write();
                       ErrorCodeOf ignored;
-                      if (self->refused_) self->socket_.shutdown(tcp::socket::shutdown_send, ignored);
+                      if (self->refused_) self->socket_.shutdown(Socket::shutdown_send, ignored);
                       self->close_if_all_is_said();
                     });
 }

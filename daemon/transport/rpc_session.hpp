@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>  // before Asio 1.74, which forgets it
 
-#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include "daemon/api/dispatcher.hpp"
@@ -27,23 +27,29 @@ struct RpcSessionHost {
   const Dispatcher& dispatcher;
   Worker& worker;
   std::chrono::seconds idle_timeout;
+  std::chrono::seconds first_request;  ///< a connection without a valid request is closed after it
   std::function<void(const std::shared_ptr<RpcSession>&)> on_close;
 };
 
 /// Held by shared_ptr: handlers that are still queued keep it alive. context: the network thread only.
 class RpcSession : public std::enable_shared_from_this<RpcSession> {
  public:
-  /// connection: number of the connection since the server's start.
-  RpcSession(const RpcSessionHost& host, boost::asio::ip::tcp::socket socket, std::uint64_t connection);
+  using Socket = boost::asio::generic::stream_protocol::socket;
+
+  /// caller: who is at the other end, as the connection tells.
+  RpcSession(const RpcSessionHost& host, Socket socket, Caller caller);
 
   /// Serves the client from now on.
   void start();
-  /// Tells the client that there are too many connections, and closes after it.
-  void refuse();
+  /// Tells the client a reason, a whole reply, and closes after it.
+  void refuse(std::string reason);
   /// Checks the waiting request again: a job changed, or the waiting time is over.
   void resume(bool timed_out);
   /// True if every request was answered and every reply was sent.
   [[nodiscard]] bool is_answered() const noexcept { return !has_request() && unsent_.empty(); }
+  [[nodiscard]] const Caller& caller() const noexcept { return caller_; }
+  /// True if nothing is answered any more.
+  [[nodiscard]] bool is_refused() const noexcept { return refused_; }
   /// True if the client closed its sending side.
   [[nodiscard]] bool is_half_closed() const noexcept { return half_closed_; }
   /// Closes at once and calls the host's on_close.
@@ -65,6 +71,8 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   void work(std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result));
   /// Handles the whole lines at hand, in order; stops at a request that cannot be answered at once.
   void process();
+  /// Answers urgent requests that stand behind an open one.
+  void overtake();
   void take(Handled handled);
   void take_and_go_on(Handled handled);
   void begin_wait(WaitingRequest waiting);
@@ -77,12 +85,14 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   void write();
 
   const RpcSessionHost& host_;
-  boost::asio::ip::tcp::socket socket_;
+  Socket socket_;
   Caller caller_;
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   boost::asio::steady_timer idle_;
   boost::asio::steady_timer wait_;
   std::array<char, 4096> chunk_{};
   std::string input_;
+  std::size_t looked_at_ = 0;  // bytes of input_, whole lines, that hold no urgent request
   std::deque<std::string> unsent_;
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;
@@ -90,6 +100,7 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   bool timed_out_ = false;    // of waiting_
   bool check_again_ = false;  // a check was asked for during a check
   bool half_closed_ = false;
+  bool is_accepted_ = false;  // it has made a valid request
   bool refused_ = false;
   int parse_errors_in_a_row_ = 0;
 };

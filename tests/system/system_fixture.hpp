@@ -28,12 +28,12 @@ class AMicroscope : public testing::Test {
   /// Starts plant and daemon and waits until the daemon is ready.
   void start(const sim::PlantOptions& with = options()) {
     if (!plant_) plant_ = std::make_unique<sim::Plant>(with);
-    const LoadedConfig loaded =
-        load_config(FVD_SOURCE_DIR "/config/fvd-sim.json",
-                    {"camera.address=" + plant_->camera_address(), "stage.port=" + std::to_string(plant_->stage_port()),
-                     std::string("stage.driver=") + (with.gcs ? "gcs" : "modbus"), "rpc.port=0", "log.level=warn",
-                     "paths.state_dir=" + (folder_.path() / "state").string(),
-                     "paths.runtime_dir=" + (folder_.path() / "run").string()});
+    const LoadedConfig loaded = load_config(
+        FVD_SOURCE_DIR "/config/fvd-sim.json",
+        {"camera.address=" + plant_->camera_address(), "stage.port=" + std::to_string(plant_->stage_port()),
+         std::string("stage.driver=") + (with.gcs ? "gcs" : "modbus"), "rpc.port=0", "rpc.loopback_role=administer",
+         "log.level=warn", "paths.state_dir=" + (folder_.path() / "state").string(),
+         "paths.runtime_dir=" + (folder_.path() / "run").string()});
     ASSERT_TRUE(loaded.problems.empty()) << to_text(loaded.problems, "fvd-sim.json");
     config_ = loaded.config;
     app_ = std::make_unique<App>(config_);

@@ -61,20 +61,21 @@ void add_camera_methods(MethodTable& methods, const Services& services) {
   snap_errors.push_back(ErrorCode::kStorageWrite);
   methods["camera.snap"] = {
       .about = task_description("Takes one image, writes it as PNG in <state_dir>/snaps, and tells its grey levels",
-                                described<ImageParams>(), describe_snap, snap_errors, TaskMotion::kNone),
+                                Role::kSetUp, described<ImageParams>(), describe_snap, snap_errors, TaskMotion::kNone),
       .run = with<ImageParams>([services](const Call& call, const ImageParams& params) -> Answer {
         require_wait(call);
         return reply_when_done(services.tasks.submit(snap_work(params.settings(services.recipes)), TaskMotion::kNone));
       })};
   methods["camera.preview"] = {
-      .about = task_description("A picture for the eye: one taken now, or the newest slice of the job that runs",
-                                described<ImageParams>(), describe_preview, kImageErrors, TaskMotion::kNone),
+      .about =
+          task_description("A picture for the eye: one taken now, or the newest slice of the job that runs",
+                           Role::kOperate, described<ImageParams>(), describe_preview, kImageErrors, TaskMotion::kNone),
       .run = with<ImageParams>([services](const Call& call, const ImageParams& params) -> Answer {
         require_wait(call);
         return reply_when_done(services.tasks.preview(params.settings(services.recipes)));
       })};
   methods["camera.suggest_exposure"] = {
-      .about = task_description("Seeks the exposure; the camera has the asked settings afterwards",
+      .about = task_description("Seeks the exposure; the camera has the asked settings afterwards", Role::kSetUp,
                                 described<ExposureParams>(), describe_exposure, kImageErrors, TaskMotion::kNone),
       .run = with<ExposureParams>([services](const Call& call, const ExposureParams& params) -> Answer {
         require_wait(call);

@@ -40,17 +40,20 @@ void require_wait(const Call& call) {
   throw ProtocolError{json_rpc::kInvalidRequest, call.method + " takes time: not in a batch, and only with an id"};
 }
 
-MethodDescription task_description(std::string summary, DescribeFields params, DescribeFields result,
+MethodDescription task_description(std::string summary, Role role, DescribeFields params, DescribeFields result,
                                    std::vector<ErrorCode> further_errors, TaskMotion motion) {
   using enum ErrorCode;
   std::vector<ErrorCode> errors{kNotReady, kBusy, kTimeout, kAborted, kShuttingDown};
   errors.insert(errors.end(), further_errors.begin(), further_errors.end());
   return {.summary = std::move(summary),
+          .role = role,
           .params = std::move(params),
           .result = std::move(result),
           .errors = std::move(errors),
           .moves_stage = motion == TaskMotion::kMoves,
           .may_wait = true,
+          .needs_control = motion == TaskMotion::kMoves,
+          .is_audited = motion == TaskMotion::kMoves,
           .needs_id = true};
 }
 

@@ -26,7 +26,8 @@ struct ImageParams {
 void require_wait(const Call& call);
 
 /// The description of such a method: it needs an id and may wait. motion: kMoves = it moves the stage.
-[[nodiscard]] MethodDescription task_description(std::string summary, DescribeFields params, DescribeFields result,
-                                                 std::vector<ErrorCode> further_errors, TaskMotion motion);
+[[nodiscard]] MethodDescription task_description(std::string summary, Role role, DescribeFields params,
+                                                 DescribeFields result, std::vector<ErrorCode> further_errors,
+                                                 TaskMotion motion);
 
 }  // namespace fvd

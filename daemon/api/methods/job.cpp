@@ -108,19 +108,22 @@ Answer wait_for_job(const Services& services, const Call& call, const WaitParams
 
 void add_job_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
-  methods["job.start"] = {.about = {.summary = "Starts a measurement; answers once its row is on disk",
-                                    .params = described<StartParams>(),
-                                    .result = describe_started,
-                                    .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale,
-                                               kInterrupted, kShuttingDown, kStageLimit, kObjectiveMismatch,
-                                               kStorageFull, kStorageWrite, kDatabase, kMemoryBudget, kRegionOutside},
-                                    .moves_stage = true,
-                                    .needs_id = true},
-                          .run = with<StartParams>([&jobs = services.jobs](const Call&, const StartParams& params) {
-                            return start_job(jobs, params);
-                          })};
+  methods["job.start"] = {
+      .about = {.summary = "Starts a measurement; answers once its row is on disk",
+                .role = Role::kOperate,
+                .params = described<StartParams>(),
+                .result = describe_started,
+                .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kSeqConflict, kSeqStale, kShuttingDown,
+                           kStageLimit, kObjectiveMismatch, kStorageFull, kDatabase, kMemoryBudget, kRegionOutside},
+                .moves_stage = true,
+                .needs_control = true,
+                .is_audited = true,
+                .needs_id = true},
+      .run = with<StartParams>(
+          [&jobs = services.jobs](const Call&, const StartParams& params) { return start_job(jobs, params); })};
   methods["job.status"] = {
       .about = {.summary = "What a job is doing",
+                .role = Role::kView,
                 .params = described<OneJobParams>(),
                 .result = describe_job_status,
                 .errors = {kUnknownJob}},
@@ -133,6 +136,7 @@ void add_job_methods(MethodTable& methods, const Services& services) {
         return job_status_json(jobs.job(params.key()));
       })};
   methods["job.wait"] = {.about = {.summary = "Answers when the job is acquired or done",
+                                   .role = Role::kView,
                                    .params = described<WaitParams>(),
                                    .result = describe_job_status,
                                    .errors = {kUnknownJob},
@@ -140,15 +144,25 @@ void add_job_methods(MethodTable& methods, const Services& services) {
                          .run = with<WaitParams>([services](const Call& call, const WaitParams& params) {
                            return wait_for_job(services, call, params);
                          })};
-  methods["job.abort"] = {.about = {.summary = "Ends a job; no effect on one that has ended",
-                                    .params = described<OneJobParams>(),
-                                    .result = describe_job_status,
-                                    .errors = {kUnknownJob}},
-                          .run = with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) {
-                            return job_status_json(jobs.abort(params.key()));
-                          })};
+  methods["job.abort"] = {
+      .about = {.summary = "Ends a job; no effect on one that has ended",
+                .role = Role::kOperate,
+                .params = described<OneJobParams>(),
+                .result = describe_job_status,
+                .errors = {kUnknownJob},
+                .is_urgent = true,
+                .is_audited = true},
+      .peek =
+          with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) -> std::optional<Answer> {
+            const auto job = jobs.try_abort(params.key());
+            return job ? std::optional<Answer>(job_status_json(*job)) : std::nullopt;
+          }),
+      .run = with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) {
+        return job_status_json(jobs.abort(params.key()));
+      })};
   methods["job.latest"] = {
       .about = {.summary = "A client's job with the highest seq; its next number is one more than newest_seq",
+                .role = Role::kView,
                 .params = described<ClientParam>(),
                 .result = describe_latest},
       .run = with<ClientParam>([services](const Call&, const ClientParam& params) -> Answer {

@@ -28,10 +28,13 @@ MethodTable all_methods(const Services& services) {
   add_stage_methods(methods, services);
   add_objective_methods(methods, services);
   add_study_methods(methods, services);
+  add_access_methods(methods, services);
   // Last, for it describes all, itself too.
   Method& discover = methods["rpc.discover"];
-  discover.about = {
-      .summary = "OpenRPC description of all methods", .params = described<NoParams>(), .result = describe_openrpc};
+  discover.about = {.summary = "OpenRPC description of all methods",
+                    .role = Role::kView,
+                    .params = described<NoParams>(),
+                    .result = describe_openrpc};
   const auto document = std::make_shared<const Reply>(openrpc_document(methods));
   discover.peek = [document](const Call&) { return *document; };
   return methods;

@@ -20,6 +20,8 @@ void add_result_methods(MethodTable& methods, const Services& services);
 void add_camera_methods(MethodTable& methods, const Services& services);
 void add_stage_methods(MethodTable& methods, const Services& services);
 void add_objective_methods(MethodTable& methods, const Services& services);
+/// session, control, audit.
+void add_access_methods(MethodTable& methods, const Services& services);
 /// verify, calibrate, gauge, study, calibration.
 void add_study_methods(MethodTable& methods, const Services& services);
 

@@ -86,15 +86,18 @@ void add_objective_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
   methods["objective.list"] = {
       .about = {.summary = "The objectives of the configuration, and the one that was confirmed",
+                .role = Role::kView,
                 .params = described<NoParams>(),
                 .result = describe_list,
                 .errors = {kDatabase}},
       .run = [&objectives = services.objectives](const Call&) { return list(objectives); }};
   methods["objective.confirm"] = {
       .about = {.summary = "Says which objective is on the microscope; jobs of recipes that name another are refused",
+                .role = Role::kOperate,
                 .params = described<ConfirmParams>(),
                 .result = describe_confirmed,
                 .errors = {kBadInput, kBusy, kShuttingDown, kStorageFull, kDatabase},
+                .is_audited = true,
                 .needs_id = true},
       .run =
           with<ConfirmParams>([&objectives = services.objectives](const Call&, const ConfirmParams& params) -> Answer {

@@ -157,11 +157,14 @@ Reply versions(const RecipeService& recipes, const std::string& id) {
 
 void add_reading_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
-  methods["recipe.list"] = {
-      .about = {.summary = "Ids and versions of all recipes", .params = described<NoParams>(), .result = describe_list},
-      .run = [&recipes = services.recipes](const Call&) { return list(recipes); }};
+  methods["recipe.list"] = {.about = {.summary = "Ids and versions of all recipes",
+                                      .role = Role::kView,
+                                      .params = described<NoParams>(),
+                                      .result = describe_list},
+                            .run = [&recipes = services.recipes](const Call&) { return list(recipes); }};
   methods["recipe.get"] = {
       .about = {.summary = "One recipe, as values and as text",
+                .role = Role::kView,
                 .params = described<RecipeParams>(),
                 .result = describe_recipe,
                 .errors = {kUnknownRecipe, kBadRecipe}},
@@ -169,12 +172,14 @@ void add_reading_methods(MethodTable& methods, const Services& services) {
           [&recipes = services.recipes](const Call&, const RecipeParams& params) { return get(recipes, params.id); })};
   methods["recipe.check"] = {
       .about = {.summary = "Says whether a document would be accepted as a recipe; keeps nothing",
+                .role = Role::kView,
                 .params = described<CheckParams>(),
                 .result = describe_check},
       .run = with<CheckParams>(
           [&recipes = services.recipes](const Call&, const CheckParams& params) { return check(recipes, params); })};
   methods["recipe.versions"] = {
       .about = {.summary = "The versions of a recipe that are kept",
+                .role = Role::kView,
                 .params = described<RecipeParams>(),
                 .result = describe_versions,
                 .errors = {kUnknownRecipe}},
@@ -190,10 +195,13 @@ void add_recipe_methods(MethodTable& methods, const Services& services) {
   add_reading_methods(methods, services);
   methods["recipe.prepare"] = {
       .about = {.summary = "Checks a recipe and makes it the one for jobs that name none",
+                .role = Role::kOperate,
                 .params = described<RecipeParams>(),
                 .result = describe_prepared,
                 .errors = {kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kShuttingDown, kStageLimit, kObjectiveMismatch,
-                           kRegionOutside, kMemoryBudget, kDatabase, kStorageFull}},
+                           kRegionOutside, kMemoryBudget, kDatabase, kStorageFull},
+                .needs_control = true,
+                .is_audited = true},
       .run = with<RecipeParams>([&jobs = services.jobs](const Call&, const RecipeParams& params) {
         jobs.prepare(params.id);
         return Reply{{"recipe", params.id}};
@@ -203,17 +211,21 @@ void add_recipe_methods(MethodTable& methods, const Services& services) {
   methods["recipe.save"] = {
       .about = {.summary = "Keeps a document as a new version of a recipe and puts it in force; refused where another "
                            "version than base_version is in force",
+                .role = Role::kSetUp,
                 .params = described<SaveParams>(),
                 .result = describe_saved,
-                .errors = saving},
+                .errors = saving,
+                .is_audited = true},
       .run = with<SaveParams>([&recipes = services.recipes](const Call&, const SaveParams& params) {
         return Reply{{"id", params.save.id}, {"version", recipes.save(params.save)}};
       })};
   methods["recipe.restore"] = {
       .about = {.summary = "Saves an earlier version of a recipe anew",
+                .role = Role::kSetUp,
                 .params = described<RestoreParams>(),
                 .result = describe_saved,
-                .errors = saving},
+                .errors = saving,
+                .is_audited = true},
       .run = with<RestoreParams>([&recipes = services.recipes](const Call&, const RestoreParams& params) {
         return Reply{{"id", params.id},
                      {"version", recipes.restore(params.id, params.version, params.base_version, params.author)}};

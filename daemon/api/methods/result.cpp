@@ -69,6 +69,7 @@ Reply result_of(const Services& services, const JobKey& key, const std::string& 
 void add_result_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
   methods["result.get"] = {.about = {.summary = "The result of a job; the same answer every time",
+                                     .role = Role::kView,
                                      .params = described<GetParams>(),
                                      .result = describe_result,
                                      .errors = {kUnknownJob}},
@@ -78,6 +79,7 @@ void add_result_methods(MethodTable& methods, const Services& services) {
   methods["result.evaluate"] = {
       .about = {.summary =
                     "Evaluates a stored result's surface by another recipe: a new record; the job's result stays",
+                .role = Role::kSetUp,
                 .params = described<EvaluateParams>(),
                 .result = describe_new_record,
                 .errors = {kBusy, kUnknownJob, kUnknownRecipe, kBadRecipe, kBadInput, kSurfaceFile, kMemoryBudget,
@@ -91,6 +93,7 @@ void add_result_methods(MethodTable& methods, const Services& services) {
   methods["result.next"] = {
       .about = {.summary =
                     "The oldest result that was not acknowledged, of any client; job_id is empty if there is none",
+                .role = Role::kView,
                 .params = described<NoParams>(),
                 .result = describe_next_result},
       .run = [services](const Call&) -> Answer {
@@ -99,6 +102,7 @@ void add_result_methods(MethodTable& methods, const Services& services) {
       }};
   methods["result.ack"] = {
       .about = {.summary = "Acknowledges a result; nothing is deleted",
+                .role = Role::kOperate,
                 .params = described<OneJobParams>(),
                 .result = describe_acknowledged,
                 .errors = {kBusy, kUnknownJob, kDatabase, kStorageFull}},

@@ -60,11 +60,84 @@ void describe_homed(Fields& fields) {
   result.boolean("homed", "true");
 }
 
+constexpr std::int64_t kLongestJog_ms = 150;
+
+struct JogParams {
+  std::string direction = "up";
+  double speed_um_per_s = 10.0;
+  std::int64_t until_ms = kLongestJog_ms;
+
+  void describe(Fields& fields) {
+    fields.choice("direction", direction, {"up", "down"}, "up = greater z");
+    fields.require("direction");
+    fields.number("speed_um_per_s", speed_um_per_s, positive(1e6), "at most stage.speed_um_per_s");
+    fields.require("speed_um_per_s");
+    fields.integer64("until_ms", until_ms, {10, kLongestJog_ms},
+                     "so long after this request came the axis halts, unless the request is repeated before");
+  }
+
+  [[nodiscard]] JogRequest request(const Caller& caller) const {
+    const HostTime from = caller.received == HostTime{} ? HostClock::now() : caller.received;
+    return {direction == "up", speed_um_per_s, from + std::chrono::milliseconds(until_ms), caller.who.name};
+  }
+};
+
+void describe_jog(Fields& fields) {
+  const ResultFields result(fields);
+  result.boolean("begins", "false: a jog that runs goes on");
+}
+
+std::string_view stopped_name(JobService::Stopped stopped) {
+  if (stopped == JobService::Stopped::kJob) return "job";
+  return stopped == JobService::Stopped::kCommand ? "command" : "nothing";
+}
+
+void describe_stopped(Fields& fields) {
+  ResultFields(fields).text("stopped", "what had the stage: job, command, nothing");
+}
+
 void describe_moved(Fields& fields) { ResultFields(fields).number("z_um", "where the stage stands now"); }
 
 const std::vector<ErrorCode> kMotionErrors{ErrorCode::kStageDisconnected, ErrorCode::kStageLimit,
                                            ErrorCode::kStageNotHomed,     ErrorCode::kStagePosition,
                                            ErrorCode::kStageAlarm,        ErrorCode::kStageTaken};
+
+void add_stop_and_jog(MethodTable& methods, const Services& services) {
+  methods["stage.stop"] = {
+      .about = {.summary = "Ends whatever moves the stage, and what was asked for before and would; needs no control, "
+                           "waits for nothing",
+                .role = Role::kOperate,
+                .params = described<NoParams>(),
+                .result = describe_stopped,
+                .is_urgent = true,
+                .is_audited = true},
+      .peek = [&jobs = services.jobs](const Call&) -> std::optional<Answer> {
+        return Reply{{"stopped", stopped_name(jobs.stop_motion())}};
+      }};
+  auto errors = kMotionErrors;
+  errors.insert(errors.end(), {ErrorCode::kNotReady, ErrorCode::kBusy, ErrorCode::kTimeout, ErrorCode::kAborted,
+                               ErrorCode::kShuttingDown});
+  methods["stage.jog"] = {
+      .about = {.summary = "Moves the stage inside its soft limits while it is repeated; why it ended is told to the "
+                           "next repeat",
+                .role = Role::kSetUp,
+                .params = described<JogParams>(),
+                .result = describe_jog,
+                .errors = std::move(errors),
+                .moves_stage = true,
+                .needs_control = true,
+                .is_audited = true,
+                .needs_id = true},
+      .peek = with<JogParams>(
+          [&tasks = services.tasks](const Call& call, const JogParams& params) -> std::optional<Answer> {
+            if (!tasks.extend_jog(params.request(call.caller))) return std::nullopt;
+            return Reply{{"begins", false}};
+          }),
+      .run = with<JogParams>([&tasks = services.tasks](const Call& call, const JogParams& params) -> Answer {
+        tasks.jog(params.request(call.caller));
+        return Reply{{"begins", true}};
+      })};
+}
 
 }  // namespace
 
@@ -75,28 +148,31 @@ void add_stage_methods(MethodTable& methods, const Services& services) {
                        ErrorCode::kCameraDisconnected, ErrorCode::kCameraFramesLost, ErrorCode::kCameraTimeout,
                        ErrorCode::kCameraSettings, ErrorCode::kCameraNoFrames, ErrorCode::kFocusRange});
   methods["stage.autofocus"] = {
-      .about = task_description("Moves the stage to where the middle of the image is sharpest",
+      .about = task_description("Moves the stage to where the middle of the image is sharpest", Role::kSetUp,
                                 described<FocusParams>(), describe_focus, focus_errors, TaskMotion::kMoves),
       .run = with<FocusParams>([services](const Call& call, const FocusParams& params) -> Answer {
         require_wait(call);
         return reply_when_done(services.tasks.submit(
             autofocus_work(params.image.settings(services.recipes), params.plan()), TaskMotion::kMoves));
       })};
-  methods["stage.home"] = {.about = task_description("Finds the stage's reference", described<NoParams>(),
-                                                     describe_homed, kMotionErrors, TaskMotion::kMoves),
-                           .run = [&tasks = services.tasks](const Call& call) -> Answer {
-                             require_wait(call);
-                             return reply_when_done(tasks.submit(home_work(), TaskMotion::kMoves));
-                           }};
+  methods["stage.home"] = {
+      .about = task_description("Finds the stage's reference", Role::kOperate, described<NoParams>(), describe_homed,
+                                kMotionErrors, TaskMotion::kMoves),
+      .run = [&tasks = services.tasks](const Call& call) -> Answer {
+        require_wait(call);
+        return reply_when_done(tasks.submit(home_work(), TaskMotion::kMoves));
+      }};
   methods["stage.move"] = {
-      .about = task_description("Moves the stage", described<MoveParams>(), describe_moved, kMotionErrors,
+      .about = task_description("Moves the stage", Role::kSetUp, described<MoveParams>(), describe_moved, kMotionErrors,
                                 TaskMotion::kMoves),
       .run = with<MoveParams>([&tasks = services.tasks](const Call& call, const MoveParams& params) -> Answer {
         require_wait(call);
         return reply_when_done(tasks.submit(move_work(Micrometers{params.z_um}), TaskMotion::kMoves));
       })};
+  add_stop_and_jog(methods, services);
   methods["stage.accuracy"] = {
       .about = {.summary = "The stage's step errors over all scans, kept in stage_history.json",
+                .role = Role::kView,
                 .params = described<NoParams>(),
                 .result = describe_stage_history},
       .run = [&tasks = services.tasks](const Call&) { return stage_history_json(tasks.stage_history()); }};

@@ -162,7 +162,10 @@ Reply calibration(const StudyService& studies, const CalibrationParams& params) 
 template <typename Request>
 void add_study(MethodTable& methods, const Services& services, const std::string& kind, const std::string& summary) {
   using enum ErrorCode;
+  // What proposes constants is for whoever may make them valid.
+  const Role role = kind.starts_with("calibrate.") ? Role::kAdminister : Role::kSetUp;
   methods[kind] = {.about = {.summary = summary,
+                             .role = role,
                              .params = described<AskedBy<Request>>(),
                              .result = describe_study,
                              .errors = {kStudyRefused, kUnknownJob, kUnknownRecipe, kBadRecipe, kCalibrationMissing,
@@ -180,11 +183,15 @@ void add_study(MethodTable& methods, const Services& services, const std::string
 void add_reading_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
   methods["study.list"] = {
-      .about = {.summary = "The studies that were made", .params = described<ListParams>(), .result = describe_list},
+      .about = {.summary = "The studies that were made",
+                .role = Role::kView,
+                .params = described<ListParams>(),
+                .result = describe_list},
       .run = with<ListParams>(
           [&studies = services.studies](const Call&, const ListParams& params) { return list(studies, params); })};
   methods["study.get"] = {
       .about = {.summary = "One study with its figures, and where its files are",
+                .role = Role::kView,
                 .params = described<StudyParams>(),
                 .result = describe_study,
                 .errors = {kStudyRefused}},
@@ -192,6 +199,7 @@ void add_reading_methods(MethodTable& methods, const Services& services) {
           [&studies = services.studies](const Call&, const StudyParams& params) { return get(studies, params.id); })};
   methods["calibration.get"] = {
       .about = {.summary = "The constants of the instrument, in force or of any version",
+                .role = Role::kView,
                 .params = described<CalibrationParams>(),
                 .result = describe_calibration,
                 .errors = {kCalibrationMissing}},
@@ -239,9 +247,11 @@ void add_study_methods(MethodTable& methods, const Services& services) {
   methods["calibrate.accept"] = {
       .about = {.summary = "Makes the constants that a study proposes valid; a study that was accepted already changes "
                            "nothing",
+                .role = Role::kAdminister,
                 .params = described<AcceptRequest>(),
                 .result = describe_accepted,
                 .errors = {kStudyRefused, kBadInput, kObjectiveMismatch, kSurfaceFile, kStorageFull, kStorageWrite},
+                .is_audited = true,
                 .needs_id = true},
       .run = with<AcceptRequest>([&studies = services.studies](const Call&, const AcceptRequest& request) {
         return accept(studies, request);

@@ -2,10 +2,12 @@
 
 #include "daemon/api/json_shapes.hpp"
 #include "daemon/api/methods/job_key_params.hpp"
+#include "daemon/api/methods/device_task.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/result_fields.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/jobs/device_commands.hpp"
 
 namespace fvd {
 
@@ -46,30 +48,51 @@ Reply info_of(const MachineStatus& machine) {
   return reply;
 }
 
+void describe_reset(Fields& fields) {
+  const ResultFields result(fields);
+  result.number("z_um", "where the stage stands");
+  result.boolean("homed", "false: call stage.home");
+}
+
 }  // namespace
 
 void add_system_methods(MethodTable& methods, const Services& services, std::chrono::steady_clock::time_point started) {
   const auto heartbeat = [started] {
     return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - started).count();
   };
-  methods["system.ping"] = {
-      .about = {.summary = "Heartbeat", .params = described<PingParams>(), .result = describe_ping},
-      .peek = [&machine = services.machine, heartbeat](const Call& call) -> Answer {
-        Reply reply{{"hb", heartbeat()}, {"epoch", machine.snapshot()->epoch}};
-        if (call.params.contains("t")) reply["t"] = call.params["t"];
-        return reply;
-      }};
+  methods["system.ping"] = {.about = {.summary = "Heartbeat",
+                                      .role = Role::kView,
+                                      .params = described<PingParams>(),
+                                      .result = describe_ping},
+                            .peek = [&machine = services.machine, heartbeat](const Call& call) -> Answer {
+                              Reply reply{{"hb", heartbeat()}, {"epoch", machine.snapshot()->epoch}};
+                              if (call.params.contains("t")) reply["t"] = call.params["t"];
+                              return reply;
+                            }};
   methods["system.info"] = {
-      .about = {.summary = "Who answers", .params = described<NoParams>(), .result = describe_info},
+      .about = {.summary = "Who answers",
+                .role = Role::kView,
+                .params = described<NoParams>(),
+                .result = describe_info},
       .peek = [&machine = services.machine](const Call&) { return info_of(*machine.snapshot()); }};
   methods["system.state"] = {
       .about = {.summary = "The machine's state, flat and cheap to poll",
+                .role = Role::kView,
                 .params = described<ClientParam>(),
                 .result = describe_machine_status},
       .peek = with<ClientParam>(
           [&machine = services.machine, heartbeat](const Call&, const ClientParam& params) -> std::optional<Answer> {
             return Answer(machine_status_json(*machine.snapshot(), params.checked(), heartbeat()));
           })};
+  MethodDescription reset = task_description(
+      "Asks the devices whether the cause of an error is gone; an error ends with its cause, and with nothing else",
+      Role::kOperate, described<NoParams>(), describe_reset, {ErrorCode::kStageAlarm, ErrorCode::kStageDisconnected},
+      TaskMotion::kNone);
+  reset.is_audited = true;
+  methods["error.reset"] = {.about = std::move(reset), .run = [&tasks = services.tasks](const Call& call) -> Answer {
+                              require_wait(call);
+                              return reply_when_done(tasks.submit(reset_work(), TaskMotion::kNone));
+                            }};
 }
 
 }  // namespace fvd

@@ -32,7 +32,7 @@ class ADispatcher : public testing::Test {
   }
 
   FakeJobService service_;
-  Caller caller_;
+  Caller caller_{.who = {"test", Role::kAdminister}};
   Dispatcher dispatcher_{all_methods(service_.services()), service_.services()};
 };
 

@@ -2,6 +2,7 @@
 
 /// A job service without devices: jobs run until the test ends them.
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -95,12 +96,42 @@ class FakeStudies final : public StudyService {
   bool busy = false;
 };
 
+/// Keeps what is noted.
+class FakeAudit final : public AuditService {
+ public:
+  void note(AuditEntry entry) override {
+    const std::lock_guard lock(mutex_);
+    entry.number = static_cast<std::int64_t>(entries_.size()) + 1;
+    entries_.push_back(std::move(entry));
+  }
+  [[nodiscard]] std::vector<AuditEntry> newest(int most, std::int64_t before) override {
+    const std::lock_guard lock(mutex_);
+    std::vector<AuditEntry> found;
+    for (auto entry = entries_.rbegin(); entry != entries_.rend() && static_cast<int>(found.size()) < most; ++entry) {
+      if (before == 0 || entry->number < before) found.push_back(*entry);
+    }
+    return found;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<AuditEntry> entries_;
+};
+
 class FakeJobService final : public MachineView, public JobService, public ResultService, public TaskService {
  public:
   FakeRecipes recipes;
   FakeObjectives objectives;
   FakeStudies studies;
-  [[nodiscard]] Services services() { return {*this, *this, *this, *this, recipes, objectives, studies}; }
+  AccessConfig access_config;  ///< before services() is called
+  std::optional<AccessRules> access;
+  ControlLease control{[] { return HostClock::now(); }, [this] { return job_runs; }};
+  FakeAudit audit;
+  bool job_runs = false;
+  [[nodiscard]] Services services() {
+    if (!access) access.emplace(access_config);
+    return {*this, *this, *this, *this, recipes, objectives, studies, control, audit, *access};
+  }
 
   Started start(const JobRequest& request) override {
     if (before_start) before_start();
@@ -131,6 +162,30 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return found;
   }
   JobStatus abort(const JobKey& key) override { return job(key); }
+  std::optional<JobStatus> try_abort(const JobKey& key) override {
+    if (!current || !names(key, *current)) return std::nullopt;
+    ++aborts;
+    return current;
+  }
+  std::atomic<int> aborts{0};
+  Stopped stop_motion() override {
+    ++stops;
+    last_stop = HostClock::now();
+    return Stopped::kCommand;
+  }
+  [[nodiscard]] bool stopped_since(HostTime time) const override { return last_stop.load() > time; }
+  std::atomic<int> stops{0};
+  std::atomic<HostTime> last_stop{HostTime{}};
+  void jog(const JogRequest& request) override {
+    if (refuse_tasks) throw Error(ErrorCode::kBusy, "a job is running");
+    jogs.push_back(request);
+  }
+  bool extend_jog(const JogRequest& request) override {
+    if (jogs.empty() || !jogs.back().repeats(request)) return false;
+    jogs.push_back(request);
+    return true;
+  }
+  std::vector<JogRequest> jogs;
   [[nodiscard]] StoredJob stored(const JobKey& key) const override {
     const JobStatus found = job(key);
     if (found.state != JobState::kCompleted) return {found, "", ""};

@@ -37,7 +37,9 @@ TEST(ConfigFile, TakesDefaultsForWhatIsAbsent) {
 
 TEST(ConfigFile, ReadsEveryGroup) {
   const Config config = parse_config(R"({
-    "rpc": {"address": "::1", "port": 0, "max_connections": 3, "idle_timeout_s": 5},
+    "rpc": {"address": "::1", "port": 0, "max_connections": 3, "idle_timeout_s": 5, "first_request_s": 7,
+            "socket": "s.sock", "allow": [{"address": "10.0.0.0/8", "role": "operate"}], "loopback_role": "view",
+            "groups": [{"group": "line", "role": "set_up"}], "token_file": "tokens"},
     "camera": {"driver": "replay", "address": "10.0.0.1", "packet_size_bytes": 9000, "packet_socket": false,
                "frame_margin_ms": 50, "simulated": true, "replay_dir": "slices"},
     "stage": {"driver": "replay", "profile": "p.json", "address": "drive", "port": 1502, "unit": 7,
@@ -56,6 +58,16 @@ TEST(ConfigFile, ReadsEveryGroup) {
   EXPECT_EQ(config.rpc.port, 0);
   EXPECT_EQ(config.rpc.max_connections, 3);
   EXPECT_EQ(config.rpc.idle_timeout_s, 5);
+  EXPECT_EQ(config.rpc.first_request_s, 7);
+  EXPECT_EQ(config.rpc.socket, "s.sock") << "relative to the current directory";
+  ASSERT_EQ(config.rpc.access.allow.size(), 1U);
+  EXPECT_EQ(config.rpc.access.allow[0].address, "10.0.0.0/8");
+  EXPECT_EQ(config.rpc.access.allow[0].role, Role::kOperate);
+  EXPECT_EQ(config.rpc.access.loopback_role, Role::kView);
+  ASSERT_EQ(config.rpc.access.groups.size(), 1U);
+  EXPECT_EQ(config.rpc.access.groups[0].group, "line");
+  EXPECT_EQ(config.rpc.access.groups[0].role, Role::kSetUp);
+  EXPECT_EQ(config.rpc.access.token_file, "/etc/fvd/tokens");
   EXPECT_EQ(config.camera.driver, "replay");
   EXPECT_EQ(config.camera.address, "10.0.0.1");
   EXPECT_EQ(config.camera.packet_size_bytes, 9000);
@@ -227,21 +239,54 @@ TEST_F(AUsableConfig, NeedsAddressesThatCanBe) {
                                               problem("/stage/address", "stands for many machines")));
 }
 
+TEST_F(AUsableConfig, NeedsToKnowWhoMayWhatFromTheNetwork) {
+  for (const char* address : {"0.0.0.0", "::", "192.168.1.5"}) {
+    config_.rpc.address = address;
+    config_.rpc.access = {};
+    EXPECT_THAT(check_config(config_), ElementsAre(problem("/rpc/address", "nothing says who may move the stage")));
+    config_.rpc.access.allow = {{"192.168.1.10", Role::kOperate}};
+    EXPECT_THAT(check_config(config_), IsEmpty());
+    config_.rpc.access.allow.clear();
+    config_.rpc.access.token_file = folder_ / "tokens";
+    EXPECT_THAT(check_config(config_), ElementsAre(problem("/rpc/token_file", "cannot read")));
+    test::write_text(folder_ / "tokens", "");
+    EXPECT_THAT(check_config(config_), IsEmpty());
+    test::write_text(folder_ / "tokens", "anna\n");
+    EXPECT_THAT(check_config(config_), ElementsAre(problem("/rpc/token_file", "line 1")));
+    std::filesystem::remove(folder_ / "tokens");
+  }
+}
+
+TEST_F(AUsableConfig, NeedsRangesOfAddresses) {
+  config_.rpc.access.allow = {
+      {"192.168.1.10/24", Role::kView}, {"10.0.0.0/8", Role::kView}, {"10.0.0.0/8", Role::kOperate}};
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/rpc/allow/0/address", "no range"),
+                                                 problem("/rpc/allow/2/address", "stands there already")));
+}
+
+TEST_F(AUsableConfig, NeedsAShortPathForTheSocket) {
+  config_.paths.runtime_dir = "/" + std::string(120, 'r');
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/paths/runtime_dir", "too long for a socket")));
+  config_.rpc.socket = "/run/fvd.sock";
+  EXPECT_THAT(check_config(config_), IsEmpty());
+}
+
+TEST(ConfigFile, KnowsFourRoles) {
+  EXPECT_THAT(problems_of(R"({"rpc": {"loopback_role": "none", "allow": [{"address": "10.0.0.7", "role": "root"}],
+                              "groups": [{"group": "line"}]}})"),
+              ::testing::UnorderedElementsAre(problem("/rpc/loopback_role"), problem("/rpc/allow/0/role"),
+                                              problem("/rpc/groups/0/role")));
+}
+
 TEST_F(AUsableConfig, NeedsACameraAddress) {
   config_.camera.address.clear();
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/address", "is empty")));
 }
 
-TEST_F(AUsableConfig, NeedsAddressesThatCanBe) {
-  config_.camera.address = "192.168.1.300";
+TEST_F(AUsableConfig, NeedsAnAddressToSearchAt) {
   config_.camera.search_address = "left";
-  config_.stage.address = "10.0.0.256";
-  EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/address", "'192.168.1.300' is no IPv4 address"),
-                                                 problem("/camera/search_address", "'left' is no IPv4 address"),
-                                                 problem("/stage/address", "'10.0.0.256' is no IPv4 address")));
-  config_.camera.address = "40012345";  // a serial number
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/camera/search_address", "'left' is no IPv4 address")));
   config_.camera.search_address = "192.168.1.255";
-  config_.stage.address = "drive.example";
   EXPECT_THAT(check_config(config_), IsEmpty());
 }
 

@@ -27,10 +27,12 @@ class AnRpcServer : public testing::Test {
     config.port = 0;
     config.max_connections = max_connections;
     config.idle_timeout_s = idle_timeout_s;
+    config.access.loopback_role = Role::kAdminister;
     return config;
   }
   void serve(const RpcConfig& with) {
     server_.reset();
+    service_.access.emplace(with.access);
     server_ = std::make_unique<RpcServer>(with, runtime_.path(), service_.services());
   }
   static bool answers(LineClient& client) { return client.ask(kPing).find("\"result\"") != std::string::npos; }
@@ -45,6 +47,7 @@ TEST_F(AnRpcServer, WritesItsAddressAndRemovesIt) {
   const json file = json::parse(test::read_text(runtime_.path() / "rpc.json"));
   EXPECT_EQ(file["port"], server_->port());
   EXPECT_EQ(file["address"], "127.0.0.1");
+  EXPECT_EQ(file["socket"], (runtime_.path() / "fvd.sock").string());
   server_.reset();
   EXPECT_FALSE(std::filesystem::exists(runtime_.path() / "rpc.json"));
   serve(config());

@@ -1,0 +1,56 @@
+#pragma once
+
+/// Who has control of the instrument: one at a time, for a time.
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
+#include "daemon/access/role.hpp"
+
+namespace fvd {
+
+/// While nobody holds it, everybody may do what his role says. It belongs to an identity, not to a connection: a PLC
+/// that lost its connection still has control when it is back.
+/// context: thread-safe; blocks for nothing.
+class ControlLease {
+ public:
+  struct Holder {
+    std::string who;    ///< the identity
+    std::string owner;  ///< what it calls itself, for people
+    HostTime until{};
+  };
+  struct Request {
+    const Identity& who;
+    std::string owner;
+    std::chrono::seconds time{0};
+    bool force = false;  ///< take it from another
+  };
+
+  /// job_runs: whether a job runs now.
+  ControlLease(std::function<HostTime()> now, std::function<bool()> job_runs);
+
+  /// From now on for the time given; the holder itself renews it so. Throws AccessError kNoControl where another holds
+  /// it and force is not set, kNotAllowed where it is set by one who does not administer; Error kBusy where it is set
+  /// while a job runs.
+  Holder acquire(const Request& request);
+  /// No effect where the identity does not hold it.
+  void release(const std::string& who);
+  /// Throws AccessError kNoControl where another holds it.
+  void require(const std::string& who) const;
+  /// Nothing where nobody holds it, or his time is over.
+  [[nodiscard]] std::optional<Holder> holder() const;
+
+ private:
+  [[nodiscard]] std::optional<Holder> holder_locked() const FVD_REQUIRES(mutex_);
+
+  const std::function<HostTime()> now_;
+  const std::function<bool()> job_runs_;
+  mutable Mutex mutex_;
+  std::optional<Holder> holder_ FVD_GUARDED_BY(mutex_);
+};
+
+}  // namespace fvd

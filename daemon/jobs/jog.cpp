@@ -1,0 +1,97 @@
+#include "daemon/jobs/jog.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/runtime/guarded_thread.hpp"
+#include "daemon/jobs/objective_limits.hpp"
+
+namespace fvd {
+
+namespace {
+
+constexpr std::chrono::seconds kFailureIsNews{1};
+
+/// Inside the limits by one step, for a target is rounded to whole steps.
+Micrometers target_of(const JogRequest& request, const Devices& devices) {
+  StageInfo stage = devices.stage.info();
+  if (devices.objective != nullptr) stage = limited_by(*devices.objective, stage);
+  const Micrometers target = request.up ? stage.max - stage.step_quantum : stage.min + stage.step_quantum;
+  const Micrometers here = devices.stage.status().position;
+  if (request.up ? here < target : here > target) return target;
+  std::ostringstream message;
+  message << "the stage is at " << here.value << " um, its " << (request.up ? "upper" : "lower")
+          << " limit; nothing was moved";
+  throw Error(ErrorCode::kStageLimit, message.str());
+}
+
+void jog(const Devices& devices, JogHold& hold, const std::stop_token& stop) {
+  const Micrometers target = target_of(hold.request(), devices);
+  std::stop_source ends;
+  const std::stop_callback passed_on(stop, [&ends] { ends.request_stop(); });
+  const std::jthread watch = start_thread("fvd-jog", [&hold, &ends](std::stop_token leave) {
+    hold.wait_until_over(std::move(leave));
+    ends.request_stop();
+  });
+  try {
+    (void)devices.stage.sweep_to(target, hold.request().speed_um_per_s, ends.get_token());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kAborted || stop.stop_requested()) throw;
+  }
+}
+
+}  // namespace
+
+bool JogHold::extend(const JogRequest& request) {
+  const MutexLock lock(mutex_);
+  if (over_) return false;
+  const bool repeated = request_.repeats(request);
+  until_ = repeated ? std::max(until_, request.until) : HostTime{};
+  changed_.notify_all();
+  return repeated;
+}
+
+void JogHold::wait_until_over(std::stop_token stop) {
+  MutexLock lock(mutex_);
+  while (!stop.stop_requested() && HostClock::now() < until_) {
+    const HostTime deadline = until_;
+    changed_.wait_until(lock, stop, deadline, [this, deadline] {
+      mutex_.assert_held();
+      return until_ != deadline;
+    });
+  }
+  over_ = true;
+}
+
+void JogHold::fail(ErrorCode code, const std::string& message) {
+  const MutexLock lock(mutex_);
+  over_ = true;
+  failure_.emplace(code, message);
+  failed_ = HostClock::now();
+}
+
+std::optional<Error> JogHold::take_failure(const JogRequest& repeat) {
+  const MutexLock lock(mutex_);
+  auto failure = std::exchange(failure_, std::nullopt);
+  if (!request_.repeats(repeat) || HostClock::now() - failed_ > kFailureIsNews) failure.reset();
+  return failure;
+}
+
+DeviceTask::Work jog_work(std::shared_ptr<JogHold> hold) {
+  return [hold = std::move(hold)](const Devices& devices, const std::stop_token& stop) {
+    try {
+      jog(devices, *hold, stop);
+    } catch (const Error& error) {
+      hold->fail(error.code(), error.what());
+      throw;
+    }
+    return nlohmann::ordered_json{{"z_um", devices.stage.status().position.value}}.dump();
+  };
+}
+
+}  // namespace fvd

@@ -1,0 +1,156 @@
+/// Who may call what: every role against every method.
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "tests/daemon/api/dispatcher_fixture.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+
+/// The least role of every method, typed a second time: a method that gets another one by mistake is seen here.
+const std::map<std::string, Role>& expected_roles() {
+  using enum Role;
+  static const std::map<std::string, Role> kRoles{{"audit.list", kView},
+                                                  {"calibrate.accept", kAdminister},
+                                                  {"calibrate.flatness", kAdminister},
+                                                  {"calibrate.lateral", kAdminister},
+                                                  {"calibrate.noise", kAdminister},
+                                                  {"calibrate.texture", kAdminister},
+                                                  {"calibrate.z", kAdminister},
+                                                  {"calibration.get", kView},
+                                                  {"camera.preview", kOperate},
+                                                  {"camera.snap", kSetUp},
+                                                  {"camera.suggest_exposure", kSetUp},
+                                                  {"control.acquire", kOperate},
+                                                  {"control.release", kOperate},
+                                                  {"control.state", kView},
+                                                  {"error.reset", kOperate},
+                                                  {"gauge.capability", kSetUp},
+                                                  {"gauge.rr", kSetUp},
+                                                  {"gauge.type1", kSetUp},
+                                                  {"job.abort", kOperate},
+                                                  {"job.latest", kView},
+                                                  {"job.start", kOperate},
+                                                  {"job.status", kView},
+                                                  {"job.wait", kView},
+                                                  {"objective.confirm", kOperate},
+                                                  {"objective.list", kView},
+                                                  {"recipe.check", kView},
+                                                  {"recipe.get", kView},
+                                                  {"recipe.list", kView},
+                                                  {"recipe.prepare", kOperate},
+                                                  {"recipe.restore", kSetUp},
+                                                  {"recipe.save", kSetUp},
+                                                  {"recipe.versions", kView},
+                                                  {"result.ack", kOperate},
+                                                  {"result.evaluate", kSetUp},
+                                                  {"result.get", kView},
+                                                  {"result.next", kView},
+                                                  {"rpc.discover", kView},
+                                                  {"session.info", kNone},
+                                                  {"session.login", kNone},
+                                                  {"stage.accuracy", kView},
+                                                  {"stage.autofocus", kSetUp},
+                                                  {"stage.home", kOperate},
+                                                  {"stage.jog", kSetUp},
+                                                  {"stage.move", kSetUp},
+                                                  {"stage.stop", kOperate},
+                                                  {"study.get", kView},
+                                                  {"study.list", kView},
+                                                  {"system.info", kView},
+                                                  {"system.ping", kView},
+                                                  {"system.state", kView},
+                                                  {"verify.flatness", kSetUp},
+                                                  {"verify.hysteresis", kSetUp},
+                                                  {"verify.linearity", kSetUp},
+                                                  {"verify.noise", kSetUp},
+                                                  {"verify.resolution", kSetUp},
+                                                  {"verify.sphere", kSetUp},
+                                                  {"verify.step", kSetUp},
+                                                  {"verify.texture", kSetUp}};
+  return kRoles;
+}
+
+/// Parameters with which a call of the method would do something.
+json working_params(const std::string& method) {
+  if (method == "job.start") return {{"seq", 1}, {"part_id", "p"}};
+  if (method == "stage.jog") return {{"direction", "up"}, {"speed_um_per_s", 10}};
+  if (method == "control.acquire") return {{"owner", "test"}};
+  if (method == "stage.move") return {{"z_um", 1}};
+  if (method == "stage.autofocus") return {{"from_um", 0}, {"to_um", 10}};
+  if (method == "recipe.prepare") return {{"id", "chapter"}};
+  if (method == "recipe.save") return {{"id", "c"}, {"text", "{}"}, {"base_version", 3}, {"author", "a"}};
+  if (method == "recipe.restore") return {{"id", "c"}, {"version", 1}, {"base_version", 3}, {"author", "a"}};
+  if (method == "objective.confirm") return {{"name", "20x"}};
+  if (method == "calibrate.accept") return {{"study", "study-0001"}, {"person", "a"}, {"renew_by", "2027-11-29"}};
+  if (method == "verify.noise") return {{"jobs", {"a", "b"}}};
+  return json::object();
+}
+
+class ARole : public ADispatcher, public testing::WithParamInterface<Role> {};
+
+TEST_P(ARole, MayCallWhatItsMethodsSayAndNothingElse) {
+  const Role role = GetParam();
+  const Caller caller{.who = {"somebody", role}};
+  for (const auto& [name, method] : dispatcher_.methods()) {
+    const auto expected = expected_roles().find(name);
+    ASSERT_NE(expected, expected_roles().end()) << name << " is missing in this test";
+    const bool allowed = role >= expected->second;
+    const json request{{"jsonrpc", "2.0"}, {"id", 1}, {"method", name}, {"params", working_params(name)}};
+    for (const bool at_once : {true, false}) {
+      const auto handled = at_once ? dispatcher_.try_handle(request.dump(), caller)
+                                   : std::optional(dispatcher_.handle(request.dump(), caller));
+      if (at_once && !handled) {
+        EXPECT_TRUE(allowed) << name << ": a refusal needs no worker";
+        continue;
+      }
+      // session.login with a wrong token is refused like a method, and tells more.
+      if (name == "session.login") continue;
+      const bool refused = handled->reply && json::parse(*handled->reply).value("/error/code"_json_pointer, 0) == 1004;
+      EXPECT_EQ(refused, !allowed) << name << " for " << role_name(role) << ": " << handled->reply.value_or("waits");
+      EXPECT_TRUE(!refused || json::parse(*handled->reply)["error"]["data"]["error"] == "not_allowed") << name;
+    }
+    const json notification{{"jsonrpc", "2.0"}, {"method", name}, {"params", working_params(name)}};
+    if (!allowed) (void)dispatcher_.handle("[" + notification.dump() + "]", caller);
+  }
+  EXPECT_EQ(expected_roles().size(), dispatcher_.methods().size()) << "this test has a method too many";
+  // What a refused caller asked for has left no trace.
+  if (role < Role::kOperate) {
+    EXPECT_EQ(service_.starts + service_.stops + service_.aborts, 0);
+    EXPECT_EQ(service_.task, nullptr);
+    EXPECT_FALSE(service_.objectives.confirmed);
+    EXPECT_FALSE(service_.control.holder());
+  }
+  if (role < Role::kSetUp) {
+    EXPECT_TRUE(service_.jogs.empty());
+    EXPECT_TRUE(service_.recipes.saved.id.empty());
+    EXPECT_EQ(service_.recipes.restored, -1);
+    EXPECT_FALSE(service_.studies.begun);
+    EXPECT_LE(std::count(service_.motions.begin(), service_.motions.end(), TaskMotion::kMoves), 1) << "homing alone";
+  }
+  if (role < Role::kAdminister) {
+    EXPECT_FALSE(service_.studies.accepted);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ARole,
+                         testing::Values(Role::kNone, Role::kView, Role::kOperate, Role::kSetUp, Role::kAdminister),
+                         [](const auto& info) { return std::string(role_name(info.param)); });
+
+TEST_F(ADispatcher, ClosesAMethodThatNamesNoRoleToAllButWhoAdministers) {
+  MethodTable methods = all_methods(service_.services());
+  methods["new.method"] = {.about = {.summary = "", .params = described<NoParams>(), .result = described<NoParams>()},
+                           .peek = [](const Call&) { return Reply::object(); }};
+  const Dispatcher dispatcher(std::move(methods), service_.services());
+  const std::string call = R"({"jsonrpc":"2.0","id":1,"method":"new.method"})";
+  const auto refused = dispatcher.handle(call, {.who = {"somebody", Role::kSetUp}});
+  EXPECT_EQ(json::parse(refused.reply.value())["error"]["code"], 1004);
+  EXPECT_TRUE(json::parse(dispatcher.handle(call, caller_).reply.value()).contains("result"));
+}
+
+}  // namespace
+}  // namespace fvd

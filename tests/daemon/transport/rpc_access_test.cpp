@@ -1,0 +1,154 @@
+/// Who gets a connection, as whom, and what overtakes what.
+
+#include <future>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/access/token_file.hpp"
+#include "daemon/transport/rpc_server.hpp"
+#include "gtest/gtest.h"
+#include "tests/daemon/api/fake_job_service.hpp"
+#include "tests/support/line_client.hpp"
+#include "tests/support/scratch_dir.hpp"
+
+namespace fvd {
+namespace {
+
+using nlohmann::json;
+
+std::string call(const std::string& method, const json& params = json::object(), int id = 1) {
+  return json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}}.dump();
+}
+
+class AGuardedRpcServer : public testing::Test {
+ protected:
+  AGuardedRpcServer() { config_.port = 0; }
+
+  void serve() {
+    service_.access.emplace(config_.access);
+    server_ = std::make_unique<RpcServer>(config_, folder_.path(), service_.services());
+  }
+  json ask(LineClient& client, const std::string& line) { return json::parse(client.ask(line)); }
+  [[nodiscard]] std::filesystem::path socket() const { return folder_ / "fvd.sock"; }
+
+  test::ScratchDir folder_;
+  RpcConfig config_;
+  FakeJobService service_;
+  std::unique_ptr<RpcServer> server_;
+};
+
+TEST_F(AGuardedRpcServer, RecognisesCallersByTheirWay) {
+  serve();
+  LineClient tcp(server_->port());
+  EXPECT_EQ(ask(tcp, call("session.info"))["result"], (json{{"who", "address 127.0.0.1"}, {"role", "operate"}}));
+  EXPECT_EQ(ask(tcp, call("stage.move", {{"z_um", 1}}))["error"]["code"], 1004);
+  LineClient local(socket());
+  EXPECT_EQ(ask(local, call("session.info"))["result"]["role"], "administer") << "the daemon's own user";
+  local.send(call("stage.move", {{"z_um", 1}}) + "\n");
+  EXPECT_TRUE(ask(tcp, call("system.ping")).contains("result"));
+  server_.reset();
+  EXPECT_NE(service_.task, nullptr);
+  EXPECT_FALSE(std::filesystem::exists(socket()));
+}
+
+TEST_F(AGuardedRpcServer, TurnsAwayWhoMayNothingAndCannotLogIn) {
+  config_.access.allow = {{"127.0.0.2", Role::kView}};
+  config_.access.loopback_role = Role::kNone;
+  serve();
+  LineClient client(server_->port());
+  client.send(call("system.state") + "\n");
+  const auto line = client.line();
+  ASSERT_TRUE(line);
+  EXPECT_EQ(json::parse(*line)["error"]["data"]["error"], "not_allowed");
+  EXPECT_TRUE(client.closes());
+}
+
+TEST_F(AGuardedRpcServer, GivesATokensRoleToItsConnectionAlone) {
+  const std::string token = new_token();
+  config_.access.token_file = folder_ / "tokens";
+  config_.access.loopback_role = Role::kNone;
+  test::write_text(config_.access.token_file, credential_of("anna", Role::kSetUp, token).line());
+  serve();
+  LineClient client(server_->port());
+  LineClient other(server_->port());
+  EXPECT_EQ(ask(client, call("system.state"))["error"]["code"], 1004);
+  EXPECT_EQ(ask(client, call("session.login", {{"token", "wrong"}}))["error"]["code"], 1004);
+  EXPECT_EQ(ask(client, call("session.login", {{"token", token}}))["result"]["role"], "set_up");
+  EXPECT_EQ(ask(client, call("system.state"))["result"]["state"], "ready");
+  EXPECT_EQ(ask(client, call("calibrate.accept"))["error"]["code"], 1004);
+  EXPECT_EQ(ask(other, call("system.state"))["error"]["code"], 1004);
+}
+
+TEST_F(AGuardedRpcServer, ClosesWhoMakesNoValidRequestInTime) {
+  config_.first_request_s = 1;
+  serve();
+  LineClient silent(server_->port());
+  LineClient talking(server_->port());
+  LineClient babbling(server_->port());
+  LineClient forbidden(server_->port());
+  EXPECT_TRUE(ask(talking, call("system.ping")).contains("result"));
+  EXPECT_TRUE(ask(babbling, call("no.such.method")).contains("error"));
+  EXPECT_TRUE(ask(forbidden, call("stage.move", {{"z_um", 1}})).contains("error"));
+  EXPECT_TRUE(silent.closes());
+  EXPECT_TRUE(babbling.closes());
+  EXPECT_TRUE(forbidden.closes());
+  EXPECT_TRUE(ask(talking, call("system.ping")).contains("result"));
+}
+
+TEST_F(AGuardedRpcServer, KeepsAPlaceForWhoHasControl) {
+  config_.max_connections = 3;
+  serve();
+  {
+    LineClient controller(socket());
+    ASSERT_TRUE(ask(controller, call("control.acquire", {{"owner", "plc"}})).contains("result"));
+  }
+  // The controller's connection is gone once the server has seen it: then two more come in, and not a third.
+  LineClient first(server_->port());
+  EXPECT_TRUE(ask(first, call("system.ping")).contains("result"));
+  LineClient second(server_->port());
+  EXPECT_TRUE(ask(second, call("system.ping")).contains("result"));
+  LineClient third(server_->port());
+  const auto refused = third.line();
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(json::parse(*refused)["error"]["data"]["error"], "too_many_connections");
+  EXPECT_TRUE(third.closes());
+  LineClient back(socket());
+  EXPECT_EQ(ask(back, call("control.state"))["result"]["yours"], true);
+  LineClient anew(socket());
+  EXPECT_EQ(ask(anew, call("control.state"))["result"]["yours"], true) << "its old connection gives way";
+  EXPECT_TRUE(back.closes());
+}
+
+TEST_F(AGuardedRpcServer, StopsWhileTheWorkerAndTheConnectionAreBusy) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  service_.before_start = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  service_.current = JobStatus{};
+  service_.current->job_id = "J1";
+  serve();
+  LineClient client(server_->port());
+  LineClient other(server_->port());
+  client.send(call("job.start", {{"seq", 5}, {"part_id", "p"}}) + "\n");
+  begun.get_future().wait();
+  client.send(call("system.ping", json::object(), 2) + "\n" + call("stage.stop", json::object(), 3) + "\n" +
+              call("job.abort", {{"job_id", "J1"}}, 4) + "\n" + call("job.abort", {{"job_id", "J0"}}, 5) + "\n");
+  for (const int id : {3, 4}) {
+    const auto line = client.line();
+    ASSERT_TRUE(line);
+    EXPECT_EQ(json::parse(*line)["id"], id) << "it overtakes the start and the ping";
+  }
+  EXPECT_EQ(ask(other, call("stage.stop"))["result"]["stopped"], "command");
+  EXPECT_EQ(service_.stops, 2);
+  released.set_value();
+  for (const int id : {1, 2, 5}) {
+    const auto line = client.line();
+    ASSERT_TRUE(line);
+    EXPECT_EQ(json::parse(*line)["id"], id) << "the others in their order";
+  }
+}
+
+}  // namespace
+}  // namespace fvd
