@@ -35,6 +35,11 @@ struct LogConfig {
   std::string level = "info";  ///< trace, debug, info, warn, error
 };
 
+struct MetricsConfig {
+  std::string address = "127.0.0.1";  ///< numeric address to listen on
+  std::optional<int> port;            ///< 0..65535, 0 = any free port; absent = no metrics
+};
+
 /// An objective that can be on the microscope. Which one is there, a person confirms.
 struct ObjectiveConfig {
   std::string name;                   ///< unique, 1..64 bytes
@@ -59,6 +64,7 @@ struct Config : DeviceConfigs {
   PathsConfig paths;
   ComputeConfig compute;
   LogConfig log;
+  MetricsConfig metrics;
   std::vector<ObjectiveConfig> objectives;  ///< none = nobody asks which one is on the microscope
   TemperatureConfig temperature;
 };

@@ -30,7 +30,8 @@ std::size_t memory_budget_bytes(const Config& config) {
 }  // namespace
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
-    : pool_(thread_count(config.compute.threads)),
+    : state_dir_(config.paths.state_dir),
+      pool_(thread_count(config.compute.threads)),
       pages_(std::make_shared<KeptPages>(memory_budget_bytes(config))),
       history_(config.paths.state_dir / "stage_history.json"),
       calibrations_(config.paths.state_dir / "calibration"),
@@ -75,7 +76,10 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
              calibrations_.folder()},
             studies_, calibrations_, config.camera.simulated || config.stage.simulated),
       study_runner_(desk_, [this] { board_.update([](MachineRecord&) {}); }),
-      thread_(hub_, board_, work_, ticks_, [this] { runner_.store_late_end(); }) {
+      thread_(hub_, board_, work_, ticks_, [this] {
+        runner_.store_late_end();
+        note_health();
+      }) {
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
     spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,
@@ -84,6 +88,16 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
 }
 
 Engine::~Engine() { finish(); }
+
+void Engine::note_health() {
+  std::error_code error;
+  const std::filesystem::space_info space = std::filesystem::space(state_dir_, error);
+  const DevicesHealth health = hub_.health();
+  board_.update([&](MachineRecord& machine) {
+    machine.health = health;
+    machine.disk = error ? std::nullopt : std::optional(DiskSpace{space.available, space.capacity});
+  });
+}
 
 void Engine::shut_down() {
   board_.update([](MachineRecord& machine) { machine.apply(MachineEvent::kHalt); });
