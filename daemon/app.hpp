@@ -2,11 +2,13 @@
 
 /// The daemon as a whole: owns everything; the order of the members is the order of start, its reverse that of stop.
 
+#include <optional>
 #include <string>
 
 #include "core/base/clock.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/jobs/engine.hpp"
+#include "daemon/metrics/metrics_server.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/transport/rpc_server.hpp"
 
@@ -26,6 +28,10 @@ class App {
 
   /// TCP port on which clients connect.
   [[nodiscard]] int rpc_port() const { return rpc_.port(); }
+  /// That of /metrics and /healthz; nothing if there is none.
+  [[nodiscard]] std::optional<int> metrics_port() const {
+    return metrics_ ? std::optional(metrics_->port()) : std::nullopt;
+  }
   [[nodiscard]] Engine& engine() { return engine_; }
 
  private:
@@ -34,6 +40,7 @@ class App {
   JobStore store_;
   Engine engine_;
   RpcServer rpc_;
+  std::optional<MetricsServer> metrics_;
 };
 
 }  // namespace fvd

@@ -5,12 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "daemon/config/config.hpp"
-
 namespace fvd {
 
-/// Why nobody can listen on the configured address and port now: another program has the port, no network card has the
-/// address yet, or the system forbids it. Nothing if it can be. Keeps no port.
-[[nodiscard]] std::optional<std::string> why_no_port(const RpcConfig& rpc);
+/// Why nobody can listen on a numeric address and port of TCP now: another program has the port, no network card has
+/// the address yet, or the system forbids it. Nothing if it can be. Keeps no port.
+[[nodiscard]] std::optional<std::string> why_no_port(const std::string& address, int port);
 
 }  // namespace fvd

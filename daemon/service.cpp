@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -63,13 +64,18 @@ class ServiceSignals {
 
 bool ends(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
+std::optional<std::string> why_no_ports(const Config& config) {
+  if (auto reason = why_no_port(config.rpc.address, config.rpc.port)) return reason;
+  return config.metrics.port ? why_no_port(config.metrics.address, *config.metrics.port) : std::nullopt;
+}
+
 /// Waits until clients could connect; returns all the same once its patience is over, for the start tells the failure
 /// then. False if a signal to end came meanwhile. Nothing is opened before: the epoch counts starts that serve.
-bool await_port(const RpcConfig& rpc, const ServiceSignals& signals) {
+bool await_ports(const Config& config, const ServiceSignals& signals) {
   if (std::getenv("NOTIFY_SOCKET") == nullptr) return true;  // a person gets the reason at once
   const HostTime deadline = HostClock::now() + kPortPatience;
   std::string told;
-  while (const auto reason = why_no_port(rpc)) {
+  while (const auto reason = why_no_ports(config)) {
     if (*reason != told) spdlog::warn("{}; trying again", *reason);
     if (*reason != told) notify_status("waiting: " + *reason);
     told = *reason;
@@ -118,9 +124,10 @@ int serve(const Options& options, Config config) {
     thread_failed = true;
     ::kill(::getpid(), SIGTERM);
   });
-  if (!await_port(config.rpc, signals)) return exit_code::kOk;
+  if (!await_ports(config, signals)) return exit_code::kOk;
   App app(config, options.new_database);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
+  if (const auto port = app.metrics_port()) spdlog::info("metrics on {}:{}", config.metrics.address, *port);
   const std::string status = "listening on port " + std::to_string(app.rpc_port());
   notify_ready(status);
   spdlog::info("signal {}: stopping", await_end(options, config, signals, status));

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
 #include <utility>
 
 #include <spdlog/sinks/base_sink.h>
@@ -13,6 +12,7 @@
 #include <systemd/sd-journal.h>
 #include <unistd.h>
 
+#include "core/base/mutex.hpp"
 #include "daemon/base/log_scope.hpp"
 
 namespace fvd {
@@ -35,7 +35,7 @@ int syslog_priority(spdlog::level::level_enum level) {
 }
 
 /// The logger is synchronous, so the thread that logs is the one whose scopes are asked.
-class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
+class JournalSink final : public spdlog::sinks::base_sink<Mutex> {
  public:
   explicit JournalSink(JournalEntry deliver) : deliver_(std::move(deliver)) {}
 

@@ -46,6 +46,13 @@ struct StoreConfig {
   int keep_days = 0;      ///< 0..36500; older results go; 0 = whatever their age
   int keep_gib = 0;       ///< 0..1048576; of all results; 0 = whatever their size
   int keep_free_gib = 0;  ///< 0..1048576; of the disk; 0 = however full it is
+
+  bool operator==(const StoreConfig&) const = default;
+};
+
+struct MetricsConfig {
+  std::string address = "127.0.0.1";  ///< numeric address to listen on
+  std::optional<int> port;            ///< 0..65535, 0 = any free port; absent = no metrics
 };
 
 /// An objective that can be on the microscope. Which one is there, a person confirms.
@@ -73,6 +80,7 @@ struct Config : DeviceConfigs {
   ComputeConfig compute;
   LogConfig log;
   StoreConfig store;
+  MetricsConfig metrics;
   std::vector<ObjectiveConfig> objectives;  ///< none = nobody asks which one is on the microscope
   TemperatureConfig temperature;
 };

@@ -40,7 +40,8 @@ class ConfigCheck {
   ConfigCheck(const Config& config, const Problems& read) : config_(config), read_(read) {}
 
   Problems run() {
-    check_rpc(config_.rpc);
+    check_listener("/rpc/address", config_.rpc.address);
+    check_listener("/metrics/address", config_.metrics.address);
     for (Problem& problem : check_devices(config_, read_)) report_if(true, problem.pointer, {}, problem.message);
     check_travel(config_.stage);
     const std::string& camera_driver = config_.camera.driver;
@@ -66,9 +67,13 @@ class ConfigCheck {
     found_.push_back({std::string(pointer), std::move(message)});
   }
 
+  void check_listener(std::string_view pointer, const std::string& address) {
+    const std::string problem = why_no_listener(address);
+    report_if(!problem.empty(), pointer, {}, problem);
+  }
+
   void check_rpc(const RpcConfig& rpc) {
-    const std::string problem = why_no_listener(rpc.address);
-    report_if(!problem.empty(), "/rpc/address", {}, problem);
+    check_listener("/rpc/address", rpc.address);
     const auto address = address_bytes(rpc.address);
     report_if(
         address && !is_loopback(*address) && rpc.access.allow.empty() && rpc.access.token_file.empty(), "/rpc/address",

@@ -109,6 +109,13 @@ void describe(TemperatureConfig& temperature, Fields& fields) {
                  "since the file was written; an older one counts as unknown; of sysfs none is old");
 }
 
+void describe(MetricsConfig& metrics, Fields& fields) {
+  fields.text("address", metrics.address, kMaxName, "numeric IPv4 or IPv6 address to listen on");
+  fields.optional("port", metrics.port, [](Fields& in, int& port) {
+    in.integer("port", port, {0, 65535}, "TCP port of /metrics and /healthz; 0 = any free one; absent = none");
+  });
+}
+
 }  // namespace
 
 void describe(Config& config, Fields& fields) {
@@ -121,6 +128,8 @@ void describe(Config& config, Fields& fields) {
   });
   fields.group("store", "what is removed to make room; nothing unless a key says so, nothing that is not acknowledged",
                [&](Fields& in) { describe(config.store, in); });
+  fields.group("metrics", "for Prometheus and other programs that watch the station, by HTTP; read only",
+               [&](Fields& in) { describe(config.metrics, in); });
   fields.list("objectives", config.objectives, {0, 20},
               "objectives that can be on the microscope; a person confirms which one is there",
               [](Fields& in, ObjectiveConfig& objective) { describe(objective, in); });

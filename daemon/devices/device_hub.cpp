@@ -80,6 +80,16 @@ DeviceFacts DeviceHub::facts() const {
   return facts;
 }
 
+DevicesHealth DeviceHub::health() const {
+  DevicesHealth health{.camera = {camera_.connected(), camera_.openings()},
+                       .stage = {axis_.connected(), axis_.openings()}};
+  if (health.camera.open) health.frames = camera_.get().health();
+  if (!health.stage.open) return health;
+  health.link = axis_.get().link_stats();
+  if (const auto seen = axis_.get().last_seen()) health.temperatures = seen->temperatures;
+  return health;
+}
+
 std::optional<DeviceFailure> DeviceHub::check_camera() {
   camera_.get().look_after();
   if (camera_.connected()) return std::nullopt;

@@ -12,6 +12,7 @@
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
 #include "daemon/devices/device_slot.hpp"
+#include "daemon/devices/devices_health.hpp"
 #include "drivers/registry/driver_table.hpp"
 
 namespace fvd {
@@ -55,6 +56,8 @@ class DeviceHub {
   [[nodiscard]] Camera& camera() const { return camera_.get(); }
   [[nodiscard]] Axis& axis() const { return axis_.get(); }
   [[nodiscard]] DeviceFacts facts() const;
+  /// What the devices count; nothing is asked of them.
+  [[nodiscard]] DevicesHealth health() const;
   /// How often devices were opened so far.
   [[nodiscard]] int openings() const { return camera_.openings() + axis_.openings(); }
 

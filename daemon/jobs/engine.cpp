@@ -47,7 +47,8 @@ AuditEntry start_entry(const Config& config) {
 }  // namespace
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
-    : pool_(thread_count(config.compute.threads)),
+    : state_dir_(config.paths.state_dir),
+      pool_(thread_count(config.compute.threads)),
       pages_(std::make_shared<KeptPages>(memory_budget_bytes(config))),
       history_(config.paths.state_dir / "stage_history.json"),
       calibrations_(config.paths.state_dir / "calibration"),
@@ -101,6 +102,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
       thread_(hub_, board_, work_, ticks_, [this] {
         runner_.look_after_storage();
         jobs_.restore_prepared();
+        note_health();
       }) {
   board_.update([&](MachineRecord& machine) { machine.recipe = deps.store.prepared_recipe(); });
   audit_.note(start_entry(config));
@@ -112,6 +114,16 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
 }
 
 Engine::~Engine() { finish(); }
+
+void Engine::note_health() {
+  std::error_code error;
+  const std::filesystem::space_info space = std::filesystem::space(state_dir_, error);
+  const DevicesHealth health = hub_.health();
+  board_.update([&](MachineRecord& machine) {
+    machine.health = health;
+    machine.disk = error ? std::nullopt : std::optional(DiskSpace{space.available, space.capacity});
+  });
+}
 
 void Engine::shut_down() {
   board_.update([](MachineRecord& machine) { machine.apply(MachineEvent::kHalt); });

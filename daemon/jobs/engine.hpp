@@ -2,6 +2,8 @@
 
 /// The parts that measure, wired: one machine, its devices, its thread, its jobs and commands.
 
+#include <filesystem>
+
 #include "core/base/clock.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/calibration/calibration_book.hpp"
@@ -70,6 +72,10 @@ class Engine {
   void finish();
 
  private:
+  /// What can be told between jobs. context: the machine's thread.
+  void note_health();
+
+  const std::filesystem::path state_dir_;
   WorkerPool pool_;
   KeptPagesPtr pages_;
   StageHistory history_;

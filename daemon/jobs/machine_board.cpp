@@ -55,6 +55,27 @@ void MachineRecord::require(Command command) const {
   }
 }
 
+namespace {
+
+/// Counts a job that has ended by this change of the record.
+void count_end(const std::optional<JobStatus>& before, const std::optional<JobStatus>& after, JobCounts& ended) {
+  if (!after || after->state == JobState::kProcessing) return;
+  if (before && before->job_id == after->job_id && before->state != JobState::kProcessing) return;
+  switch (after->state) {
+    case JobState::kCompleted:
+      ++ended.completed;
+      break;
+    case JobState::kAborted:
+      ++ended.aborted;
+      break;
+    default:
+      ++ended.failed;
+      break;
+  }
+}
+
+}  // namespace
+
 MachineBoard::MachineBoard(Constants constants, std::optional<JobStatus> latest_job)
     : constants_(std::move(constants)) {
   const MutexLock lock(mutex_);
@@ -84,6 +105,7 @@ void MachineBoard::update(const std::function<void(MachineRecord&)>& change) {
     change(next);
     const ScanState before = scan_state(record_.state);
     const bool was_free = signals(record_.state).part_release;
+    count_end(record_.job, next.job, ended_);
     record_ = std::move(next);
     publish_locked();
     const ScanState now = scan_state(record_.state);
@@ -110,6 +132,9 @@ void MachineBoard::publish_locked() {
   status->simulated = constants_.simulated || (record_.devices && record_.devices->simulated);
   if (record_.devices) status->camera = record_.devices->camera;
   status->epoch = constants_.epoch;
+  status->ended = ended_;
+  status->health = record_.health;
+  status->disk = record_.disk;
   if (record_.failure) {
     status->error = record_.failure->code;
     status->error_message = record_.failure->message;

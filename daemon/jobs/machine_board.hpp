@@ -26,6 +26,8 @@ struct MachineRecord {
   std::optional<StorageProblem> storage;  ///< why results cannot be kept
   std::optional<DeviceFacts> devices;     ///< of the devices when they were opened last
   std::string objective;                  ///< that was confirmed, empty = none
+  DevicesHealth health{};                 ///< at the last look
+  std::optional<DiskSpace> disk{};        ///< likewise
   bool confirming = false;                ///< another one is being made durable: nothing that rests on it begins
 
   /// Ignores an event that its table does not allow.
@@ -73,6 +75,7 @@ class MachineBoard final : public MachineView {
 
   mutable Mutex mutex_;
   MachineRecord record_ FVD_GUARDED_BY(mutex_);
+  JobCounts ended_ FVD_GUARDED_BY(mutex_);
   std::vector<std::string> untold_ FVD_GUARDED_BY(mutex_);  ///< changes that the log lacks, in their order
 
   mutable Mutex status_mutex_;  // held for a pointer's copy alone, inside mutex_ or without it

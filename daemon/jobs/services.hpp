@@ -18,6 +18,7 @@
 #include "daemon/access/access_rules.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/jobs/control_lease.hpp"
+#include "daemon/devices/devices_health.hpp"
 #include "daemon/jobs/device_task.hpp"
 #include "daemon/jobs/jog.hpp"
 #include "daemon/jobs/machine_state.hpp"
@@ -29,6 +30,19 @@
 #include "daemon/study/study_desk.hpp"
 
 namespace fvd {
+
+/// Jobs that ended since the daemon's start.
+struct JobCounts {
+  std::uint64_t completed = 0;
+  std::uint64_t aborted = 0;
+  std::uint64_t failed = 0;
+};
+
+/// Of the file system that holds database and results.
+struct DiskSpace {
+  std::uint64_t free_bytes = 0;  ///< for the service
+  std::uint64_t size_bytes = 0;
+};
 
 struct MachineStatus {
   ScanState state = ScanState::kPreoperational;
@@ -45,6 +59,9 @@ struct MachineStatus {
   std::optional<ErrorCode> error;  ///< why the state is kError: a device, or where results are kept
   std::string error_message;
   std::optional<CameraInfo> camera;  ///< that is open
+  JobCounts ended;
+  DevicesHealth health;           ///< as it was between jobs and commands, half a second ago at most if none runs
+  std::optional<DiskSpace> disk;  ///< likewise; nothing if it cannot be told
 };
 
 /// What readers poll: made anew at every change, never waited for.

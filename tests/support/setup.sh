@@ -12,7 +12,7 @@ FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
 fvd_packages=(
   ca-certificates cmake fonts-dejavu-core g++ iproute2 ninja-build pkg-config
   libaravis-dev libbenchmark-dev libboost-dev libcli11-dev libeigen3-dev libfftw3-dev libgmock-dev libgtest-dev libmodbus-dev
-  libopencv-dev libpango1.0-dev libpng-dev libpugixml-dev libspdlog-dev libsqlite3-dev libsystemd-dev libtiff-dev libtinyxml2-dev
+  libopencv-dev libpango1.0-dev libpng-dev libpugixml-dev prometheus-cpp-dev libspdlog-dev libsqlite3-dev libsystemd-dev libtiff-dev libtinyxml2-dev
   libturbojpeg0-dev libusb-1.0-0-dev libvalijson-dev libzip-dev python3 zlib1g-dev
   nlohmann-json3-dev
 )

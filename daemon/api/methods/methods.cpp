@@ -21,6 +21,7 @@ void describe_openrpc(Fields& fields) {
 MethodTable all_methods(const Services& services) {
   MethodTable methods;
   add_system_methods(methods, services, std::chrono::steady_clock::now());
+  add_health_methods(methods, services);
   add_recipe_methods(methods, services);
   add_job_methods(methods, services);
   add_result_methods(methods, services);

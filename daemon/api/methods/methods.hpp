@@ -14,6 +14,7 @@ namespace fvd {
 
 /// started: from when on the heartbeat counts.
 void add_system_methods(MethodTable& methods, const Services& services, std::chrono::steady_clock::time_point started);
+void add_health_methods(MethodTable& methods, const Services& services);
 void add_recipe_methods(MethodTable& methods, const Services& services);
 void add_job_methods(MethodTable& methods, const Services& services);
 void add_result_methods(MethodTable& methods, const Services& services);

@@ -85,6 +85,7 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"system.ping", nothing},
       {"system.info", nothing},
       {"system.state", nothing},
+      {"system.health", nothing},
       {"rpc.discover", nothing},
       {"recipe.list", nothing},
       {"recipe.get", {{"id", "chapter"}}},

@@ -1,0 +1,21 @@
+#pragma once
+
+/// A machine whose status a test sets.
+
+#include <memory>
+
+#include "daemon/jobs/services.hpp"
+
+namespace fvd::test {
+
+class FixedMachine final : public MachineView {
+ public:
+  [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
+    return std::make_shared<const MachineStatus>(status);
+  }
+  void on_change(std::function<void()> /*listener*/) override {}
+
+  MachineStatus status;
+};
+
+}  // namespace fvd::test
