@@ -53,6 +53,8 @@ struct StoreConfig {
 struct MetricsConfig {
   std::string address = "127.0.0.1";  ///< numeric address to listen on
   std::optional<int> port;            ///< 0..65535, 0 = any free port; absent = no metrics
+
+  bool operator==(const MetricsConfig&) const = default;
 };
 
 /// An objective that can be on the microscope. Which one is there, a person confirms.

@@ -40,7 +40,7 @@ class ConfigCheck {
   ConfigCheck(const Config& config, const Problems& read) : config_(config), read_(read) {}
 
   Problems run() {
-    check_listener("/rpc/address", config_.rpc.address);
+    check_rpc(config_.rpc);
     check_listener("/metrics/address", config_.metrics.address);
     for (Problem& problem : check_devices(config_, read_)) report_if(true, problem.pointer, {}, problem.message);
     check_travel(config_.stage);
