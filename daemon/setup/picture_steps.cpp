@@ -184,7 +184,8 @@ SetupNext take_pitch(SetupContext& context, const SetupAnswer& answer) {
     context.draft.pixel_pitch_um = answer.number(0, 1e-4, kLargest_um, "size in um");
   } else if (answer.size() == 5) {
     require_picture(context);
-    const auto [width_px, height_px] = *context.draft.seen_px;
+    const int width_px = context.draft.seen_px->first;
+    const int height_px = context.draft.seen_px->second;
     const auto at = [&](std::size_t index) {
       return answer.number(index, 0.0, (index % 2 == 0 ? width_px : height_px) - 1.0, "place in the picture in pixels");
     };
