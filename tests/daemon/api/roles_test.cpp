@@ -139,7 +139,7 @@ TEST_P(ARole, MayCallWhatItsMethodsSayAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(Each, ARole,
                          testing::Values(Role::kNone, Role::kView, Role::kOperate, Role::kSetUp, Role::kAdminister),
-                         [](const auto& info) { return std::string(role_name(info.param)); });
+                         [](const auto& of) { return std::string(role_name(of.param)); });
 
 TEST_F(ADispatcher, ClosesAMethodThatNamesNoRoleToAllButWhoAdministers) {
   MethodTable methods = all_methods(service_.services());
