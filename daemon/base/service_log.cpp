@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include <spdlog/sinks/base_sink-inl.h>  // the template for a mutex of our own
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
