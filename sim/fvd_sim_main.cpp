@@ -21,6 +21,9 @@
 namespace fvd::sim {
 namespace {
 
+constexpr const char* kHighFirst = "high-first";
+constexpr const char* kLowFirst = "low-first";
+
 struct Arguments {
   std::filesystem::path world;
   std::filesystem::path plant;
@@ -28,6 +31,7 @@ struct Arguments {
   std::string stage_address = "127.0.0.1";
   int stage_port = 1502;
   std::string drive = "az";
+  std::string word_order = kHighFirst;
   std::filesystem::path stage_pty;
   std::vector<double> line_timing;  // baud, turnaround ms, adapter's latency ms
   std::filesystem::path faults;
@@ -114,8 +118,10 @@ int run(const Arguments& arguments) {
   sigaddset(&signals, SIGINT);
   sigprocmask(SIG_BLOCK, &signals, nullptr);
   const bool gcs = arguments.drive == kGcs;
-  if (gcs && !(arguments.faults.empty() && arguments.line_timing.empty())) {
-    throw Error(ErrorCode::kBadConfig, "--faults and --line-timing are of Modbus; they do not go with --drive gcs");
+  const bool low_first = arguments.word_order == kLowFirst;
+  if (gcs && (!arguments.faults.empty() || !arguments.line_timing.empty() || low_first)) {
+    throw Error(ErrorCode::kBadConfig,
+                "--faults, --line-timing and --word-order are of Modbus; they do not go with --drive gcs");
   }
   Plant plant({.world = world_of(arguments),
                .axis = plant_of(arguments),
@@ -123,6 +129,7 @@ int run(const Arguments& arguments) {
                .stage_address = arguments.stage_address,
                .stage_port = arguments.stage_port,
                .drive = gcs ? DriveKind::kAz : drive_kind(arguments.drive),
+               .low_word_first = low_first,
                .gcs = gcs,
                .stage_pty = arguments.stage_pty,
                .line_timing = line_timing_of(arguments),
@@ -182,6 +189,9 @@ int main_of(int argc, char** argv) {
                    ->capture_default_str();
   running->add_option("--drive", arguments.drive, "what the stage is: a drive on Modbus, or gcs")
       ->check(CLI::IsMember(stage_names()))
+      ->capture_default_str();
+  running->add_option("--word-order", arguments.word_order, "which word of 32-bit values the drive gives first")
+      ->check(CLI::IsMember({kHighFirst, kLowFirst}))
       ->capture_default_str();
   auto* pty = running->add_option("--stage-pty", arguments.stage_pty,
                                   "serve the stage on a pseudo-terminal linked here instead of TCP");

@@ -103,6 +103,19 @@ void SimDrive::hold_in_position(HostClock::duration duration) {
   held_until_ = clock_() + duration;
 }
 
+void SimDrive::exchange_words(bool exchanged) {
+  const MutexLock lock(mutex_);
+  image_.set_low_word_first(low_word_first_ != exchanged);
+}
+
+void SimDrive::set_low_word_first() {
+  const MutexLock lock(mutex_);
+  low_word_first_ = true;
+  image_.set_low_word_first(true);
+  image_.clear();
+  power_on();
+}
+
 bool SimDrive::axis_moves() {
   const MutexLock lock(mutex_);
   return axis_.moving(clock_());

@@ -32,7 +32,11 @@ class SimDrive : public RegisterBank, public DriveFaults {
   void power_cycle() final;
   void refuse_moves(int count) final;
   void hold_in_position(HostClock::duration duration) final;
+  void exchange_words(bool exchanged) final;
   [[nodiscard]] bool axis_moves() final;
+
+  /// The drive is set up to give and take the low word of 32-bit values first; to be called before its first request.
+  void set_low_word_first();
 
   [[nodiscard]] int moves() const noexcept { return moves_; }  ///< moves to a target executed so far
 
@@ -100,6 +104,7 @@ class SimDrive : public RegisterBank, public DriveFaults {
   DriveClock clock_;
   Mutex mutex_;
   RegisterImage image_ FVD_GUARDED_BY(mutex_);
+  bool low_word_first_ FVD_GUARDED_BY(mutex_) = false;
   int alarm_ FVD_GUARDED_BY(mutex_) = 0;
   int refused_starts_ FVD_GUARDED_BY(mutex_) = 0;
   std::int64_t offset_ FVD_GUARDED_BY(mutex_) = 0;  // what the drive calls a position, minus what the axis calls it

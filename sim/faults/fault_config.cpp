@@ -22,6 +22,7 @@ FaultStep read_step(const nlohmann::json& object, const std::string& pointer, Pr
   std::string fault = fault_names().front();
   int address = -1;
   std::int64_t delay_ms = 0;
+  std::vector<double> words;
   FieldReader fields(object, problems, pointer);
   fields.choice("on", on, kOn, "requests that count");
   fields.integer("after", step.after, {0, 1'000'000'000}, "so many of them pass first");
@@ -31,11 +32,17 @@ FaultStep read_step(const nlohmann::json& object, const std::string& pointer, Pr
   fields.require("fault");
   fields.integer("delay_ms", delay_ms, {0, 600'000}, "how late, or how long");
   fields.integer("code", step.code, {0, 0xFFFF}, "of the exception or alarm");
+  fields.integer("to", step.to, {0, 0xFFFF}, "register from which another master writes");
+  fields.numbers("words", words, {0, 0xFFFF}, {1, 123}, "what it writes");
   fields.finish();
   step.on = static_cast<FaultOn>(index_of(kOn, on));
   step.fault = static_cast<FaultKind>(index_of(fault_names(), fault));
   step.delay = std::chrono::milliseconds(delay_ms);
   if (address >= 0) step.address = address;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    step.words.push_back(static_cast<std::uint16_t>(words[i]));
+    if (step.words.back() != words[i]) problems.push_back({pointer + "/words/" + std::to_string(i), "is no integer"});
+  }
   return step;
 }
 

@@ -23,6 +23,8 @@ class DriveFaults {
   virtual void refuse_moves(int count) = 0;
   /// For this long the drive reports standstill in position, also while the axis moves.
   virtual void hold_in_position(HostClock::duration duration) = 0;
+  /// While set, the words of 32-bit values go and come in the other order, as in a drive set up that way.
+  virtual void exchange_words(bool exchanged) = 0;
   /// True while the axis truly moves.
   [[nodiscard]] virtual bool axis_moves() = 0;
 };

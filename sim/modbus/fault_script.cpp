@@ -9,6 +9,9 @@ namespace fvd::sim {
 
 namespace {
 
+/// The most registers that one request may write.
+constexpr std::size_t kMaxWrite = 123;
+
 constexpr std::array<std::string_view, 3> kOnNames{"read", "write", "any"};
 
 void check(const FaultStep& step) {
@@ -20,8 +23,13 @@ void check(const FaultStep& step) {
   if (step.delay.count() < 0) refuse("delay_ms " + std::to_string(step.delay.count()) + " is negative");
   const bool needs_delay = step.fault == FaultKind::kLateReply || step.fault == FaultKind::kStaleInPosition;
   if (needs_delay && step.delay.count() == 0) refuse("needs delay_ms above 0");
-  if (step.fault == FaultKind::kException && (step.code < 1 || step.code > 255)) refuse("needs code 1..255");
+  const bool is_exception = step.fault == FaultKind::kException || step.fault == FaultKind::kExceptionAfter;
+  if (is_exception && (step.code < 1 || step.code > 255)) refuse("needs code 1..255");
   if (step.fault == FaultKind::kAlarmInMotion && (step.code < 1 || step.code > 65535)) refuse("needs code 1..65535");
+  if (step.fault == FaultKind::kSecondMaster) {
+    if (step.words.empty() || step.words.size() > kMaxWrite) refuse("needs 1 to 123 words");
+    if (step.to < 0 || step.to + static_cast<int>(step.words.size()) > 0x10000) refuse("writes beyond register 65535");
+  }
 }
 
 bool matches(const FaultStep& step, std::span<const std::uint8_t> request, bool axis_moves) {
@@ -38,7 +46,7 @@ const std::vector<std::string>& fault_names() {
   static const std::vector<std::string> kNames{
       "late_reply", "lost_reply",     "lost_request", "wrong_crc",         "truncated_frame",
       "exception",  "silent_refusal", "link_cut",     "stale_in_position", "alarm_in_motion",
-      "limit_hit",  "emergency_stop", "power_cycle"};
+      "limit_hit",  "emergency_stop", "power_cycle", "exception_after", "swapped_words", "second_master"};
   return kNames;
 }
 
@@ -70,14 +78,20 @@ std::optional<FaultStep> FaultScript::next(std::span<const std::uint8_t> request
   return fault;
 }
 
+void FaultScript::failed(const FaultStep& step, const std::string& reason) {
+  const MutexLock lock(mutex_);
+  failed_.push_back(std::string(name_of(step.fault)) + ": " + reason);
+}
+
 std::size_t FaultScript::unconsumed() const {
   const MutexLock lock(mutex_);
-  return steps_.size();
+  return steps_.size() + failed_.size();
 }
 
 std::string FaultScript::describe_unconsumed() const {
   const MutexLock lock(mutex_);
   std::string text;
+  for (const std::string& failed : failed_) text += (text.empty() ? "" : "\n") + failed;
   int number = taken_;
   for (const FaultStep& step : steps_) {
     if (!text.empty()) text += '\n';

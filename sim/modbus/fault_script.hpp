@@ -31,6 +31,9 @@ enum class FaultKind {
   kLimitHit,         ///< a limit switch, before the request is executed
   kEmergencyStop,    ///< torque off, before the request is executed
   kPowerCycle,       ///< the drive restarts: not executed; as kLinkCut while it boots
+  kExceptionAfter,   ///< executed; exception `code` in place of the reply, as of a gateway that gave up too early
+  kSwappedWords,     ///< executed; the words of the drive's 32-bit values go and come in the other order
+  kSecondMaster,     ///< another master writes `words` from register `to` on, before the request is executed
 };
 
 /// The names of the faults in scripts: "late_reply" and so on.
@@ -44,7 +47,9 @@ struct FaultStep {
   int count = 1;                 ///< number of times that the fault happens, > 0
   FaultKind fault = FaultKind::kLostReply;
   std::chrono::milliseconds delay{0};  ///< kLateReply, kLinkCut, kStaleInPosition, kPowerCycle
-  int code = 0;                        ///< kException 1..255, kAlarmInMotion 1..65535
+  int code = 0;                        ///< kException, kExceptionAfter 1..255, kAlarmInMotion 1..65535
+  int to = 0;                          ///< kSecondMaster: PDU address
+  std::vector<std::uint16_t> words{};  ///< kSecondMaster: 1..123
 };
 
 /// Steps are taken one after the other: a step waits until the one before it has happened as often as it should.
@@ -61,6 +66,9 @@ class FaultScript {
   /// The fault that strikes this request PDU, if any. To be called once per request.
   [[nodiscard]] std::optional<FaultStep> next(std::span<const std::uint8_t> request, bool axis_moves);
 
+  /// Notes that a step which was taken could not happen after all; it counts as one that did not.
+  void failed(const FaultStep& step, const std::string& reason);
+
   /// Steps that have not happened as often as they should.
   [[nodiscard]] std::size_t unconsumed() const;
   /// One line per step that has not happened; empty if all have.
@@ -70,6 +78,7 @@ class FaultScript {
   mutable Mutex mutex_;
   std::deque<FaultStep> steps_ FVD_GUARDED_BY(mutex_);  // after and count of the first run down
   int taken_ FVD_GUARDED_BY(mutex_) = 0;
+  std::vector<std::string> failed_ FVD_GUARDED_BY(mutex_);
 };
 
 }  // namespace fvd::sim

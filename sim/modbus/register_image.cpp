@@ -17,13 +17,15 @@ bool RegisterImage::writable(int first, std::size_t count) const {
 }
 
 std::int32_t RegisterImage::value(int at) const {
-  return static_cast<std::int32_t>((static_cast<std::uint32_t>(word(at)) << 16U) | word(at + 1));
+  const int high = low_word_first_ ? at + 1 : at;
+  const int low = low_word_first_ ? at : at + 1;
+  return static_cast<std::int32_t>((static_cast<std::uint32_t>(word(high)) << 16U) | word(low));
 }
 
 void RegisterImage::set_value(int at, std::int32_t value) {
   const auto bits = static_cast<std::uint32_t>(value);
-  set_word(at, bits >> 16U);
-  set_word(at + 1, bits & 0xFFFFU);
+  set_word(low_word_first_ ? at + 1 : at, bits >> 16U);
+  set_word(low_word_first_ ? at : at + 1, bits & 0xFFFFU);
 }
 
 void RegisterImage::copy_out(int first, std::span<std::uint16_t> words) const {

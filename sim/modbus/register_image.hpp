@@ -9,7 +9,7 @@
 
 namespace fvd::sim {
 
-/// 32-bit values take two registers, the high word first. context: one thread.
+/// 32-bit values take two registers, the high word first unless said otherwise. context: one thread.
 class RegisterImage {
  public:
   enum class Access : std::uint8_t { kNone, kReadOnly, kReadWrite };
@@ -27,6 +27,8 @@ class RegisterImage {
   void set_word(int at, unsigned value) { words_[index(at)] = static_cast<std::uint16_t>(value); }
   [[nodiscard]] std::int32_t value(int at) const;
   void set_value(int at, std::int32_t value);
+  /// Of values that are read and set from now on; what lies in the image stays as it is.
+  void set_low_word_first(bool low_word_first) { low_word_first_ = low_word_first; }
 
   void copy_out(int first, std::span<std::uint16_t> words) const;
   void copy_in(int first, std::span<const std::uint16_t> words);
@@ -38,6 +40,7 @@ class RegisterImage {
 
   std::vector<std::uint16_t> words_;
   std::vector<Access> access_;
+  bool low_word_first_ = false;
 };
 
 /// The range of registers of one write.

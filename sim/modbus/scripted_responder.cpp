@@ -1,6 +1,17 @@
 #include "sim/modbus/scripted_responder.hpp"
 
+#include <string>
+
 namespace fvd::sim {
+
+namespace {
+
+ModbusBytes exception_with(std::span<const std::uint8_t> request, int code) {
+  if (request.empty()) return {};
+  return {static_cast<std::uint8_t>(request[0] | 0x80U), static_cast<std::uint8_t>(code)};
+}
+
+}  // namespace
 
 void ScriptedResponder::befall_drive(const FaultStep& step) {
   if (drive_ == nullptr) return;
@@ -22,6 +33,14 @@ void ScriptedResponder::befall_drive(const FaultStep& step) {
   }
 }
 
+void ScriptedResponder::write_as_another_master(const FaultStep& step) {
+  const ModbusException exception = bank_.write(step.to, step.words);
+  if (exception == ModbusException::kNone) return;
+  script_->failed(step, "the drive refused " + std::to_string(step.words.size()) + " words from register " +
+                            std::to_string(step.to) + " on, exception " +
+                            std::to_string(static_cast<int>(exception)));
+}
+
 LineAnswer ScriptedResponder::answer(std::span<const std::uint8_t> request) {
   LineAnswer answer;
   const bool axis_moves = script_ != nullptr && drive_ != nullptr && drive_->axis_moves();
@@ -35,9 +54,7 @@ LineAnswer ScriptedResponder::answer(std::span<const std::uint8_t> request) {
     case FaultKind::kLostRequest:
       return answer;
     case FaultKind::kException:
-      if (!request.empty()) {
-        answer.pdu = {static_cast<std::uint8_t>(request[0] | 0x80U), static_cast<std::uint8_t>(step->code)};
-      }
+      answer.pdu = exception_with(request, step->code);
       return answer;
     case FaultKind::kLinkCut:
     case FaultKind::kPowerCycle:
@@ -47,7 +64,12 @@ LineAnswer ScriptedResponder::answer(std::span<const std::uint8_t> request) {
     default:
       break;
   }
+  if (step->fault == FaultKind::kSecondMaster) write_as_another_master(*step);
+  const bool swapped = step->fault == FaultKind::kSwappedWords && drive_ != nullptr;
+  if (swapped) drive_->exchange_words(true);
   answer.pdu = respond(bank_, request);
+  if (swapped) drive_->exchange_words(false);
+  if (step->fault == FaultKind::kExceptionAfter) answer.pdu = exception_with(request, step->code);
   if (step->fault == FaultKind::kLostReply) answer.pdu.clear();
   if (step->fault == FaultKind::kLateReply) answer.late = step->delay;
   answer.wrong_check = step->fault == FaultKind::kWrongCrc;

@@ -34,6 +34,7 @@ class ScriptedResponder {
 
  private:
   void befall_drive(const FaultStep& step);
+  void write_as_another_master(const FaultStep& step);
 
   RegisterBank& bank_;
   FaultScript* script_;

@@ -11,6 +11,7 @@ Plant::Plant(const PlantOptions& options)
       faults_(options.faults),
       camera_address_(options.camera_address == "auto" ? free_camera_address() : options.camera_address),
       stage_port_(options.stage_port) {
+  if (drive_ && options_.low_word_first) drive_->set_low_word_first();
   plug_camera();
   plug_stage();
 }

@@ -27,6 +27,7 @@ struct PlantOptions {
   std::string stage_address = "127.0.0.1";
   int stage_port = 0;  ///< 0 = any free port
   DriveKind drive = DriveKind::kAz;
+  bool low_word_first = false;        ///< of 32-bit values in the drive's registers, Modbus only
   bool gcs = false;                   ///< a controller that speaks GCS in place of a drive; no faults, no line timing
   std::filesystem::path stage_pty{};  ///< if given, a serial line on a pseudo-terminal linked here instead of TCP
   LineTiming line_timing{};           ///< timing of that line, Modbus RTU only

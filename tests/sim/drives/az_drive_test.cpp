@@ -51,6 +51,19 @@ TEST_F(AnAzDrive, MovesByOneFrame) {
   EXPECT_EQ(drive_.moves(), 2);
 }
 
+TEST_F(AnAzDrive, MayHaveItsWordsTheOtherWayRound) {
+  drive_.set_low_word_first();
+  home();
+  client_.write(0x0058, {0, 0, 1, 0, 1234, 0, 50000, 0, 0x8480, 0x1E, 0x8480, 0x1E, 1000, 0, 1, 0, 0, 0});
+  rest();
+  EXPECT_EQ(client_.read(0x00CC, 2), (test::Words{1234, 0}));
+  EXPECT_EQ(drive_.moves(), 1);
+  drive_.exchange_words(true);
+  EXPECT_EQ(client_.read(0x00CC, 2), (test::Words{0, 1234}));
+  drive_.exchange_words(false);
+  EXPECT_EQ(client_.read(0x00CC, 2), (test::Words{1234, 0}));
+}
+
 TEST_F(AnAzDrive, StartsByTheItemThatANegativeTriggerNames) {
   home();
   send_to(100);

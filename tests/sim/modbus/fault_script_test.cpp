@@ -70,6 +70,10 @@ TEST(FaultScript, RefusesStepsThatCannotHappen) {
                                      {.fault = FaultKind::kException},
                                      {.fault = FaultKind::kException, .code = 256},
                                      {.fault = FaultKind::kAlarmInMotion},
+                                     {.fault = FaultKind::kExceptionAfter},
+                                     {.fault = FaultKind::kSecondMaster},
+                                     {.fault = FaultKind::kSecondMaster, .to = 65535, .words = {1, 2}},
+                                     {.fault = FaultKind::kSecondMaster, .words = std::vector<std::uint16_t>(124)},
                                      {.fault = FaultKind::kLateReply, .delay = milliseconds(-1)}};
   for (const FaultStep& step : wrong) {
     fvd::test::expect_error(ErrorCode::kBadConfig, {"fault step"}, [&] { FaultScript({step}); });
@@ -91,12 +95,15 @@ TEST(FaultConfig, ReadsEveryField) {
   EXPECT_EQ(steps[1].on, FaultOn::kAny);
   EXPECT_EQ(steps[1].address, std::nullopt);
   EXPECT_EQ(steps[1].code, 6);
+  const auto second = read_fault_steps(R"([{"fault": "second_master", "to": 124, "words": [103, 0]}])", "script");
+  EXPECT_EQ(second[0].to, 124);
+  EXPECT_EQ(second[0].words, (std::vector<std::uint16_t>{103, 0}));
 }
 
 TEST(FaultConfig, KnowsEveryFaultByItsName) {
-  ASSERT_EQ(fault_names().size(), static_cast<std::size_t>(FaultKind::kPowerCycle) + 1);
+  ASSERT_EQ(fault_names().size(), static_cast<std::size_t>(FaultKind::kSecondMaster) + 1);
   for (const auto& name : fault_names()) {
-    const auto steps = read_fault_steps(R"([{"delay_ms": 1, "code": 1, "fault": ")" + name + "\"}]", "script");
+    const auto steps = read_fault_steps(R"([{"delay_ms": 1, "code": 1, "words": [1], "fault": ")" + name + "\"}]", "script");
     EXPECT_EQ(name_of(steps[0].fault), name);
   }
 }
@@ -111,6 +118,9 @@ TEST(FaultConfig, SaysEverythingThatIsWrongAndWhere) {
                                    {"fault": "late_reply"}])",
             "script");
       });
+  fvd::test::expect_error(ErrorCode::kBadConfig, {"/0/words/1", "integer"}, [] {
+    (void)read_fault_steps(R"([{"fault": "second_master", "words": [1, 0.5]}])", "script");
+  });
   fvd::test::expect_error(ErrorCode::kBadConfig, {"not a list"}, [] { (void)read_fault_steps("{}", "script"); });
   fvd::test::expect_error(ErrorCode::kBadConfig, {"script"}, [] { (void)read_fault_steps("[", "script"); });
   fvd::test::expect_error(ErrorCode::kBadConfig, {"/0"}, [] { (void)read_fault_steps("[7]", "script"); });
@@ -127,6 +137,7 @@ struct Victim final : DriveFaults {
   void hold_in_position(HostClock::duration duration) override {
     story += "hold " + std::to_string(std::chrono::duration_cast<milliseconds>(duration).count()) + ";";
   }
+  void exchange_words(bool exchanged) override { story += exchanged ? "exchange;" : "restore;"; }
   [[nodiscard]] bool axis_moves() override { return moves; }
 
   std::string story;
@@ -164,6 +175,42 @@ TEST(ScriptedResponder, AnswersExceptionsWithoutExecuting) {
   ScriptedResponder responder(bank, &script, nullptr);
   EXPECT_EQ(responder.answer(kWrite).pdu, (ModbusBytes{0x90, 6}));
   EXPECT_EQ(bank.writes(), 0);
+}
+
+TEST(ScriptedResponder, AnswersExceptionsAfterExecuting) {
+  FaultScript script({{.fault = FaultKind::kExceptionAfter, .code = 5}});
+  test::PlainBank bank;
+  ScriptedResponder responder(bank, &script, nullptr);
+  EXPECT_EQ(responder.answer(kWrite).pdu, (ModbusBytes{0x90, 5}));
+  EXPECT_EQ(bank.at(21), 2) << "executed";
+}
+
+TEST(ScriptedResponder, ExchangesWordsForOneRequest) {
+  FaultScript script({{.fault = FaultKind::kSwappedWords}});
+  test::PlainBank bank;
+  Victim victim;
+  ScriptedResponder responder(bank, &script, &victim);
+  EXPECT_FALSE(responder.answer(kRead).pdu.empty());
+  EXPECT_FALSE(responder.answer(kRead).pdu.empty());
+  EXPECT_EQ(victim.story, "exchange;restore;");
+}
+
+TEST(ScriptedResponder, LetsASecondMasterWriteFirst) {
+  FaultScript script({{.fault = FaultKind::kSecondMaster, .to = 10, .words = {7, 8}}});
+  test::PlainBank bank;
+  ScriptedResponder responder(bank, &script, nullptr);
+  EXPECT_EQ(responder.answer(kRead).pdu, (ModbusBytes{3, 4, 0, 7, 0, 8}));
+  EXPECT_EQ(script.unconsumed(), 0U);
+}
+
+TEST(ScriptedResponder, TellsOfASecondMasterWhomTheDriveRefused) {
+  FaultScript script({{.fault = FaultKind::kSecondMaster, .to = 99, .words = {7, 8}}});
+  test::PlainBank bank;
+  ScriptedResponder responder(bank, &script, nullptr);
+  EXPECT_FALSE(responder.answer(kRead).pdu.empty());
+  EXPECT_EQ(script.unconsumed(), 1U);
+  EXPECT_EQ(script.describe_unconsumed(),
+            "second_master: the drive refused 2 words from register 99 on, exception 2");
 }
 
 TEST(ScriptedResponder, DoesWithoutScriptAndDrive) {
