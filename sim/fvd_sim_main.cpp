@@ -28,6 +28,10 @@ struct Arguments {
   std::filesystem::path world;
   std::filesystem::path plant;
   std::string camera_address = "127.0.0.1";
+  std::string serial = "SIM01";
+  std::string name;
+  bool discoverable = false;
+  int width_increment = 1;
   std::string stage_address = "127.0.0.1";
   int stage_port = 1502;
   std::string drive = "az";
@@ -126,6 +130,10 @@ int run(const Arguments& arguments) {
   Plant plant({.world = world_of(arguments),
                .axis = plant_of(arguments),
                .camera_address = arguments.camera_address,
+               .camera_serial = arguments.serial,
+               .camera_name = arguments.name,
+               .camera_discoverable = arguments.discoverable,
+               .camera_width_increment = arguments.width_increment,
                .stage_address = arguments.stage_address,
                .stage_port = arguments.stage_port,
                .drive = gcs ? DriveKind::kAz : drive_kind(arguments.drive),
@@ -181,6 +189,14 @@ int main_of(int argc, char** argv) {
   add_world(running);
   running->add_option("--plant", arguments.plant, "axis file; default: nearly perfect")->check(CLI::ExistingFile);
   running->add_option("--camera-address", arguments.camera_address, "loopback address, or auto for a free one")
+      ->capture_default_str();
+  running->add_option("--serial", arguments.serial, "serial number of the camera, at most 15 characters")
+      ->capture_default_str();
+  running->add_option("--name", arguments.name, "user-defined name of the camera, at most 15 characters");
+  running->add_flag("--discoverable", arguments.discoverable,
+                    "the camera is found by broadcasts; only those on loopback are heard");
+  running->add_option("--width-increment", arguments.width_increment, "grid of the camera's widths, pixels")
+      ->check(CLI::Range(1, 256))
       ->capture_default_str();
   running->add_option("--stage-address", arguments.stage_address, "address that the stage is served at")
       ->capture_default_str();

@@ -6,11 +6,12 @@ namespace fvd::sim {
 
 namespace {
 
-bool strikes_anywhere(CameraFault fault) {
-  return fault == CameraFault::kMute || fault == CameraFault::kHang || fault == CameraFault::kRestart;
-}
-
 CameraEvent event_of(const CameraFaultStep& step) { return step.on.value_or(event_of(step.fault)); }
+
+bool needs_delay(CameraFault fault) {
+  return fault == CameraFault::kMute || fault == CameraFault::kHang || fault == CameraFault::kRestart ||
+         fault == CameraFault::kLateFrame || fault == CameraFault::kPendingAck;
+}
 
 void check(const CameraFaultStep& step) {
   const auto refuse = [&](const std::string& what) {
@@ -19,8 +20,9 @@ void check(const CameraFaultStep& step) {
   if (step.after < 0) refuse("after " + std::to_string(step.after) + " is negative");
   if (step.count < 1) refuse("count " + std::to_string(step.count) + " is not above 0");
   if (step.delay.count() < 0) refuse("delay_ms " + std::to_string(step.delay.count()) + " is negative");
-  const bool needs_delay = strikes_anywhere(step.fault) || step.fault == CameraFault::kLateFrame;
-  if (needs_delay && step.delay.count() == 0) refuse("needs delay_ms above 0");
+  if (needs_delay(step.fault) && step.delay.count() == 0) refuse("needs delay_ms above 0");
+  const bool needs_step = step.fault == CameraFault::kClockStep || step.fault == CameraFault::kOddTime;
+  if (needs_step && step.step.count() == 0) refuse("needs step_ms other than 0");
   if (step.fault == CameraFault::kIdJump && step.value < 1) refuse("needs value above 0");
   if (step.on && !strikes_anywhere(step.fault) && *step.on != event_of(step.fault)) refuse("cannot strike there");
 }
@@ -28,18 +30,28 @@ void check(const CameraFaultStep& step) {
 }  // namespace
 
 const std::vector<std::string>& camera_fault_names() {
-  static const std::vector<std::string> kNames{
-      "drop_leader",     "drop_trailer",    "drop_packet", "drop_frame", "drop_ack", "ignore_trigger", "nack_trigger",
-      "duplicate_frame", "reorder_packets", "late_frame",  "wrong_size", "too_long", "early_leader",   "id_jump",
-      "ids_restart",     "stale_frame",     "dark_frame",  "half_frame", "mute",     "hang",           "restart"};
+  static const std::vector<std::string> kNames{"drop_leader",     "drop_trailer",   "drop_packet",  "drop_frame",
+                                               "drop_ack",        "ignore_trigger", "nack_trigger", "duplicate_frame",
+                                               "reorder_packets", "late_frame",     "wrong_size",   "too_long",
+                                               "early_leader",    "id_jump",        "ids_restart",  "stale_frame",
+                                               "dark_frame",      "half_frame",     "mute",         "hang",
+                                               "restart",         "pending_ack",    "busy",         "clock_step",
+                                               "odd_time",        "chunk_mode"};
   return kNames;
 }
 
 std::string_view name_of(CameraFault fault) { return camera_fault_names()[static_cast<std::size_t>(fault)]; }
 
+bool strikes_anywhere(CameraFault fault) {
+  return fault == CameraFault::kMute || fault == CameraFault::kHang || fault == CameraFault::kRestart ||
+         fault == CameraFault::kClockStep || fault == CameraFault::kChunkMode;
+}
+
 CameraEvent event_of(CameraFault fault) {
   switch (fault) {
     case CameraFault::kDropAck:
+    case CameraFault::kPendingAck:
+    case CameraFault::kBusy:
       return CameraEvent::kCommand;
     case CameraFault::kIgnoreTrigger:
     case CameraFault::kNackTrigger:

@@ -43,21 +43,29 @@ enum class CameraFault {
   kMute,            ///< the camera answers and sends nothing for `delay`
   kHang,            ///< the camera does nothing for `delay`, then continues where it was
   kRestart,         ///< as a power cycle: absent for `delay`, then without control, settings and ids
+  kPendingAck,      ///< executed; a PENDING_ACK that promises `value` ms (0: `delay`), the acknowledge `delay` later
+  kBusy,            ///< not executed, refused as busy
+  kClockStep,       ///< the camera's clock, latch included, goes on `step` later
+  kOddTime,         ///< the time of the frame is `step` off; the clock is not
+  kChunkMode,       ///< chunk mode is on; with `value` 1 in the manner of GigE Vision 1.x, whose leader has no geometry
 };
 
 /// The names of the faults in scripts: "drop_leader" and so on.
 [[nodiscard]] const std::vector<std::string>& camera_fault_names();
 [[nodiscard]] std::string_view name_of(CameraFault fault);
-/// What the fault strikes at; mute, hang and restart strike at a frame unless the step says otherwise.
+/// True for what befalls the camera as a whole, whatever it is doing.
+[[nodiscard]] bool strikes_anywhere(CameraFault fault);
+/// What the fault strikes at; what strikes anywhere strikes at a frame unless the step says otherwise.
 [[nodiscard]] CameraEvent event_of(CameraFault fault);
 
 struct CameraFaultStep {
   CameraFault fault = CameraFault::kDropFrame;
-  std::optional<CameraEvent> on{};  ///< only for kMute, kHang, kRestart
+  std::optional<CameraEvent> on{};  ///< only for what strikes anywhere
   int after = 0;                    ///< number of matching events that pass first, >= 0
   int count = 1;                    ///< number of times that the fault happens, > 0
   std::chrono::milliseconds delay{0};
-  int value = 0;  ///< see kDropPacket, kIdJump
+  int value = 0;                      ///< see kDropPacket, kIdJump, kPendingAck, kChunkMode
+  std::chrono::milliseconds step{0};  ///< see kClockStep, kOddTime; may be negative
 };
 
 /// Steps are taken one after the other: a step waits until the one before it has happened as often as it should.

@@ -39,16 +39,24 @@ CameraRegisters::CameraRegisters(const CameraIdentity& identity) : identity_(ide
 
 void CameraRegisters::reset() {
   const MutexLock lock(mutex_);
-  const std::uint32_t port = get_locked(reg::kStreamSourcePort);
+  const std::vector<std::uint8_t> before = bootstrap_;
   initialise_locked();
-  set_locked(reg::kStreamSourcePort, port);
+  const auto keep = [&](std::uint32_t address, std::size_t bytes) {
+    std::copy_n(before.begin() + address, bytes, bootstrap_.begin() + address);
+  };
+  keep(reg::kUserName, reg::kUserNameBytes);
+  for (const auto address :
+       {reg::kStreamSourcePort, reg::kIpConfigCurrent, reg::kIpAddress, reg::kSubnetMask, reg::kGateway,
+        reg::kPersistentIpAddress, reg::kPersistentSubnetMask, reg::kPersistentGateway}) {
+    keep(address, 4);
+  }
 }
 
 void CameraRegisters::initialise_locked() {
   const CameraIdentity& identity = identity_;
   bootstrap_.assign(kBootstrapBytes, 0);
   features_.assign(feature::kBytes, 0);
-  const std::string xml = genicam_xml();
+  const std::string xml = genicam_xml(identity.width_increment);
   xml_.assign(xml.begin(), xml.end());
   xml_.resize((xml_.size() + 3) / 4 * 4);  // memory is read in multiples of 4
 
@@ -56,8 +64,8 @@ void CameraRegisters::initialise_locked() {
   set_locked(reg::kDeviceMode, 0x80000001);  // big-endian, UTF-8
   set_locked(reg::kMacHigh, 0x00000200);     // a locally administered address
   set_locked(reg::kMacLow, identity.address);
-  set_locked(reg::kIpConfigSupported, 0x80000004);
-  set_locked(reg::kIpConfigCurrent, 0x00000004);
+  set_locked(reg::kIpConfigSupported, gvcp::ip_config::kAll);
+  set_locked(reg::kIpConfigCurrent, gvcp::ip_config::kLinkLocal);
   set_locked(reg::kIpAddress, identity.address);
   set_locked(reg::kSubnetMask, 0xFF000000);
   set_text(reg::kManufacturer, identity.vendor);
@@ -65,6 +73,7 @@ void CameraRegisters::initialise_locked() {
   set_text(reg::kDeviceVersion, identity.version);
   set_text(reg::kManufacturerInfo, "simulated");
   set_text(reg::kSerial, identity.serial);
+  set_text(reg::kUserName, identity.user_name);
   char url[64];
   std::snprintf(url, sizeof(url), "Local:fvd_simulated_camera.xml;%X;%zX", kXmlAddress, xml.size());
   set_text(reg::kFirstUrl, url);
@@ -78,7 +87,8 @@ void CameraRegisters::initialise_locked() {
 
   set_locked(feature::kSensorWidth, static_cast<std::uint32_t>(identity.sensor_width));
   set_locked(feature::kSensorHeight, static_cast<std::uint32_t>(identity.sensor_height));
-  set_locked(feature::kWidth, static_cast<std::uint32_t>(identity.sensor_width));
+  const int width = identity.sensor_width / identity.width_increment * identity.width_increment;
+  set_locked(feature::kWidth, static_cast<std::uint32_t>(width));
   set_locked(feature::kHeight, static_cast<std::uint32_t>(identity.sensor_height));
   set_locked(feature::kPixelFormat, 0x01080001);
   set_float_locked(feature::kExposureTime, 5000.0);
@@ -131,6 +141,7 @@ std::uint32_t CameraRegisters::get(std::uint32_t address) const {
 void CameraRegisters::set(std::uint32_t address, std::uint32_t value) {
   const MutexLock lock(mutex_);
   set_locked(address, value);
+  refresh_payload_locked();
 }
 
 Status CameraRegisters::read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
@@ -152,6 +163,9 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
     if (address == feature::kGain) return within(value, 0.0, 24.0);
     return within(value, 0.1, kLargestFrameRate_hz);
   }
+  if (address >= reg::kUserName && address + bytes.size() <= reg::kUserName + reg::kUserNameBytes) {
+    return Status::kSuccess;
+  }
   if (bytes.size() != 4) return Status::kWriteProtect;
   const std::uint32_t value = gvcp::get32(bytes, 0);
   const bool locked = get_locked(feature::kParametersLocked) != 0;
@@ -167,17 +181,22 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
       // The offset is set after the size; what reaches beyond the sensor is refused when the second of them is written.
       const std::uint32_t other = get_locked(is_size ? address + 8 : address - 8);
       const std::uint64_t end = std::uint64_t{value} + other;
+      if (across && value % static_cast<std::uint32_t>(identity_.width_increment) != 0)
+        return Status::kInvalidParameter;
       return (is_size && value < 1) || end > sensor ? Status::kInvalidParameter : Status::kSuccess;
     }
+    case feature::kChunkModeActive:
+      if (locked) return Status::kAccessDenied;
+      return within(value, 0, 1);
     case feature::kPixelFormat:
       if (locked) return Status::kAccessDenied;
       return format_of(value) ? Status::kSuccess : Status::kInvalidParameter;
+    case feature::kAcquisitionMode:
     case feature::kTriggerMode:
     case feature::kFrameRateEnable:
     case feature::kParametersLocked:
     case feature::kTriggerSource:
       return within(value, 0, 1);
-    case feature::kAcquisitionMode:
     case feature::kTriggerSelector:
       return within(value, 0, 0);
     case feature::kAcquisitionStart:
@@ -187,12 +206,18 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
     case reg::kControlPrivilege:
     case reg::kStreamPort:
     case reg::kStreamAddress:
-    case reg::kStreamPacketDelay:
+    case reg::kPersistentIpAddress:
+    case reg::kPersistentSubnetMask:
+    case reg::kPersistentGateway:
       return Status::kSuccess;
+    case reg::kIpConfigCurrent:
+      return (value & ~gvcp::ip_config::kAll) == 0 ? Status::kSuccess : Status::kInvalidParameter;
+    case reg::kStreamPacketDelay:
+      return within(value, 0, kLargestPacketDelay_ns);
     case reg::kHeartbeatTimeout:
       return within(value, 500, 60000);
     case reg::kStreamPacketSize:
-      return within(value & 0xFFFFU, 576, 16000);
+      return value % kPacketSizeIncrement != 0 ? Status::kInvalidParameter : within(value & 0xFFFFU, 576, 16000);
     default:
       return locate(address, 4) == nullptr ? Status::kInvalidAddress : Status::kWriteProtect;
   }
@@ -204,6 +229,9 @@ Status CameraRegisters::write(std::uint32_t address, std::span<const std::uint8_
   const Status status = check_locked(address, bytes);
   if (status != Status::kSuccess) return status;
   std::copy(bytes.begin(), bytes.end(), locate(address, bytes.size()));
+  if (address == reg::kIpConfigCurrent) {
+    set_locked(address, get_locked(address) | gvcp::ip_config::kLinkLocal);
+  }
   refresh_payload_locked();
   return status;
 }
@@ -212,7 +240,8 @@ void CameraRegisters::refresh_payload_locked() {
   const SensorFormat format = format_of(get_locked(feature::kPixelFormat)).value();
   const std::size_t bytes = sensor_image_bytes(format, static_cast<int>(get_locked(feature::kWidth)),
                                                static_cast<int>(get_locked(feature::kHeight)));
-  set_locked(feature::kPayloadSize, static_cast<std::uint32_t>(bytes));
+  const std::size_t chunks = get_locked(feature::kChunkModeActive) != 0 ? gvsp::chunk_bytes() : 0;
+  set_locked(feature::kPayloadSize, static_cast<std::uint32_t>(bytes + chunks));
 }
 
 CameraState CameraRegisters::state() const {
@@ -226,12 +255,14 @@ CameraState CameraRegisters::state() const {
   state.exposure_us = get_float_locked(feature::kExposureTime);
   state.gain_db = get_float_locked(feature::kGain);
   state.frame_rate_hz = get_float_locked(feature::kFrameRate);
+  state.single_frame = get_locked(feature::kAcquisitionMode) != 0;
   state.triggered = get_locked(feature::kTriggerMode) != 0;
   state.by_line = get_locked(feature::kTriggerSource) != 0;
   state.stream_address = get_locked(reg::kStreamAddress);
   state.stream_port = static_cast<int>(get_locked(reg::kStreamPort) & 0xFFFFU);
   state.packet_size = static_cast<int>(get_locked(reg::kStreamPacketSize) & 0xFFFFU);
   state.packet_delay_ns = get_locked(reg::kStreamPacketDelay);
+  state.chunks = static_cast<ChunkMode>(get_locked(feature::kChunkModeActive));
   return state;
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/mutex.hpp"
 #include "core/image/sensor_format.hpp"
 #include "sim/camera/gvcp.hpp"
+#include "sim/camera/gvsp.hpp"
 
 namespace fvd::sim {
 
@@ -36,10 +37,13 @@ inline constexpr std::uint32_t kExposureTime = kBase + 0x40;  // float64, us
 inline constexpr std::uint32_t kGain = kBase + 0x48;          // float64, dB
 inline constexpr std::uint32_t kFrameRate = kBase + 0x50;     // float64, Hz
 inline constexpr std::uint32_t kParametersLocked = kBase + 0x58;
+inline constexpr std::uint32_t kChunkModeActive = kBase + 0x5C;
 inline constexpr std::uint32_t kBytes = 0x60;
 }  // namespace feature
 
 inline constexpr double kLargestFrameRate_hz = 5000.0;
+inline constexpr std::uint32_t kLargestPacketDelay_ns = 1'000'000;
+inline constexpr std::uint32_t kPacketSizeIncrement = 4;  // bytes
 
 /// The settings in the camera's registers.
 struct CameraState {
@@ -51,22 +55,26 @@ struct CameraState {
   double exposure_us = 0.0;
   double gain_db = 0.0;
   double frame_rate_hz = 0.0;
+  bool single_frame = false;  ///< AcquisitionMode SingleFrame, else Continuous
   bool triggered = false;
   bool by_line = false;              ///< TriggerSource Line0, else Software
   std::uint32_t stream_address = 0;  ///< IPv4, host order; 0 = nobody listens
   int stream_port = 0;
   int packet_size = 0;  ///< bytes on the wire: IP, UDP and GVSP headers included
   std::uint32_t packet_delay_ns = 0;
+  ChunkMode chunks = ChunkMode::kOff;
 };
 
 struct CameraIdentity {
   std::string vendor = "fvd";
   std::string model = "SimulatedCamera";
   std::string version = "1.0";
-  std::string serial = "SIM01";
+  std::string serial = "SIM01";        ///< at most 15 characters
+  std::string user_name{};             ///< at most 15 characters
   std::uint32_t address = 0x7F000001;  ///< IPv4, host order
   int sensor_width = 0;
   int sensor_height = 0;
+  int width_increment = 1;  ///< pixels; widths and offsets across are multiples of it
 };
 
 /// context: thread-safe.
@@ -79,7 +87,8 @@ class CameraRegisters {
   /// Writes with the checks a camera makes: unknown and read-only registers, ranges, parameters locked while acquiring.
   [[nodiscard]] gvcp::Status write(std::uint32_t address, std::span<const std::uint8_t> bytes);
 
-  /// Restores the initial values, except what set() wrote to the bootstrap registers of the stream channel.
+  /// Restores the initial values, except what a camera keeps without power: its name and its ways to an address; nor is
+  /// the address it has now changed.
   void reset();
 
   [[nodiscard]] std::uint32_t get(std::uint32_t address) const;

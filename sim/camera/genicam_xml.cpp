@@ -33,6 +33,13 @@ class Description {
          << "<pPort>Device</pPort><Endianess>BigEndian</Endianess></FloatReg>\n";
   }
 
+  /// A value that is the first less the second.
+  void difference(const std::string& name, const std::string& first, const std::string& second) {
+    out_ << "<IntSwissKnife Name=\"" << name << "\" NameSpace=\"Custom\"><pVariable Name=\"FIRST\">" << first
+         << "</pVariable><pVariable Name=\"SECOND\">" << second
+         << "</pVariable><Formula>FIRST - SECOND</Formula></IntSwissKnife>\n";
+  }
+
   struct Entry {
     std::string name;
     std::uint32_t value;
@@ -59,9 +66,17 @@ class Description {
     int_register(name + "Reg", address, "WO");
   }
 
-  void text(const std::string& name, std::uint32_t address, int length) {
+  /// An integer in the low half of a register.
+  void half(const std::string& name, std::uint32_t address, const std::string& limits) {
+    out_ << "<Integer Name=\"" << name << "\" NameSpace=\"Standard\"><pValue>" << name << "Reg</pValue>" << limits
+         << "</Integer>\n<MaskedIntReg Name=\"" << name << "Reg\" NameSpace=\"Custom\"><Address>" << address
+         << "</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort><Cachable>NoCache</Cachable>"
+         << "<LSB>31</LSB><MSB>16</MSB><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess></MaskedIntReg>\n";
+  }
+
+  void text(const std::string& name, std::uint32_t address, std::size_t length, const std::string& access = "RO") {
     out_ << "<StringReg Name=\"" << name << "\" NameSpace=\"Standard\"><Address>" << address << "</Address><Length>"
-         << length << "</Length><AccessMode>RO</AccessMode><pPort>Device</pPort></StringReg>\n";
+         << length << "</Length><AccessMode>" << access << "</AccessMode><pPort>Device</pPort></StringReg>\n";
   }
 
   void wide(const std::string& name, std::uint32_t address) {
@@ -95,17 +110,19 @@ class Description {
 
 }  // namespace
 
-std::string genicam_xml() {
+std::string genicam_xml(int width_increment) {
+  const std::string across_increment = "<Inc>" + std::to_string(width_increment) + "</Inc>";
   namespace reg = gvcp::reg;
   Description d;
-  d.category("Root",
-             {"DeviceControl", "ImageFormatControl", "AcquisitionControl", "AnalogControl", "TransportLayerControl"});
+  d.category("Root", {"DeviceControl", "ImageFormatControl", "AcquisitionControl", "AnalogControl", "ChunkDataControl",
+                      "TransportLayerControl"});
   d.category("DeviceControl", {"DeviceVendorName", "DeviceModelName", "DeviceVersion", "DeviceSerialNumber",
-                               "TimestampLatch", "TimestampLatchValue"});
+                               "DeviceUserID", "TimestampLatch", "TimestampLatchValue"});
   d.text("DeviceVendorName", reg::kManufacturer, 32);
   d.text("DeviceModelName", reg::kModel, 32);
   d.text("DeviceVersion", reg::kDeviceVersion, 32);
   d.text("DeviceSerialNumber", reg::kSerial, 16);
+  d.text("DeviceUserID", reg::kUserName, reg::kUserNameBytes, "RW");
   d.command("TimestampLatch", reg::kTimestampControl, gvcp::kLatchTimestamp);
   d.wide("TimestampLatchValue", reg::kTimestampHigh);
 
@@ -115,10 +132,13 @@ std::string genicam_xml() {
   d.integer("SensorHeight", feature::kSensorHeight, "RO", "");
   d.integer("WidthMax", feature::kSensorWidth, "RO", "");
   d.integer("HeightMax", feature::kSensorHeight, "RO", "");
-  d.integer("Width", feature::kWidth, "RW", "<Min>1</Min><pMax>SensorWidth</pMax><Inc>1</Inc>");
+  d.integer("Width", feature::kWidth, "RW",
+            "<Min>" + std::to_string(width_increment) + "</Min><pMax>SensorWidth</pMax>" + across_increment);
   d.integer("Height", feature::kHeight, "RW", "<Min>1</Min><pMax>SensorHeight</pMax><Inc>1</Inc>");
-  d.integer("OffsetX", feature::kOffsetX, "RW", "<Min>0</Min><pMax>SensorWidth</pMax><Inc>1</Inc>");
-  d.integer("OffsetY", feature::kOffsetY, "RW", "<Min>0</Min><pMax>SensorHeight</pMax><Inc>1</Inc>");
+  d.integer("OffsetX", feature::kOffsetX, "RW", "<Min>0</Min><pMax>OffsetXMax</pMax>" + across_increment);
+  d.integer("OffsetY", feature::kOffsetY, "RW", "<Min>0</Min><pMax>OffsetYMax</pMax><Inc>1</Inc>");
+  d.difference("OffsetXMax", "SensorWidth", "Width");
+  d.difference("OffsetYMax", "SensorHeight", "Height");
   std::vector<Description::Entry> formats;
   for (const SensorFormat format : kAllSensorFormats) {
     const SensorFormatInfo info = sensor_format_info(format);
@@ -129,7 +149,7 @@ std::string genicam_xml() {
   d.category("AcquisitionControl",
              {"AcquisitionMode", "AcquisitionStart", "AcquisitionStop", "ExposureTime", "AcquisitionFrameRate",
               "AcquisitionFrameRateEnable", "TriggerSelector", "TriggerMode", "TriggerSource", "TriggerSoftware"});
-  d.enumeration("AcquisitionMode", feature::kAcquisitionMode, {{"Continuous", 0}});
+  d.enumeration("AcquisitionMode", feature::kAcquisitionMode, {{"Continuous", 0}, {"SingleFrame", 1}});
   d.command("AcquisitionStart", feature::kAcquisitionStart);
   d.command("AcquisitionStop", feature::kAcquisitionStop);
   d.number("ExposureTime", feature::kExposureTime, 10.0, 10000000.0, "us");
@@ -143,13 +163,18 @@ std::string genicam_xml() {
   d.category("AnalogControl", {"Gain"});
   d.number("Gain", feature::kGain, 0.0, 24.0, "dB");
 
+  d.category("ChunkDataControl", {"ChunkModeActive"});
+  d.boolean("ChunkModeActive", feature::kChunkModeActive);
+
   d.category("TransportLayerControl",
              {"PayloadSize", "TLParamsLocked", "GevSCPSPacketSize", "GevSCPD", "GevHeartbeatTimeout",
               "GevTimestampControlLatch", "GevTimestampValue", "GevTimestampTickFrequency"});
   d.integer("PayloadSize", feature::kPayloadSize, "RO", "");
   d.integer("TLParamsLocked", feature::kParametersLocked, "RW", "<Min>0</Min><Max>1</Max>");
-  d.integer("GevSCPSPacketSize", reg::kStreamPacketSize, "RW", "<Min>576</Min><Max>16000</Max><Inc>4</Inc>");
-  d.integer("GevSCPD", reg::kStreamPacketDelay, "RW", "<Min>0</Min><Max>1000000</Max>");
+  d.half("GevSCPSPacketSize", reg::kStreamPacketSize,
+         "<Min>576</Min><Max>16000</Max><Inc>" + std::to_string(kPacketSizeIncrement) + "</Inc>");
+  d.integer("GevSCPD", reg::kStreamPacketDelay, "RW",
+            "<Min>0</Min><Max>" + std::to_string(kLargestPacketDelay_ns) + "</Max>");
   d.integer("GevHeartbeatTimeout", reg::kHeartbeatTimeout, "RW", "<Min>500</Min><Max>60000</Max>");
   d.command("GevTimestampControlLatch", reg::kTimestampControl, gvcp::kLatchTimestamp);
   d.wide("GevTimestampValue", reg::kTimestampHigh);

@@ -6,6 +6,6 @@
 
 namespace fvd::sim {
 
-[[nodiscard]] std::string genicam_xml();
+[[nodiscard]] std::string genicam_xml(int width_increment);
 
 }  // namespace fvd::sim

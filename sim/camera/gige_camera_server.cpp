@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -16,6 +17,7 @@
 #include <unistd.h>
 
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "sim/base/file_descriptor.hpp"
 #include "sim/camera/camera_registers.hpp"
@@ -38,9 +40,24 @@ std::uint32_t parse_address(const std::string& text) {
   return ntohl(address.s_addr);
 }
 
-/// A UDP socket on the control port of the address, or -1 with errno.
-int bind_control_port(std::uint32_t address) {
+std::string text_of(std::uint32_t address) {
+  const in_addr network{htonl(address)};
+  std::array<char, INET_ADDRSTRLEN> text{};
+  return ::inet_ntop(AF_INET, &network, text.data(), text.size());
+}
+
+/// A UDP socket on the control port of the address, or -1 with errno. for_all: an address of broadcasts, which other
+/// cameras may have too; only those that stay on loopback are heard.
+int bind_control_port(std::uint32_t address, bool for_all = false) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  if (for_all && (::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)) != 0 ||
+                  ::setsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, "lo", 2) != 0)) {
+    const int error = errno;
+    ::close(fd);
+    errno = error;
+    return -1;
+  }
   sockaddr_in own{};
   own.sin_family = AF_INET;
   own.sin_addr.s_addr = htonl(address);
@@ -61,22 +78,51 @@ int control_port(std::uint32_t address, const std::string& text) {
                                          "; choose another address of 127.0.0.0/8");
 }
 
+/// A socket for what is sent to all cameras, or none.
+int broadcast_port(std::uint32_t address, bool wanted) {
+  if (!wanted) return -1;
+  const int fd = bind_control_port(address, true);
+  if (fd >= 0) return fd;
+  throw Error(ErrorCode::kBadConfig, "the simulated camera cannot hear broadcasts to " + text_of(address) + ": " +
+                                         std::strerror(errno) + "; run it without being discoverable");
+}
+
+const GigeCameraOptions& checked(const GigeCameraOptions& options) {
+  for (const std::string* name : {&options.serial, &options.name}) {
+    if (name->size() >= gvcp::reg::kUserNameBytes) {
+      throw Error(ErrorCode::kBadConfig,
+                  "the camera's name or serial number '" + *name + "' is longer than 15 characters");
+    }
+  }
+  if (options.width_increment < 1) throw Error(ErrorCode::kBadConfig, "the camera's width increment is not above 0");
+  return options;
+}
+
+constexpr std::uint32_t kAllDevices = 0xFFFFFFFF;
+constexpr std::uint32_t kAllOfLoopback = 0x7FFFFFFF;
+
 }  // namespace
 
 struct GigeCameraServer::Impl {
   Impl(FrameSource& source, const GigeCameraOptions& o)
-      : options(o),
+      : options(checked(o)),
         address(parse_address(o.address)),
         socket(control_port(address, o.address)),
+        to_all(broadcast_port(kAllDevices, o.discoverable)),
+        to_loopback(broadcast_port(kAllOfLoopback, o.discoverable)),
         wake(::eventfd(0, EFD_CLOEXEC)),
         registers({.serial = o.serial,
+                   .user_name = o.name,
                    .address = address,
                    .sensor_width = source.sensor_width(),
-                   .sensor_height = source.sensor_height()}),
+                   .sensor_height = source.sensor_height(),
+                   .width_increment = o.width_increment}),
         sender(address, o.link_mbps, o.seed),
         streamer(source, registers, faults, mute, hung, sender, o.first_block_id, o.extended_ids,
                  [this](const CameraFaultStep& step) { strike(step); }),
-        control(registers, streamer, sender, faults, [this](const CameraFaultStep& step) { strike(step); }) {
+        control(
+            registers, streamer, sender, faults, [this](const CameraFaultStep& step) { strike(step); },
+            [this](std::uint32_t to) { return move(to); }) {
     registers.set(gvcp::reg::kStreamSourcePort, static_cast<std::uint32_t>(sender.source_port()));
     serving = start_thread("sim-gvcp", [this](std::stop_token stop) { serve(stop); });
   }
@@ -95,6 +141,11 @@ struct GigeCameraServer::Impl {
   /// Of any thread of the camera.
   void strike(const CameraFaultStep& step) {
     const HostTime end = HostClock::now() + step.delay;
+    if (step.fault == CameraFault::kClockStep) return streamer.step_clock(step.step);
+    if (step.fault == CameraFault::kChunkMode) {
+      const ChunkMode mode = step.value == 1 ? ChunkMode::kPlain : ChunkMode::kExtended;
+      return registers.set(feature::kChunkModeActive, static_cast<std::uint32_t>(mode));
+    }
     if (step.fault == CameraFault::kHang) return hung.until(end);
     mute.until(end);
     if (step.fault != CameraFault::kRestart) return;
@@ -102,37 +153,75 @@ struct GigeCameraServer::Impl {
     wake_up();
   }
 
+  /// The camera's sockets keep their numbers.
+  bool move(std::uint32_t to) {
+    const int fd = bind_control_port(to);
+    if (fd < 0) return false;
+    const FileDescriptor moved(fd);
+    if (!sender.move_to(to)) return false;
+    ::dup3(fd, socket.get(), O_CLOEXEC);
+    address = to;
+    return true;
+  }
+
   void serve(std::stop_token stop) {
-    std::array<std::uint8_t, 2048> buffer{};
     while (!stop.stop_requested()) {
-      std::array<pollfd, 2> waiting{{{socket.get(), POLLIN, 0}, {wake.get(), POLLIN, 0}}};
+      std::array<pollfd, 4> waiting{{{wake.get(), POLLIN, 0},
+                                     {socket.get(), POLLIN, 0},
+                                     {to_all.get(), POLLIN, 0},
+                                     {to_loopback.get(), POLLIN, 0}}};
       // Datagrams that come while it hangs wait in the socket, as those to a stopped process.
-      if (hung.now()) waiting[0].events = 0;
-      ::poll(waiting.data(), waiting.size(), hung.now() ? 1 : kPollInterval_ms);
-      if ((waiting[1].revents & POLLIN) != 0) {
+      const bool hangs = hung.now();
+      ::poll(waiting.data(), hangs ? 1 : waiting.size(), hangs ? 1 : kPollInterval_ms);
+      if ((waiting[0].revents & POLLIN) != 0) {
         std::uint64_t count = 0;
         [[maybe_unused]] const auto read = ::read(wake.get(), &count, sizeof(count));
       }
       if (restarting.exchange(false)) control.restart();
       if (hung.now()) continue;
       control.check_heartbeat();
-      if ((waiting[0].revents & POLLIN) == 0) continue;
-      sockaddr_in from{};
-      socklen_t length = sizeof(from);
-      const auto count = ::recvfrom(socket.get(), buffer.data(), buffer.size(), MSG_DONTWAIT,
-                                    reinterpret_cast<sockaddr*>(&from), &length);
-      if (count <= 0 || mute.now()) continue;
-      const auto reply = control.answer({ntohl(from.sin_addr.s_addr), ntohs(from.sin_port)},
-                                        std::span(buffer.data(), static_cast<std::size_t>(count)));
-      if (reply.empty() || mute.now()) continue;
-      ::sendto(socket.get(), reply.data(), reply.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&from),
-               length);
+      for (std::size_t i = 1; i < waiting.size(); ++i) {
+        if ((waiting[i].revents & POLLIN) != 0) receive(waiting[i].fd, stop);
+      }
     }
   }
 
+  void receive(int fd, const std::stop_token& stop) {
+    std::array<std::uint8_t, 2048> buffer{};
+    sockaddr_in from{};
+    socklen_t length = sizeof(from);
+    const auto count =
+        ::recvfrom(fd, buffer.data(), buffer.size(), MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &length);
+    if (count <= 0 || mute.now()) return;
+    const GvcpPeer peer{ntohl(from.sin_addr.s_addr), ntohs(from.sin_port)};
+    const auto packet = std::span(buffer.data(), static_cast<std::size_t>(count));
+    if (fd != socket.get()) return send(control.answer_broadcast(peer, packet), from);
+    const auto reply = control.answer(peer, packet);
+    send(reply.pending, from);
+    pause(reply.delay, stop);
+    send(reply.acknowledge, from);
+  }
+
+  void send(const std::vector<std::uint8_t>& message, const sockaddr_in& to) const {
+    if (message.empty() || mute.now()) return;
+    ::sendto(socket.get(), message.data(), message.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to),
+             sizeof(to));
+  }
+
+  /// While a command takes long, others wait in the socket.
+  static void pause(std::chrono::milliseconds duration, const std::stop_token& stop) {
+    if (duration.count() == 0) return;
+    Mutex mutex;
+    Condition never;
+    MutexLock lock(mutex);
+    never.wait_for(lock, stop, duration, [] { return false; });
+  }
+
   const GigeCameraOptions options;
-  const std::uint32_t address;
+  std::atomic<std::uint32_t> address;
   const FileDescriptor socket;
+  const FileDescriptor to_all;  // broadcasts, if it is discoverable, as the next one
+  const FileDescriptor to_loopback;
   const FileDescriptor wake;
   CameraFaultScript faults;
   Standstill mute;
@@ -149,7 +238,7 @@ GigeCameraServer::GigeCameraServer(FrameSource& source, const GigeCameraOptions&
     : impl_(std::make_unique<Impl>(source, options)) {}
 GigeCameraServer::~GigeCameraServer() = default;
 
-std::string GigeCameraServer::address() const { return impl_->options.address; }
+std::string GigeCameraServer::address() const { return text_of(impl_->address); }
 std::uint64_t GigeCameraServer::frames() const noexcept { return impl_->streamer.frames(); }
 std::uint64_t GigeCameraServer::frames_dropped() const noexcept { return impl_->streamer.frames_dropped(); }
 std::uint64_t GigeCameraServer::packets_lost() const noexcept { return impl_->sender.packets_lost(); }
@@ -167,9 +256,7 @@ std::string free_camera_address() {
     const int fd = bind_control_port(address);
     if (fd < 0) continue;
     ::close(fd);
-    const in_addr network{htonl(address)};
-    std::array<char, INET_ADDRSTRLEN> text{};
-    return ::inet_ntop(AF_INET, &network, text.data(), text.size());
+    return text_of(address);
   }
   throw Error(ErrorCode::kBadConfig, "no loopback address with a free UDP port " + std::to_string(gvcp::kPort));
 }

@@ -48,7 +48,7 @@ GigeStreamer::~GigeStreamer() {
 }
 
 std::uint64_t GigeStreamer::timestamp_ns(HostTime time) const {
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<nanoseconds>(time - started_).count());
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<nanoseconds>(time - started_).count() + clock_ahead_ns_);
 }
 
 void GigeStreamer::set_acquiring(bool on) {
@@ -104,6 +104,7 @@ void GigeStreamer::stand_still(std::stop_token stop) {
 void GigeStreamer::expose(std::stop_token stop) {
   sharpen_timers();
   HostTime next_free_run{};
+  std::uint64_t free_run_of = 0;  // the acquisition
   while (!stop.stop_requested()) {
     stand_still(stop);
     HostTime start{};
@@ -120,19 +121,22 @@ void GigeStreamer::expose(std::stop_token stop) {
       acquisition = acquisition_;
       if (!triggered_) {
         // A rate that cannot be held is followed as well as may be, without catching up.
-        next_free_run = std::max(next_free_run, HostClock::now() - nanoseconds_of_us(1e6 / state.frame_rate_hz));
+        const nanoseconds period = nanoseconds_of_us(1e6 / state.frame_rate_hz);
+        if (free_run_of != acquisition || next_free_run < HostClock::now() - period) next_free_run = HostClock::now();
+        free_run_of = acquisition;
         const auto changes = [&] {
           mutex_.assert_held();
           return acquisition_ != acquisition || registers_.state().triggered;
         };
         if (changed_.wait_until(lock, stop, next_free_run, changes) || stop.stop_requested()) continue;
         start = std::max(next_free_run, HostClock::now() - std::chrono::milliseconds(1));
-        next_free_run += nanoseconds_of_us(1e6 / state.frame_rate_hz);
+        next_free_run += period;
       } else {
         start = HostClock::now();
       }
       triggered_ = false;
       exposing_ = true;
+      if (state.single_frame) acquiring_ = false;  // this frame is the last
     }
     (void)expose_one(state, start, acquisition, stop);
     const MutexLock lock(mutex_);
@@ -164,9 +168,13 @@ bool GigeStreamer::expose_one(const CameraState& state, HostTime start, std::uin
     if (!extended_ids_ && next_block_id_ > 65535) next_block_id_ -= 65535;
     exposure.block_id = next_block_id_++;
   }
-  if (fault && (fault->fault == CameraFault::kMute || fault->fault == CameraFault::kHang ||
-                fault->fault == CameraFault::kRestart)) {
+  if (fault && strikes_anywhere(fault->fault)) {
     struck_(*fault);
+    exposure.state.chunks = registers_.state().chunks;
+  }
+  exposure.timestamp_ns = timestamp_ns(start);
+  if (is(fault, CameraFault::kOddTime)) {
+    exposure.timestamp_ns += static_cast<std::uint64_t>(nanoseconds(fault->step).count());
   }
   if (is(fault, CameraFault::kEarlyLeader) && !mute_.now()) sender_.send_leader(header_of(exposure));
   if (!wait_until(exposure.request.end, acquisition, stop)) return false;
@@ -209,7 +217,7 @@ StreamFrame GigeStreamer::header_of(const Exposure& exposure) const {
   StreamFrame frame;
   frame.block_id = exposure.block_id;
   frame.extended_ids = extended_ids_;
-  frame.timestamp_ns = timestamp_ns(exposure.request.start);
+  frame.timestamp_ns = exposure.timestamp_ns;
   frame.pfnc = sensor_format_info(exposure.state.format).pfnc;
   frame.width = static_cast<std::uint32_t>(exposure.request.width);
   frame.height = static_cast<std::uint32_t>(exposure.request.height);
@@ -219,6 +227,7 @@ StreamFrame GigeStreamer::header_of(const Exposure& exposure) const {
   frame.to_port = exposure.state.stream_port;
   frame.packet_size = exposure.state.packet_size;
   frame.delay_ns = exposure.state.packet_delay_ns;
+  frame.chunks = exposure.state.chunks;
   return frame;
 }
 
@@ -244,14 +253,16 @@ std::shared_ptr<StreamFrame> GigeStreamer::develop(const Exposure& exposure) {
 void GigeStreamer::send(const Exposure& exposure, std::stop_token stop) {
   const auto& fault = exposure.fault;
   std::shared_ptr<StreamFrame> frame = develop(exposure);
-  if (is(fault, CameraFault::kStaleFrame) && before_ && before_->pixels.size() == frame->pixels.size()) {
-    frame->pixels = before_->pixels;
+  if (is(fault, CameraFault::kStaleFrame) && before_ && before_->pfnc == frame->pfnc &&
+      before_->width == frame->width && before_->height == frame->height) {
+    std::copy_n(before_->pixels.begin(), frame->pixels.size(), frame->pixels.begin());  // without its chunks
     frame->timestamp_ns = before_->timestamp_ns;
   }
   if (is(fault, CameraFault::kDarkFrame) || is(fault, CameraFault::kHalfFrame)) {
     const std::size_t lit = is(fault, CameraFault::kHalfFrame) ? frame->pixels.size() / 2 : 0;
     std::fill(frame->pixels.begin() + static_cast<std::ptrdiff_t>(lit), frame->pixels.end(), std::byte{0});
   }
+  if (frame->chunks != ChunkMode::kOff) gvsp::append_chunks(*frame, exposure.state.exposure_us);
   if (is(fault, CameraFault::kLateFrame) && !wait_until(HostClock::now() + fault->delay, exposure.acquisition, stop)) {
     return;
   }

@@ -4,6 +4,7 @@
 /// next exposure runs.
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -35,7 +36,7 @@ class Standstill {
 /// context: thread-safe. Exposes on one thread, renders and sends on another.
 class GigeStreamer {
  public:
-  /// Called with a fault step of the kinds mute, hang and restart, which the camera server carries out.
+  /// Called with a fault step that strikes anywhere, which the camera server carries out.
   using Struck = std::function<void(const CameraFaultStep&)>;
 
   /// All references outlive the streamer. mute: no packet leaves until its end; hung: the sensor does nothing until its
@@ -45,7 +46,8 @@ class GigeStreamer {
                Struck struck);
   ~GigeStreamer();
 
-  /// AcquisitionStart: block ids start over; AcquisitionStop: a frame under way is abandoned.
+  /// AcquisitionStart: block ids start over; AcquisitionStop: a frame under way is abandoned. In AcquisitionMode
+  /// SingleFrame the acquisition ends by itself.
   void set_acquiring(bool on);
   /// Starts an exposure; ignored if one runs or the camera does not wait for a trigger of this kind. False only if a
   /// fault of the script refuses it as busy.
@@ -57,6 +59,8 @@ class GigeStreamer {
   [[nodiscard]] std::uint64_t frames_dropped() const noexcept { return dropped_; }
   /// Camera time of a moment.
   [[nodiscard]] std::uint64_t timestamp_ns(HostTime time) const;
+  /// The camera's clock goes on so much later, or earlier.
+  void step_clock(std::chrono::milliseconds step) { clock_ahead_ns_ += std::chrono::nanoseconds(step).count(); }
 
  private:
   /// An exposure that is over, or that was lost to its fault.
@@ -64,6 +68,7 @@ class GigeStreamer {
     CameraState state;
     ExposureRequest request;
     std::uint64_t block_id = 0;
+    std::uint64_t timestamp_ns = 0;
     std::uint64_t acquisition = 0;
     std::optional<CameraFaultStep> fault;
   };
@@ -87,6 +92,8 @@ class GigeStreamer {
   const bool extended_ids_;
   const Struck struck_;
   const HostTime started_ = HostClock::now();
+  // A camera that has run for a day: its clock can be stepped back without passing zero.
+  std::atomic<std::int64_t> clock_ahead_ns_{86'400'000'000'000};
 
   Mutex mutex_;
   Condition changed_;

@@ -15,6 +15,7 @@ inline constexpr std::size_t kMaxPayload = 540;
 
 enum class Command : std::uint16_t {
   kDiscovery = 0x0002,
+  kForceIp = 0x0004,
   kPacketResend = 0x0040,
   kReadRegister = 0x0080,
   kWriteRegister = 0x0082,
@@ -33,6 +34,9 @@ enum class Status : std::uint16_t {
   kBusy = 0x8007,
 };
 
+/// The message, not an answer, that announces when the answer will come.
+inline constexpr std::uint16_t kPendingAcknowledge = 0x0089;
+
 /// Bootstrap registers the server gives a meaning to.
 namespace reg {
 inline constexpr std::uint32_t kVersion = 0x0000;
@@ -43,15 +47,20 @@ inline constexpr std::uint32_t kIpConfigSupported = 0x0010;
 inline constexpr std::uint32_t kIpConfigCurrent = 0x0014;
 inline constexpr std::uint32_t kIpAddress = 0x0024;
 inline constexpr std::uint32_t kSubnetMask = 0x0034;
+inline constexpr std::uint32_t kGateway = 0x0044;
 inline constexpr std::uint32_t kManufacturer = 0x0048;
 inline constexpr std::uint32_t kModel = 0x0068;
 inline constexpr std::uint32_t kDeviceVersion = 0x0088;
 inline constexpr std::uint32_t kManufacturerInfo = 0x00A8;
 inline constexpr std::uint32_t kSerial = 0x00D8;
 inline constexpr std::uint32_t kUserName = 0x00E8;
+inline constexpr std::size_t kUserNameBytes = 16;
 inline constexpr std::uint32_t kDiscoveryBytes = 0x00F8;
 inline constexpr std::uint32_t kFirstUrl = 0x0200;
 inline constexpr std::uint32_t kInterfaces = 0x0600;
+inline constexpr std::uint32_t kPersistentIpAddress = 0x064C;
+inline constexpr std::uint32_t kPersistentSubnetMask = 0x065C;
+inline constexpr std::uint32_t kPersistentGateway = 0x066C;
 inline constexpr std::uint32_t kStreamChannels = 0x0904;
 inline constexpr std::uint32_t kCapability = 0x0934;
 inline constexpr std::uint32_t kHeartbeatTimeout = 0x0938;
@@ -61,6 +70,8 @@ inline constexpr std::uint32_t kTimestampControl = 0x0944;
 inline constexpr std::uint32_t kTimestampHigh = 0x0948;
 inline constexpr std::uint32_t kTimestampLow = 0x094C;
 inline constexpr std::uint32_t kControlPrivilege = 0x0A00;
+inline constexpr std::uint32_t kPrimaryPort = 0x0A04;     // of the controller
+inline constexpr std::uint32_t kPrimaryAddress = 0x0A14;  // of the controller
 inline constexpr std::uint32_t kStreamPort = 0x0D00;
 inline constexpr std::uint32_t kStreamPacketSize = 0x0D04;
 inline constexpr std::uint32_t kStreamPacketDelay = 0x0D08;
@@ -73,6 +84,18 @@ inline constexpr std::uint32_t kConcatenation = 1U << 0U;
 inline constexpr std::uint32_t kWriteMemory = 1U << 1U;
 inline constexpr std::uint32_t kPacketResend = 1U << 2U;
 }  // namespace capability
+
+namespace ip_config {
+inline constexpr std::uint32_t kPersistent = 1U << 0U;
+inline constexpr std::uint32_t kDhcp = 1U << 1U;
+inline constexpr std::uint32_t kLinkLocal = 1U << 2U;  ///< always on
+inline constexpr std::uint32_t kAll = kPersistent | kDhcp | kLinkLocal;
+}  // namespace ip_config
+
+namespace privilege {
+inline constexpr std::uint32_t kExclusive = 1U << 0U;  ///< others may not even read
+inline constexpr std::uint32_t kControl = 1U << 1U;
+}  // namespace privilege
 
 inline constexpr std::uint32_t kFireTestPacket = 1U << 31U;
 inline constexpr std::uint32_t kLatchTimestamp = 1U << 1U;

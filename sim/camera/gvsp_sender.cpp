@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <net/if.h>
 #include <netinet/in.h>
 #include <sys/ioctl.h>
@@ -26,6 +27,7 @@ constexpr std::size_t kPacketsPerBatch = 32;
 /// Pacing need not wake up more often than these take on a gigabit line.
 constexpr std::size_t kBatchBytes = 48 * 1024;
 constexpr std::ptrdiff_t kReordered = 8;
+constexpr std::size_t kMostUnavailable = 256;
 
 sockaddr_in to_sockaddr(std::uint32_t address, int port) {
   sockaddr_in result{};
@@ -33,6 +35,24 @@ sockaddr_in to_sockaddr(std::uint32_t address, int port) {
   result.sin_addr.s_addr = htonl(address);
   result.sin_port = htons(static_cast<std::uint16_t>(port));
   return result;
+}
+
+/// A socket on any free port of the address, or -1 with errno.
+int stream_socket(std::uint32_t address) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const sockaddr_in own = to_sockaddr(address, 0);
+  if (::bind(fd, reinterpret_cast<const sockaddr*>(&own), sizeof(own)) == 0) return fd;
+  const int error = errno;
+  if (fd >= 0) ::close(fd);
+  errno = error;
+  return -1;
+}
+
+int port_of(int fd) {
+  sockaddr_in own{};
+  socklen_t length = sizeof(own);
+  ::getsockname(fd, reinterpret_cast<sockaddr*>(&own), &length);
+  return ntohs(own.sin_port);
 }
 
 /// The camera lives on loopback.
@@ -45,19 +65,24 @@ int loopback_mtu(int fd) {
 }  // namespace
 
 GvspSender::GvspSender(std::uint32_t address, double link_mbps, std::uint64_t seed)
-    : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)),
+    : socket_(stream_socket(address)),
       mtu_(loopback_mtu(socket_)),
       bytes_per_second_(link_mbps * 125000.0),
       random_(seed) {
-  sockaddr_in own = to_sockaddr(address, 0);
-  socklen_t length = sizeof(own);
-  if (socket_ < 0 || ::bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof(own)) != 0 ||
-      ::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &length) != 0) {
-    const std::string reason = std::strerror(errno);
-    if (socket_ >= 0) ::close(socket_);
-    throw Error(ErrorCode::kBadConfig, "the simulated camera has no socket for its stream: " + reason);
+  if (socket_ < 0) {
+    throw Error(ErrorCode::kBadConfig,
+                "the simulated camera has no socket for its stream: " + std::string(std::strerror(errno)));
   }
-  source_port_ = ntohs(own.sin_port);
+  source_port_ = port_of(socket_);
+}
+
+bool GvspSender::move_to(std::uint32_t address) {
+  const int fd = stream_socket(address);
+  if (fd < 0) return false;
+  ::dup3(fd, socket_, O_CLOEXEC);  // at once for the thread that is sending
+  ::close(fd);
+  source_port_ = port_of(socket_);
+  return true;
 }
 
 GvspSender::~GvspSender() { ::close(socket_); }
@@ -115,21 +140,40 @@ void GvspSender::send(const std::shared_ptr<const StreamFrame>& frame, const Sen
 
 void GvspSender::send_leader(const StreamFrame& frame) { transmit(frame, std::array<std::uint32_t, 1>{0}); }
 
-void GvspSender::resend(std::uint64_t block_id, std::uint32_t first, std::uint32_t last) {
+void GvspSender::resend(const ResendRequest& request) {
+  if (request.first > request.last) return;
   std::shared_ptr<const StreamFrame> frame;
   {
     const MutexLock lock(mutex_);
-    const auto found =
-        std::find_if(kept_.rbegin(), kept_.rend(), [&](const auto& kept) { return kept->block_id == block_id; });
-    if (found == kept_.rend()) return;
-    frame = *found;
+    const auto found = std::find_if(kept_.rbegin(), kept_.rend(),
+                                    [&](const auto& kept) { return kept->block_id == request.block_id; });
+    if (found != kept_.rend()) frame = *found;
   }
-  last = std::min(last, gvsp::trailer_id(*frame));
-  if (first > last) return;
-  std::vector<std::uint32_t> packets(last - first + 1);
-  std::iota(packets.begin(), packets.end(), first);
-  packets_resent_ += packets.size();
-  transmit(*frame, packets);
+  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> gone;
+  const std::uint32_t end = frame ? gvsp::trailer_id(*frame) + 1 : 0;
+  for (std::uint32_t packet = request.first; packet <= request.last; ++packet) {
+    if (packet < end && !frame->gone.contains(packet)) {
+      kept.push_back(packet);
+    } else if (gone.size() < kMostUnavailable) {
+      gone.push_back(packet);
+    } else if (packet >= end) {
+      break;
+    }
+  }
+  send_unavailable(request, gone);
+  if (kept.empty()) return;
+  packets_resent_ += kept.size();
+  transmit(*frame, kept);
+}
+
+void GvspSender::send_unavailable(const ResendRequest& request, std::span<const std::uint32_t> packets) {
+  if (request.to_port == 0) return;
+  const sockaddr_in to = to_sockaddr(request.to_address, request.to_port);
+  for (const std::uint32_t packet : packets) {
+    const auto bytes = gvsp::unavailable(request.block_id, request.extended_ids, packet);
+    ::sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+  }
 }
 
 void GvspSender::transmit(const StreamFrame& frame, std::span<const std::uint32_t> packets) {

@@ -31,6 +31,11 @@ class Cia402Drive final : public SimDrive {
   /// axis outlives the drive.
   explicit Cia402Drive(AxisModel& axis, DriveClock clock = HostClock::now);
 
+  /// Of the simulated drives this one alone has it, as those of the map's maker may.
+  [[nodiscard]] std::optional<DeviceIdentification> identification() const override {
+    return DeviceIdentification{.vendor = "fvd", .product = "simulated CiA 402 drive", .revision = "1.0"};
+  }
+
  private:
   enum class State { kSwitchOnDisabled, kReadyToSwitchOn, kSwitchedOn, kOperationEnabled, kQuickStopActive, kFault };
 

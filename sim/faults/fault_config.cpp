@@ -51,18 +51,21 @@ CameraFaultStep read_camera_step(const nlohmann::json& object, const std::string
   std::string on;
   std::string fault = camera_fault_names().front();
   std::int64_t delay_ms = 0;
+  std::int64_t step_ms = 0;
   FieldReader fields(object, problems, pointer);
   fields.choice("fault", fault, camera_fault_names(), "what happens");
   fields.require("fault");
-  if (object.contains("on")) fields.choice("on", on, kCameraEvents, "where mute, hang and restart strike");
+  if (object.contains("on")) fields.choice("on", on, kCameraEvents, "where it strikes, if it can strike anywhere");
   fields.integer("after", step.after, {0, 1'000'000'000}, "so many matching events pass first");
   fields.integer("count", step.count, {1, 1'000'000'000}, "how often");
   fields.integer("delay_ms", delay_ms, {0, 600'000}, "how late, or how long");
-  fields.integer("value", step.value, {0, 60'000}, "of an id jump: how far; of a dropped packet: 1 = gone for good");
+  fields.integer("value", step.value, {0, 60'000}, "how far ids jump, what is promised, or which kind");
+  fields.integer("step_ms", step_ms, {-86'400'000, 86'400'000}, "how far time is off");
   fields.finish();
   if (!on.empty()) step.on = static_cast<CameraEvent>(index_of(kCameraEvents, on));
   step.fault = static_cast<CameraFault>(index_of(camera_fault_names(), fault));
   step.delay = std::chrono::milliseconds(delay_ms);
+  step.step = std::chrono::milliseconds(step_ms);
   return step;
 }
 

@@ -20,9 +20,9 @@ namespace fvd::sim {
 /// Throws Error kBadInput too, if the file cannot be read.
 [[nodiscard]] std::vector<FaultStep> load_fault_steps(const std::filesystem::path& file);
 
-/// [ { "fault": "late_frame", "on": "frame", "after": 3, "count": 1, "delay_ms": 400, "value": 0 }, ... ]
+/// [ { "fault": "late_frame", "on": "frame", "after": 3, "count": 1, "delay_ms": 400, "value": 0, "step_ms": 0 }, ... ]
 ///
-/// Likewise with CameraFaultStep; "on" (command, trigger or frame) only for mute, hang and restart. Throws as above.
+/// Likewise with CameraFaultStep; "on" (command, trigger or frame) only for what strikes anywhere. Throws as above.
 [[nodiscard]] std::vector<CameraFaultStep> read_camera_fault_steps(std::string_view json_text,
                                                                    const std::string& source);
 [[nodiscard]] std::vector<CameraFaultStep> load_camera_fault_steps(const std::filesystem::path& file);

@@ -44,9 +44,9 @@ bool matches(const FaultStep& step, std::span<const std::uint8_t> request, bool 
 
 const std::vector<std::string>& fault_names() {
   static const std::vector<std::string> kNames{
-      "late_reply", "lost_reply",     "lost_request", "wrong_crc",         "truncated_frame",
-      "exception",  "silent_refusal", "link_cut",     "stale_in_position", "alarm_in_motion",
-      "limit_hit",  "emergency_stop", "power_cycle", "exception_after", "swapped_words", "second_master"};
+      "late_reply",     "lost_reply",      "lost_request",      "wrong_crc",       "truncated_frame", "exception",
+      "silent_refusal", "link_cut",        "stale_in_position", "alarm_in_motion", "limit_hit",       "emergency_stop",
+      "power_cycle",    "exception_after", "swapped_words",     "second_master"};
   return kNames;
 }
 

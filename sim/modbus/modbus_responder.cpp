@@ -1,6 +1,8 @@
 #include "sim/modbus/modbus_responder.hpp"
 
 #include <algorithm>
+#include <array>
+#include <string>
 
 namespace fvd::sim {
 
@@ -24,7 +26,11 @@ constexpr std::uint8_t kDiagnostics = 8;
 constexpr std::uint8_t kWriteCoils = 15;
 constexpr std::uint8_t kWriteRegisters = 16;
 constexpr std::uint8_t kReadWriteRegisters = 23;
+constexpr std::uint8_t kEncapsulated = 43;
 }  // namespace fc
+
+/// What function code 43 wraps here.
+constexpr std::uint8_t kReadIdentification = 14;
 
 using Pdu = std::span<const std::uint8_t>;
 
@@ -134,6 +140,41 @@ ModbusBytes read_write_registers(RegisterBank& bank, Pdu pdu) {
   return read_registers(bank, kFunction, word_at(pdu, 1), read_count);
 }
 
+/// Hands the query back, which shows that the line works; the other subfunctions are of counters that are not kept.
+ModbusBytes diagnose(Pdu pdu) {
+  if (pdu.size() < 5 || pdu.size() % 2 == 0) return malformed(fc::kDiagnostics);
+  if (word_at(pdu, 1) != 0) return exception_reply(fc::kDiagnostics, ModbusException::kIllegalFunction);
+  return {pdu.begin(), pdu.end()};
+}
+
+ModbusBytes identify(const RegisterBank& bank, Pdu pdu) {
+  constexpr std::uint8_t kFunction = fc::kEncapsulated;
+  constexpr std::uint8_t kIndividual = 4;
+  constexpr std::uint8_t kBasicAndIndividual = 0x81;  // how much there is, and in which ways it can be read
+  const auto identity = bank.identification();
+  if (!identity || (pdu.size() >= 2 && pdu[1] != kReadIdentification)) {
+    return exception_reply(kFunction, ModbusException::kIllegalFunction);
+  }
+  if (pdu.size() != 4 || pdu[2] < 1 || pdu[2] > kIndividual) return malformed(kFunction);
+  const std::array<const std::string*, 3> objects{&identity->vendor, &identity->product, &identity->revision};
+  std::size_t first = pdu[3];
+  std::size_t end = objects.size();
+  if (pdu[2] == kIndividual) {
+    if (first >= objects.size()) return exception_reply(kFunction, ModbusException::kIllegalAddress);
+    end = first + 1;
+  } else if (first >= objects.size()) {
+    first = 0;  // as the standard wants it of a list
+  }
+  ModbusBytes reply{
+      kFunction, kReadIdentification, pdu[2], kBasicAndIndividual, 0, 0, static_cast<std::uint8_t>(end - first)};
+  for (std::size_t i = first; i < end; ++i) {
+    reply.push_back(static_cast<std::uint8_t>(i));
+    reply.push_back(static_cast<std::uint8_t>(objects[i]->size()));
+    reply.insert(reply.end(), objects[i]->begin(), objects[i]->end());
+  }
+  return reply;
+}
+
 }  // namespace
 
 ModbusBytes respond(RegisterBank& bank, Pdu request) {
@@ -158,6 +199,10 @@ ModbusBytes respond(RegisterBank& bank, Pdu request) {
       return write_registers(bank, request);
     case fc::kReadWriteRegisters:
       return read_write_registers(bank, request);
+    case fc::kDiagnostics:
+      return diagnose(request);
+    case fc::kEncapsulated:
+      return identify(bank, request);
     default:
       return exception_reply(function, ModbusException::kIllegalFunction);
   }
@@ -213,6 +258,9 @@ int rtu_frame_length(std::span<const std::uint8_t> frame) {
       return frame.size() > kCountOfWrite ? 9 + frame[kCountOfWrite] : 0;
     case fc::kReadWriteRegisters:
       return frame.size() > kCountOfReadWrite ? 13 + frame[kCountOfReadWrite] : 0;
+    case fc::kEncapsulated:
+      if (frame.size() < 3) return 0;
+      return frame[2] == kReadIdentification ? 7 : -1;
     default:
       return -1;
   }

@@ -14,9 +14,10 @@ namespace fvd::sim {
 using ModbusBytes = std::vector<std::uint8_t>;
 
 /// The reply PDU to a request PDU (function code first, no unit, no checksum): function codes 1, 2 (the same coils),
-/// 3, 4 (the same registers), 5, 6, 15, 16 and 23; exception 1 for others, 3 for a malformed request, else what the
-/// bank says. Function code 23 writes before it reads and writes nothing if its read is malformed. An empty request
-/// gives an empty reply. Throws nothing of its own. context: as the bank's.
+/// 3, 4 (the same registers), 5, 6, 8 (return the query only), 15, 16, 23 and, of a bank that can identify itself,
+/// 43/14; exception 1 for others, 3 for a malformed request, else what the bank says. Function code 23 writes before it
+/// reads and writes nothing if its read is malformed. An empty request gives an empty reply. Throws nothing of its own.
+/// context: as the bank's.
 [[nodiscard]] ModbusBytes respond(RegisterBank& bank, std::span<const std::uint8_t> request);
 
 /// Addresses that a request PDU reads and writes, as far as they can be found without executing it.

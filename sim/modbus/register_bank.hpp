@@ -3,7 +3,9 @@
 /// Registers and coils of a simulated device by PDU address (0-based).
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 
 namespace fvd::sim {
 
@@ -18,6 +20,13 @@ enum class ModbusException : std::uint8_t {
   kNotReadable = 0x11,
   kNotWritable = 0x12,
   kOutOfRange = 0x13,
+};
+
+/// The basic objects of a device's identification; each at most 80 characters.
+struct DeviceIdentification {
+  std::string vendor;
+  std::string product;
+  std::string revision;
 };
 
 /// A request either succeeds whole or changes nothing. context: one server's thread.
@@ -36,6 +45,9 @@ class RegisterBank {
   [[nodiscard]] virtual ModbusException write_bits(int /*address*/, std::span<const std::uint8_t> /*bits*/) {
     return ModbusException::kIllegalAddress;
   }
+
+  /// Devices that cannot identify themselves have none.
+  [[nodiscard]] virtual std::optional<DeviceIdentification> identification() const { return std::nullopt; }
 
   /// Called at least every kIdlePeriodMs while no request comes: for what a device does on its own, e.g. a watchdog.
   virtual void idle() {}

@@ -37,8 +37,7 @@ void ScriptedResponder::write_as_another_master(const FaultStep& step) {
   const ModbusException exception = bank_.write(step.to, step.words);
   if (exception == ModbusException::kNone) return;
   script_->failed(step, "the drive refused " + std::to_string(step.words.size()) + " words from register " +
-                            std::to_string(step.to) + " on, exception " +
-                            std::to_string(static_cast<int>(exception)));
+                            std::to_string(step.to) + " on, exception " + std::to_string(static_cast<int>(exception)));
 }
 
 LineAnswer ScriptedResponder::answer(std::span<const std::uint8_t> request) {

@@ -17,8 +17,13 @@ Plant::Plant(const PlantOptions& options)
 }
 
 void Plant::plug_camera() {
-  camera_ = std::make_unique<GigeCameraServer>(
-      world_, GigeCameraOptions{.address = camera_address_, .seed = options_.world.seed});
+  camera_ =
+      std::make_unique<GigeCameraServer>(world_, GigeCameraOptions{.address = camera_address_,
+                                                                   .serial = options_.camera_serial,
+                                                                   .name = options_.camera_name,
+                                                                   .discoverable = options_.camera_discoverable,
+                                                                   .width_increment = options_.camera_width_increment,
+                                                                   .seed = options_.world.seed});
   for (const CameraFaultStep& step : options_.camera_faults) camera_->faults().add(step);
   wire_ = std::make_unique<LineTrigger>(axis_, [this] { camera_->pulse_line(); });
 }

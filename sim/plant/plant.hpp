@@ -24,6 +24,10 @@ struct PlantOptions {
   WorldParameters world;
   AxisParameters axis;
   std::string camera_address = "auto";  ///< "auto" = a free loopback address
+  std::string camera_serial = "SIM01";  ///< at most 15 characters, as the name
+  std::string camera_name{};            ///< user-defined
+  bool camera_discoverable = false;     ///< found by broadcasts on loopback
+  int camera_width_increment = 1;       ///< pixels
   std::string stage_address = "127.0.0.1";
   int stage_port = 0;  ///< 0 = any free port
   DriveKind drive = DriveKind::kAz;

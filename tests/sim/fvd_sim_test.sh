@@ -53,6 +53,14 @@ status=0
 "$fvd_sim" run --stage-pty "$work/line" --line-timing 5,0,0 >"$work/log" 2>&1 || status=$?
 [ "$status" -eq 78 ] || fail "status $status for a line that cannot be"
 
+for wrong in "--serial 0123456789ABCDEF" "--name 0123456789ABCDEF" "--drive gcs --word-order low-first"; do
+  status=0
+  # shellcheck disable=SC2086  # options are meant to be split
+  "$fvd_sim" run --camera-address auto --stage-port 0 $wrong >"$work/log" 2>&1 || status=$?
+  [ "$status" -eq 78 ] || fail "status $status for $wrong"
+done
+serve 0 --stage-port 0 --serial S1 --name left --discoverable --width-increment 8 --word-order low-first
+
 # A rendered stack, and what cannot be rendered.
 worlds=$(dirname "${BASH_SOURCE[0]}")/../../sim/worlds
 "$fvd_sim" render "$worlds/layered_equal.json" "$work/stack" --start-um 300 --step-um 30 --slices 3 --seed 4 --format pgm >"$work/log"

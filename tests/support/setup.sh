@@ -52,6 +52,18 @@ fvd_install_packages() {
   rm -f "$log"
 }
 
+# A Modbus stack that is not fvd's, from npm, for tests that skip without it. Versions are those of the lock file.
+fvd_install_javascript() {
+  local folder=$FVD_ROOT/tests/drivers/modbus/javascript log
+  [ "$folder/node_modules/.package-lock.json" -nt "$folder/package-lock.json" ] && return
+  log=$(mktemp)
+  if ! npm ci --omit=optional --prefix "$folder" >"$log" 2>&1; then
+    tail -n 5 "$log" >&2
+    fvd_say "npm could not install modbus-serial; the tests that need it skip"
+  fi
+  rm -f "$log"
+}
+
 # Configures in FVD_BUILD; everything is compiled through ccache where that is installed and works.
 fvd_cmake() {
   local launcher=

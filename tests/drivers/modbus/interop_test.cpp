@@ -1,4 +1,5 @@
-/// The driver and the simulator against programs that are not fvd's: pymodbus' server and mbpoll.
+/// The driver and the simulator against programs that are not fvd's: pymodbus' server, mbpoll, and modbus-serial both
+/// as a drive and as a client.
 
 #include "gtest/gtest.h"
 #include "tests/support/child_process.hpp"
@@ -10,11 +11,11 @@ namespace {
 using std::chrono::milliseconds;
 using test::Transport;
 
-TEST(ThePymodbusServer, IsDrivenAHundredSteps) {
-  test::ChildProcess server({"/usr/bin/python3", FVD_SOURCE_DIR "/tests/drivers/modbus/pymodbus_az.py"});
+/// Drives a server that prints its port; package: what to install where it does not start.
+void drive_a_hundred_steps(test::ChildProcess& server, const std::string& package) {
   const std::string port = server.line();
   ASSERT_FALSE(port.empty() || port.find_first_not_of("0123456789") != std::string::npos)
-      << port << server.rest() << "; install python3-pymodbus, as tests/run.sh does";
+      << port << server.rest() << "; install " << package << ", as tests/run.sh does";
   StageConfig config;
   config.profile = FVD_SOURCE_DIR "/config/drives/oriental-az.json";
   config.port = std::stoi(port);
@@ -29,6 +30,39 @@ TEST(ThePymodbusServer, IsDrivenAHundredSteps) {
     ASSERT_DOUBLE_EQ(move.position.value, 10.0 * i);
   }
   EXPECT_EQ(stage->link_stats()->unanswered, 0U);
+}
+
+TEST(ThePymodbusServer, IsDrivenAHundredSteps) {
+  test::ChildProcess server({"/usr/bin/python3", FVD_SOURCE_DIR "/tests/drivers/modbus/pymodbus_az.py"});
+  drive_a_hundred_steps(server, "python3-pymodbus");
+}
+
+constexpr const char* kScripts = FVD_SOURCE_DIR "/tests/drivers/modbus/javascript/";
+
+/// The stack is installed from a package registry, which not every machine reaches.
+bool has_modbus_serial() {
+  test::ChildProcess probe({"node", "-e", "require('" + std::string(kScripts) + "node_modules/modbus-serial')"});
+  (void)probe.rest();
+  return probe.wait() == 0;
+}
+constexpr const char* kNoModbusSerial = "modbus-serial of npm is not there; tests/run.sh installs it";
+
+TEST(TheModbusSerialServer, IsDrivenAHundredSteps) {
+  if (!has_modbus_serial()) GTEST_SKIP() << kNoModbusSerial;
+  test::ChildProcess server({"node", std::string(kScripts) + "az_drive.js"});
+  drive_a_hundred_steps(server, "nodejs");
+}
+
+TEST(TheModbusSerialClient, IdentifiesAndMovesTheSimulatedDrive) {
+  if (!has_modbus_serial()) GTEST_SKIP() << kNoModbusSerial;
+  const test::SimulatedDrive plant(test::kDriveCases[4], Transport::kTcp);
+  const auto& tcp = std::get<ModbusTcpEndpoint>(plant.line().config().endpoint);
+  test::ChildProcess client({"node", std::string(kScripts) + "client.js", std::to_string(tcp.port)});
+  const std::string seen = client.rest();
+  EXPECT_EQ(client.wait(), 0) << seen;
+  EXPECT_EQ(seen,
+            "identity fvd, simulated CiA 402 drive, 1.0\n"
+            "no such register 2\nno such coil 2\nno such object 2\nmoved true\n");
 }
 
 class Mbpoll : public testing::TestWithParam<Transport> {

@@ -103,7 +103,8 @@ TEST(FaultConfig, ReadsEveryField) {
 TEST(FaultConfig, KnowsEveryFaultByItsName) {
   ASSERT_EQ(fault_names().size(), static_cast<std::size_t>(FaultKind::kSecondMaster) + 1);
   for (const auto& name : fault_names()) {
-    const auto steps = read_fault_steps(R"([{"delay_ms": 1, "code": 1, "words": [1], "fault": ")" + name + "\"}]", "script");
+    const auto steps =
+        read_fault_steps(R"([{"delay_ms": 1, "code": 1, "words": [1], "fault": ")" + name + "\"}]", "script");
     EXPECT_EQ(name_of(steps[0].fault), name);
   }
 }
@@ -209,8 +210,7 @@ TEST(ScriptedResponder, TellsOfASecondMasterWhomTheDriveRefused) {
   ScriptedResponder responder(bank, &script, nullptr);
   EXPECT_FALSE(responder.answer(kRead).pdu.empty());
   EXPECT_EQ(script.unconsumed(), 1U);
-  EXPECT_EQ(script.describe_unconsumed(),
-            "second_master: the drive refused 2 words from register 99 on, exception 2");
+  EXPECT_EQ(script.describe_unconsumed(), "second_master: the drive refused 2 words from register 99 on, exception 2");
 }
 
 TEST(ScriptedResponder, DoesWithoutScriptAndDrive) {

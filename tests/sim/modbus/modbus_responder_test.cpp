@@ -93,10 +93,38 @@ TEST_F(AResponder, RefusesMalformedRequests) {
 }
 
 TEST_F(AResponder, RefusesFunctionCodesThatItHasNot) {
-  for (const int function : {0, 7, 8, 22, 24, 43, 127}) {
+  for (const int function : {0, 7, 22, 24, 43, 127}) {
     EXPECT_TRUE(
         is_exception(ask({static_cast<std::uint8_t>(function), 0, 0, 0, 1}), ModbusException::kIllegalFunction));
   }
+}
+
+TEST_F(AResponder, ReturnsTheQueryOfADiagnosis) {
+  EXPECT_EQ(ask({8, 0, 0, 0x12, 0x34}), (ModbusBytes{8, 0, 0, 0x12, 0x34}));
+  EXPECT_EQ(ask({8, 0, 0, 1, 2, 3, 4}), (ModbusBytes{8, 0, 0, 1, 2, 3, 4}));
+  EXPECT_TRUE(is_exception(ask({8, 0, 11, 0, 0}), ModbusException::kIllegalFunction)) << "a counter";
+  EXPECT_TRUE(is_exception(ask({8, 0, 0}), ModbusException::kIllegalValue));
+  EXPECT_TRUE(is_exception(ask({8, 0, 0, 1}), ModbusException::kIllegalValue));
+}
+
+TEST(AResponderThatKnowsItself, IsIdentified) {
+  struct Named final : RegisterBank {
+    [[nodiscard]] ModbusException read(int, std::span<std::uint16_t>) override { return ModbusException::kNone; }
+    [[nodiscard]] ModbusException write(int, std::span<const std::uint16_t>) override { return ModbusException::kNone; }
+    [[nodiscard]] std::optional<DeviceIdentification> identification() const override {
+      return DeviceIdentification{.vendor = "V", .product = "PP", .revision = "3"};
+    }
+  } bank;
+  EXPECT_EQ(respond(bank, ModbusBytes{43, 14, 1, 0}),
+            (ModbusBytes{43, 14, 1, 0x81, 0, 0, 3, 0, 1, 'V', 1, 2, 'P', 'P', 2, 1, '3'}));
+  EXPECT_EQ(respond(bank, ModbusBytes{43, 14, 3, 2}), (ModbusBytes{43, 14, 3, 0x81, 0, 0, 1, 2, 1, '3'}));
+  EXPECT_EQ(respond(bank, ModbusBytes{43, 14, 4, 1}), (ModbusBytes{43, 14, 4, 0x81, 0, 0, 1, 1, 2, 'P', 'P'}));
+  EXPECT_EQ(respond(bank, ModbusBytes{43, 14, 1, 9}), respond(bank, ModbusBytes{43, 14, 1, 0}));
+  EXPECT_TRUE(is_exception(respond(bank, ModbusBytes{43, 14, 4, 9}), ModbusException::kIllegalAddress));
+  EXPECT_TRUE(is_exception(respond(bank, ModbusBytes{43, 14, 5, 0}), ModbusException::kIllegalValue));
+  EXPECT_TRUE(is_exception(respond(bank, ModbusBytes{43, 14, 1}), ModbusException::kIllegalValue));
+  EXPECT_TRUE(is_exception(respond(bank, ModbusBytes{43}), ModbusException::kIllegalValue));
+  EXPECT_TRUE(is_exception(respond(bank, ModbusBytes{43, 13, 1, 0}), ModbusException::kIllegalFunction)) << "CANopen";
 }
 
 TEST_F(AResponder, HasNoCoilsUnlessTheBankHas) {
@@ -134,7 +162,10 @@ TEST(RtuFrameLength, FollowsFromTheFunctionCode) {
   EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 16, 0, 0, 0, 2}), 0);
   EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 16, 0, 0, 0, 2, 4}), 13);
   EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 23, 0, 0, 0, 1, 0, 0, 0, 1, 2}), 15);
-  EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 43}), -1);
+  EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 43}), 0);
+  EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 43, 14}), 7);
+  EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 43, 13}), -1);
+  EXPECT_EQ(rtu_frame_length(ModbusBytes{1, 44}), -1);
 }
 
 }  // namespace

@@ -62,8 +62,8 @@ TEST_F(AnRtuServer, AnswersExceptions) {
 TEST_F(AnRtuServer, EndsAFrameOfAnUnknownFunctionBySilence) {
   ModbusRtuServer server(bank_, {.timing = kSlowClientTiming});
   SerialClient client(server.path());
-  client.send(SerialClient::frame(1, ModbusBytes{43, 14, 1, 0}));
-  EXPECT_EQ(client.receive(5), SerialClient::frame(1, ModbusBytes{0xAB, 1}));
+  client.send(SerialClient::frame(1, ModbusBytes{44, 14, 1, 0}));
+  EXPECT_EQ(client.receive(5), SerialClient::frame(1, ModbusBytes{0xAC, 1}));
 }
 
 TEST_F(AnRtuServer, PutsSplitFramesTogether) {
