@@ -32,6 +32,7 @@ struct Arguments {
   std::string name;
   bool discoverable = false;
   int width_increment = 1;
+  bool chunk_mode = false;
   std::string stage_address = "127.0.0.1";
   int stage_port = 1502;
   std::string drive = "az";
@@ -134,6 +135,7 @@ int run(const Arguments& arguments) {
                .camera_name = arguments.name,
                .camera_discoverable = arguments.discoverable,
                .camera_width_increment = arguments.width_increment,
+               .camera_chunk_mode = arguments.chunk_mode,
                .stage_address = arguments.stage_address,
                .stage_port = arguments.stage_port,
                .drive = gcs ? DriveKind::kAz : drive_kind(arguments.drive),
@@ -198,6 +200,7 @@ int main_of(int argc, char** argv) {
   running->add_option("--width-increment", arguments.width_increment, "grid of the camera's widths, pixels")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  running->add_flag("--chunk-mode", arguments.chunk_mode, "the camera's description has ChunkModeActive");
   running->add_option("--stage-address", arguments.stage_address, "address that the stage is served at")
       ->capture_default_str();
   auto* port = running->add_option("--stage-port", arguments.stage_port, "its port, 0 = any free one")

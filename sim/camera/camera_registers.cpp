@@ -56,7 +56,7 @@ void CameraRegisters::initialise_locked() {
   const CameraIdentity& identity = identity_;
   bootstrap_.assign(kBootstrapBytes, 0);
   features_.assign(feature::kBytes, 0);
-  const std::string xml = genicam_xml(identity.width_increment);
+  const std::string xml = genicam_xml({.width_increment = identity.width_increment, .chunk_mode = identity.chunk_mode});
   xml_.assign(xml.begin(), xml.end());
   xml_.resize((xml_.size() + 3) / 4 * 4);  // memory is read in multiples of 4
 

@@ -75,6 +75,7 @@ struct CameraIdentity {
   int sensor_width = 0;
   int sensor_height = 0;
   int width_increment = 1;  ///< pixels; widths and offsets across are multiples of it
+  bool chunk_mode = false;  ///< the description has ChunkModeActive; the register is there anyway
 };
 
 /// context: thread-safe.

@@ -110,12 +110,14 @@ class Description {
 
 }  // namespace
 
-std::string genicam_xml(int width_increment) {
-  const std::string across_increment = "<Inc>" + std::to_string(width_increment) + "</Inc>";
+std::string genicam_xml(const DescriptionOptions& options) {
+  const std::string across_increment = "<Inc>" + std::to_string(options.width_increment) + "</Inc>";
   namespace reg = gvcp::reg;
   Description d;
-  d.category("Root", {"DeviceControl", "ImageFormatControl", "AcquisitionControl", "AnalogControl", "ChunkDataControl",
-                      "TransportLayerControl"});
+  std::vector<std::string> categories{"DeviceControl", "ImageFormatControl", "AcquisitionControl", "AnalogControl",
+                                      "TransportLayerControl"};
+  if (options.chunk_mode) categories.emplace_back("ChunkDataControl");
+  d.category("Root", categories);
   d.category("DeviceControl", {"DeviceVendorName", "DeviceModelName", "DeviceVersion", "DeviceSerialNumber",
                                "DeviceUserID", "TimestampLatch", "TimestampLatchValue"});
   d.text("DeviceVendorName", reg::kManufacturer, 32);
@@ -133,7 +135,7 @@ std::string genicam_xml(int width_increment) {
   d.integer("WidthMax", feature::kSensorWidth, "RO", "");
   d.integer("HeightMax", feature::kSensorHeight, "RO", "");
   d.integer("Width", feature::kWidth, "RW",
-            "<Min>" + std::to_string(width_increment) + "</Min><pMax>SensorWidth</pMax>" + across_increment);
+            "<Min>" + std::to_string(options.width_increment) + "</Min><pMax>SensorWidth</pMax>" + across_increment);
   d.integer("Height", feature::kHeight, "RW", "<Min>1</Min><pMax>SensorHeight</pMax><Inc>1</Inc>");
   d.integer("OffsetX", feature::kOffsetX, "RW", "<Min>0</Min><pMax>OffsetXMax</pMax>" + across_increment);
   d.integer("OffsetY", feature::kOffsetY, "RW", "<Min>0</Min><pMax>OffsetYMax</pMax><Inc>1</Inc>");
@@ -163,8 +165,10 @@ std::string genicam_xml(int width_increment) {
   d.category("AnalogControl", {"Gain"});
   d.number("Gain", feature::kGain, 0.0, 24.0, "dB");
 
-  d.category("ChunkDataControl", {"ChunkModeActive"});
-  d.boolean("ChunkModeActive", feature::kChunkModeActive);
+  if (options.chunk_mode) {
+    d.category("ChunkDataControl", {"ChunkModeActive"});
+    d.boolean("ChunkModeActive", feature::kChunkModeActive);
+  }
 
   d.category("TransportLayerControl",
              {"PayloadSize", "TLParamsLocked", "GevSCPSPacketSize", "GevSCPD", "GevHeartbeatTimeout",

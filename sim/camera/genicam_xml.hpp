@@ -6,6 +6,12 @@
 
 namespace fvd::sim {
 
-[[nodiscard]] std::string genicam_xml(int width_increment);
+/// What cameras differ in.
+struct DescriptionOptions {
+  int width_increment = 1;  ///< pixels
+  bool chunk_mode = false;  ///< with ChunkModeActive
+};
+
+[[nodiscard]] std::string genicam_xml(const DescriptionOptions& options);
 
 }  // namespace fvd::sim

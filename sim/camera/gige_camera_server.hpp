@@ -18,6 +18,7 @@ struct GigeCameraOptions {
   std::string name{};                ///< user-defined name, at most 15 characters as the serial number
   bool discoverable = false;         ///< answers broadcasts, those on loopback only
   int width_increment = 1;           ///< pixels, > 0; widths and offsets across are multiples of it
+  bool chunk_mode = false;           ///< ChunkModeActive is described; some clients take that for features of chunks
   double link_mbps = 1000.0;         ///< speed of the stream's line, Mbit/s; 0 = unlimited
   std::uint64_t first_block_id = 1;  ///< of the first frame after AcquisitionStart
   bool extended_ids = false;         ///< block ids of 64 bit, as in GigE Vision 2.0

@@ -23,6 +23,7 @@ void Plant::plug_camera() {
                                                                    .name = options_.camera_name,
                                                                    .discoverable = options_.camera_discoverable,
                                                                    .width_increment = options_.camera_width_increment,
+                                                                   .chunk_mode = options_.camera_chunk_mode,
                                                                    .seed = options_.world.seed});
   for (const CameraFaultStep& step : options_.camera_faults) camera_->faults().add(step);
   wire_ = std::make_unique<LineTrigger>(axis_, [this] { camera_->pulse_line(); });

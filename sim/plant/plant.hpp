@@ -28,6 +28,7 @@ struct PlantOptions {
   std::string camera_name{};            ///< user-defined
   bool camera_discoverable = false;     ///< found by broadcasts on loopback
   int camera_width_increment = 1;       ///< pixels
+  bool camera_chunk_mode = false;       ///< described, see GigeCameraOptions
   std::string stage_address = "127.0.0.1";
   int stage_port = 0;  ///< 0 = any free port
   DriveKind drive = DriveKind::kAz;

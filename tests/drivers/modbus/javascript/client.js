@@ -17,8 +17,8 @@ const client = new ModbusRTU();
 async function until(what, holds) {
   const deadline_ms = performance.now() + 20000;
   while (performance.now() < deadline_ms) {
-    const [status] = (await client.readHoldingRegisters(STATUS, 1)).data;
-    if (holds(status)) return;
+    const words = (await client.readInputRegisters(STATUS, 4)).buffer;
+    if (holds(words.readUInt16BE(0), words.readInt32BE(2 * (POSITION - STATUS)))) return;
   }
   throw new Error(`the drive is not ${what} within 20 s`);
 }
@@ -37,7 +37,7 @@ async function main() {
   client.setID(1);
   client.setTimeout(10000);
   const identity = await client.readDeviceIdentification(1, 0);
-  console.log("identity", identity.data.join(", "));
+  console.log("identity", Object.values(identity.data).join(", "));
   console.log("no such register", await refusal(client.readHoldingRegisters(100, 1)));
   console.log("no such coil", await refusal(client.readCoils(0, 1)));
   console.log("no such object", await refusal(client.readDeviceIdentification(4, 200)));
@@ -52,9 +52,9 @@ async function main() {
   await client.writeRegister(CONTROL, 0x1f);
   await until("given its set-point", (status) => (status & 0x1000) !== 0);
   await client.writeRegister(CONTROL, 0x0f);
-  await until("at its target", (status) => (status & 0x1400) === 0x0400);
-  const at = (await client.readInputRegisters(POSITION, 2)).buffer.readInt32BE(0);
-  console.log("moved", Math.abs(at + 2500) <= 5);
+  // "Target reached" alone is stale until the motion starts.
+  await until("at its target", (status, at) => (status & 0x1400) === 0x0400 && Math.abs(at + 2500) <= 5);
+  console.log("moved");
   client.close(() => {});
 }
 
