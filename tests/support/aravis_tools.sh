@@ -1,7 +1,9 @@
+# shellcheck shell=bash
 # Sourced: Aravis' own tools against a camera of fvd-sim, in a network namespace of their own.
 
 # fvd_aravis_tools FVD_SIM SECONDS FOLDER: leaves sim.txt, arv-test.txt and arv-camera-test.txt in the folder. Returns 77,
-# with the reason, where the tools are missing or the system allows no namespace.
+# with the reason, where the tools are missing or the system allows no namespace. FVD_ARV_CAMERA_OPTIONS go to
+# arv-camera-test.
 fvd_aravis_tools() {
   local tool own=(unshare -n)
   [ "$(id -u)" -eq 0 ] || own=(unshare -rn)
@@ -17,10 +19,10 @@ fvd_aravis_tools() {
     trap "kill $sim; wait $sim || true" EXIT
     for _ in $(seq 600); do [ -e "$3/ready.json" ] && break; sleep 0.1; done
     [ -e "$3/ready.json" ] || { cat "$3/sim.txt" >&2; exit 1; }
-    timeout 300 arv-test-0.8 --packet-socket >"$3/arv-test.txt" 2>&1
+    timeout 300 arv-test-0.8 --packet-socket --configuration "$4/tests/support/arv_test.cfg" >"$3/arv-test.txt" 2>&1
     # Discovery finds it by its serial number behind vendor and model.
     timeout $(($2 + 60)) arv-camera-test-0.8 --name fvd-SimulatedCamera-ARV1 --frequency 25 --gv-packet-size 1500 \
-      --duration "$2" >"$3/arv-camera-test.txt" 2>&1
+      --duration "$2" ${FVD_ARV_CAMERA_OPTIONS:-} >"$3/arv-camera-test.txt" 2>&1
   ' - "$@" "$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 }
 
