@@ -23,7 +23,8 @@ void check(const CameraFaultStep& step) {
   if (needs_delay(step.fault) && step.delay.count() == 0) refuse("needs delay_ms above 0");
   const bool needs_step = step.fault == CameraFault::kClockStep || step.fault == CameraFault::kOddTime;
   if (needs_step && step.step.count() == 0) refuse("needs step_ms other than 0");
-  if (step.fault == CameraFault::kIdJump && step.value < 1) refuse("needs value above 0");
+  const bool needs_value = step.fault == CameraFault::kIdJump || step.fault == CameraFault::kPaddedLines;
+  if (needs_value && step.value < 1) refuse("needs value above 0");
   if (step.on && !strikes_anywhere(step.fault) && *step.on != event_of(step.fault)) refuse("cannot strike there");
 }
 
@@ -36,7 +37,8 @@ const std::vector<std::string>& camera_fault_names() {
                                                "early_leader",    "id_jump",        "ids_restart",  "stale_frame",
                                                "dark_frame",      "half_frame",     "mute",         "hang",
                                                "restart",         "pending_ack",    "busy",         "clock_step",
-                                               "odd_time",        "chunk_mode"};
+                                               "odd_time",        "chunk_mode",     "other_format", "padded_lines",
+                                               "forget_stream"};
   return kNames;
 }
 

@@ -48,6 +48,9 @@ enum class CameraFault {
   kClockStep,       ///< the camera's clock, latch included, goes on `step` later
   kOddTime,         ///< the time of the frame is `step` off; the clock is not
   kChunkMode,       ///< chunk mode is on; with `value` 1 in the manner of GigE Vision 1.x, whose leader has no geometry
+  kOtherFormat,     ///< the leader names another pixel format of the same size
+  kPaddedLines,     ///< `value` bytes follow every line, and the leader says so
+  kForgetStream,    ///< the destination of the stream is forgotten, control and settings are kept
 };
 
 /// The names of the faults in scripts: "drop_leader" and so on.
@@ -64,7 +67,7 @@ struct CameraFaultStep {
   int after = 0;                    ///< number of matching events that pass first, >= 0
   int count = 1;                    ///< number of times that the fault happens, > 0
   std::chrono::milliseconds delay{0};
-  int value = 0;                      ///< see kDropPacket, kIdJump, kPendingAck, kChunkMode
+  int value = 0;                      ///< see kDropPacket, kIdJump, kPendingAck, kChunkMode, kPaddedLines
   std::chrono::milliseconds step{0};  ///< see kClockStep, kOddTime; may be negative
 };
 

@@ -56,7 +56,8 @@ void CameraRegisters::initialise_locked() {
   const CameraIdentity& identity = identity_;
   bootstrap_.assign(kBootstrapBytes, 0);
   features_.assign(feature::kBytes, 0);
-  const std::string xml = genicam_xml({.width_increment = identity.width_increment, .chunk_mode = identity.chunk_mode});
+  std::string xml = genicam_xml({.width_increment = identity.width_increment, .chunk_mode = identity.chunk_mode});
+  if (identity.edit_description) xml = identity.edit_description(std::move(xml));
   xml_.assign(xml.begin(), xml.end());
   xml_.resize((xml_.size() + 3) / 4 * 4);  // memory is read in multiples of 4
 
@@ -209,6 +210,10 @@ Status CameraRegisters::check_locked(std::uint32_t address, std::span<const std:
     case reg::kPersistentIpAddress:
     case reg::kPersistentSubnetMask:
     case reg::kPersistentGateway:
+    case feature::kSpare:
+    case feature::kSpare + 4:
+    case feature::kSpare + 8:
+    case feature::kSpare + 12:
       return Status::kSuccess;
     case reg::kIpConfigCurrent:
       return (value & ~gvcp::ip_config::kAll) == 0 ? Status::kSuccess : Status::kInvalidParameter;
@@ -241,7 +246,8 @@ void CameraRegisters::refresh_payload_locked() {
   const std::size_t bytes = sensor_image_bytes(format, static_cast<int>(get_locked(feature::kWidth)),
                                                static_cast<int>(get_locked(feature::kHeight)));
   const std::size_t chunks = get_locked(feature::kChunkModeActive) != 0 ? gvsp::chunk_bytes() : 0;
-  set_locked(feature::kPayloadSize, static_cast<std::uint32_t>(bytes + chunks));
+  set_locked(feature::kPayloadSize,
+             static_cast<std::uint32_t>(bytes + chunks + static_cast<std::size_t>(identity_.payload_margin_bytes)));
 }
 
 CameraState CameraRegisters::state() const {

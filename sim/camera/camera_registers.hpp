@@ -3,6 +3,7 @@
 /// The memory of the simulated camera: bootstrap registers, its GenICam XML, and its features.
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,7 +39,8 @@ inline constexpr std::uint32_t kGain = kBase + 0x48;          // float64, dB
 inline constexpr std::uint32_t kFrameRate = kBase + 0x50;     // float64, Hz
 inline constexpr std::uint32_t kParametersLocked = kBase + 0x58;
 inline constexpr std::uint32_t kChunkModeActive = kBase + 0x5C;
-inline constexpr std::uint32_t kBytes = 0x60;
+inline constexpr std::uint32_t kSpare = kBase + 0x60;  // 4 words that take any value, for features of tests
+inline constexpr std::uint32_t kBytes = 0x70;
 }  // namespace feature
 
 inline constexpr double kLargestFrameRate_hz = 5000.0;
@@ -74,8 +76,10 @@ struct CameraIdentity {
   std::uint32_t address = 0x7F000001;  ///< IPv4, host order
   int sensor_width = 0;
   int sensor_height = 0;
-  int width_increment = 1;  ///< pixels; widths and offsets across are multiples of it
-  bool chunk_mode = false;  ///< the description has ChunkModeActive; the register is there anyway
+  int width_increment = 1;       ///< pixels; widths and offsets across are multiples of it
+  bool chunk_mode = false;       ///< the description has ChunkModeActive; the register is there anyway
+  int payload_margin_bytes = 0;  ///< added to PayloadSize
+  std::function<std::string(std::string)> edit_description{};  ///< changes the GenICam XML, if set
 };
 
 /// context: thread-safe.

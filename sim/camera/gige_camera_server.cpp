@@ -117,7 +117,9 @@ struct GigeCameraServer::Impl {
                    .sensor_width = source.sensor_width(),
                    .sensor_height = source.sensor_height(),
                    .width_increment = o.width_increment,
-                   .chunk_mode = o.chunk_mode}),
+                   .chunk_mode = o.chunk_mode,
+                   .payload_margin_bytes = o.payload_margin_bytes,
+                   .edit_description = o.edit_description}),
         sender(address, o.link_mbps, o.seed),
         streamer(source, registers, faults, mute, hung, sender, o.first_block_id, o.extended_ids,
                  [this](const CameraFaultStep& step) { strike(step); }),
@@ -173,7 +175,7 @@ struct GigeCameraServer::Impl {
                                      {to_loopback.get(), POLLIN, 0}}};
       // Datagrams that come while it hangs wait in the socket, as those to a stopped process.
       const bool hangs = hung.now();
-      ::poll(waiting.data(), hangs ? 1 : waiting.size(), hangs ? 1 : kPollInterval_ms);
+      ::poll(waiting.data(), hangs ? 1 : waiting.size(), hangs || !held_back.empty() ? 1 : kPollInterval_ms);
       if ((waiting[0].revents & POLLIN) != 0) {
         std::uint64_t count = 0;
         [[maybe_unused]] const auto read = ::read(wake.get(), &count, sizeof(count));
@@ -182,12 +184,13 @@ struct GigeCameraServer::Impl {
       if (hung.now()) continue;
       control.check_heartbeat();
       for (std::size_t i = 1; i < waiting.size(); ++i) {
-        if ((waiting[i].revents & POLLIN) != 0) receive(waiting[i].fd, stop);
+        if ((waiting[i].revents & POLLIN) != 0) receive(waiting[i].fd);
       }
+      send_what_is_due();
     }
   }
 
-  void receive(int fd, const std::stop_token& stop) {
+  void receive(int fd) {
     std::array<std::uint8_t, 2048> buffer{};
     sockaddr_in from{};
     socklen_t length = sizeof(from);
@@ -199,8 +202,8 @@ struct GigeCameraServer::Impl {
     if (fd != socket.get()) return send(control.answer_broadcast(peer, packet), from);
     const auto reply = control.answer(peer, packet);
     send(reply.pending, from);
-    pause(reply.delay, stop);
-    send(reply.acknowledge, from);
+    if (reply.delay.count() == 0) return send(reply.acknowledge, from);
+    held_back.push_back({HostClock::now() + reply.delay, reply.acknowledge, from});
   }
 
   void send(const std::vector<std::uint8_t>& message, const sockaddr_in& to) const {
@@ -209,14 +212,21 @@ struct GigeCameraServer::Impl {
              sizeof(to));
   }
 
-  /// While a command takes long, others wait in the socket.
-  static void pause(std::chrono::milliseconds duration, const std::stop_token& stop) {
-    if (duration.count() == 0) return;
-    Mutex mutex;
-    Condition never;
-    MutexLock lock(mutex);
-    never.wait_for(lock, stop, duration, [] { return false; });
+  /// While a command takes long, others are answered.
+  void send_what_is_due() {
+    const HostTime now = HostClock::now();
+    for (const HeldBack& one : held_back) {
+      if (one.due <= now) send(one.acknowledge, one.to);
+    }
+    std::erase_if(held_back, [now](const HeldBack& one) { return one.due <= now; });
   }
+
+  /// An acknowledge that was announced.
+  struct HeldBack {
+    HostTime due;
+    std::vector<std::uint8_t> acknowledge;
+    sockaddr_in to;
+  };
 
   const GigeCameraOptions options;
   std::atomic<std::uint32_t> address;
@@ -231,7 +241,8 @@ struct GigeCameraServer::Impl {
   CameraRegisters registers;
   GvspSender sender;
   GigeStreamer streamer;
-  GigeControl control;  // serving thread only
+  GigeControl control;              // serving thread only
+  std::vector<HeldBack> held_back;  // likewise
   std::jthread serving;
 };
 

@@ -4,6 +4,7 @@
 /// from.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -15,14 +16,16 @@ namespace fvd::sim {
 struct GigeCameraOptions {
   std::string address = "127.0.0.1";  ///< any address of 127.0.0.0/8 works without being set up
   std::string serial = "SIM01";
-  std::string name{};                ///< user-defined name, at most 15 characters as the serial number
-  bool discoverable = false;         ///< answers broadcasts, those on loopback only
-  int width_increment = 1;           ///< pixels, > 0; widths and offsets across are multiples of it
-  bool chunk_mode = false;           ///< ChunkModeActive is described; some clients take that for features of chunks
-  double link_mbps = 1000.0;         ///< speed of the stream's line, Mbit/s; 0 = unlimited
-  std::uint64_t first_block_id = 1;  ///< of the first frame after AcquisitionStart
-  bool extended_ids = false;         ///< block ids of 64 bit, as in GigE Vision 2.0
-  std::uint64_t seed = 1;            ///< seed of the packet loss
+  std::string name{};            ///< user-defined name, at most 15 characters as the serial number
+  bool discoverable = false;     ///< answers broadcasts, those on loopback only
+  int width_increment = 1;       ///< pixels, > 0; widths and offsets across are multiples of it
+  bool chunk_mode = false;       ///< ChunkModeActive is described; some clients take that for features of chunks
+  int payload_margin_bytes = 0;  ///< >= 0; added to PayloadSize, for chunks and padded lines that come unannounced
+  std::function<std::string(std::string)> edit_description{};  ///< changes the GenICam XML, if set
+  double link_mbps = 1000.0;                                   ///< speed of the stream's line, Mbit/s; 0 = unlimited
+  std::uint64_t first_block_id = 1;                            ///< of the first frame after AcquisitionStart
+  bool extended_ids = false;                                   ///< block ids of 64 bit, as in GigE Vision 2.0
+  std::uint64_t seed = 1;                                      ///< seed of the packet loss
 };
 
 /// GVCP: discovery, FORCEIP, register and memory access, control privilege with heartbeat, packet resend, timestamp

@@ -25,9 +25,26 @@ void sharpen_timers() { ::prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); }
 
 bool is(const std::optional<CameraFaultStep>& step, CameraFault fault) { return step && step->fault == fault; }
 
+void name_other_format(StreamFrame& frame) {
+  const bool mono8 = frame.pfnc == sensor_format_info(SensorFormat::kMono8).pfnc;
+  frame.pfnc = sensor_format_info(mono8 ? SensorFormat::kBayerRG8 : SensorFormat::kMono8).pfnc;
+}
+
+void pad_lines(StreamFrame& frame, int padding) {
+  const std::size_t line = frame.pixels.size() / frame.height;
+  std::vector<std::byte> padded;
+  for (std::size_t at = 0; at < frame.pixels.size(); at += line) {
+    const auto begin = frame.pixels.begin() + static_cast<std::ptrdiff_t>(at);
+    padded.insert(padded.end(), begin, begin + static_cast<std::ptrdiff_t>(line));
+    padded.insert(padded.end(), static_cast<std::size_t>(padding), std::byte{0xAA});
+  }
+  frame.pixels = std::move(padded);
+  frame.x_padding = static_cast<std::uint32_t>(padding);
+}
+
 }  // namespace
 
-GigeStreamer::GigeStreamer(FrameSource& source, const CameraRegisters& registers, CameraFaultScript& faults,
+GigeStreamer::GigeStreamer(FrameSource& source, CameraRegisters& registers, CameraFaultScript& faults,
                            const Standstill& mute, const Standstill& hung, GvspSender& sender,
                            std::uint64_t first_block_id, bool extended_ids, Struck struck)
     : source_(source),
@@ -172,6 +189,7 @@ bool GigeStreamer::expose_one(const CameraState& state, HostTime start, std::uin
     struck_(*fault);
     exposure.state.chunks = registers_.state().chunks;
   }
+  if (is(fault, CameraFault::kForgetStream)) registers_.set(gvcp::reg::kStreamPort, 0);
   exposure.timestamp_ns = timestamp_ns(start);
   if (is(fault, CameraFault::kOddTime)) {
     exposure.timestamp_ns += static_cast<std::uint64_t>(nanoseconds(fault->step).count());
@@ -262,6 +280,8 @@ void GigeStreamer::send(const Exposure& exposure, std::stop_token stop) {
     const std::size_t lit = is(fault, CameraFault::kHalfFrame) ? frame->pixels.size() / 2 : 0;
     std::fill(frame->pixels.begin() + static_cast<std::ptrdiff_t>(lit), frame->pixels.end(), std::byte{0});
   }
+  if (is(fault, CameraFault::kOtherFormat)) name_other_format(*frame);
+  if (is(fault, CameraFault::kPaddedLines)) pad_lines(*frame, fault->value);
   if (frame->chunks != ChunkMode::kOff) gvsp::append_chunks(*frame, exposure.state.exposure_us);
   if (is(fault, CameraFault::kLateFrame) && !wait_until(HostClock::now() + fault->delay, exposure.acquisition, stop)) {
     return;

@@ -41,7 +41,7 @@ class GigeStreamer {
 
   /// All references outlive the streamer. mute: no packet leaves until its end; hung: the sensor does nothing until its
   /// end. Throws Error kBadConfig if there is no socket for the stream.
-  GigeStreamer(FrameSource& source, const CameraRegisters& registers, CameraFaultScript& faults, const Standstill& mute,
+  GigeStreamer(FrameSource& source, CameraRegisters& registers, CameraFaultScript& faults, const Standstill& mute,
                const Standstill& hung, GvspSender& sender, std::uint64_t first_block_id, bool extended_ids,
                Struck struck);
   ~GigeStreamer();
@@ -83,7 +83,7 @@ class GigeStreamer {
   void stand_still(std::stop_token stop);
 
   FrameSource& source_;
-  const CameraRegisters& registers_;
+  CameraRegisters& registers_;
   CameraFaultScript& faults_;
   const Standstill& mute_;
   const Standstill& hung_;

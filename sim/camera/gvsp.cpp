@@ -79,7 +79,8 @@ std::vector<std::uint8_t> head(const StreamFrame& frame, std::uint32_t packet) {
     gvcp::put32(bytes, payload_type(frame.chunks));
     put64(bytes, frame.timestamp_ns);
     if (!geometry) return bytes;
-    for (const auto value : {frame.pfnc, frame.width, frame.height, frame.offset_x, frame.offset_y, 0U}) {
+    for (const auto value :
+         {frame.pfnc, frame.width, frame.height, frame.offset_x, frame.offset_y, frame.x_padding << 16U}) {
       gvcp::put32(bytes, value);
     }
   } else if (type == kTrailer) {

@@ -29,6 +29,7 @@ struct StreamFrame {
   std::uint32_t offset_y = 0;
   std::vector<std::byte> pixels;  ///< as they go over the wire; in chunk mode the chunks too
   ChunkMode chunks = ChunkMode::kOff;
+  std::uint32_t x_padding = 0;   ///< bytes after every line
   std::set<std::uint32_t> gone;  ///< packets that leave neither now nor when asked for
 
   std::uint32_t to_address = 0;  ///< IPv4, host order; with port 0 nobody listens

@@ -59,7 +59,8 @@ CameraFaultStep read_camera_step(const nlohmann::json& object, const std::string
   fields.integer("after", step.after, {0, 1'000'000'000}, "so many matching events pass first");
   fields.integer("count", step.count, {1, 1'000'000'000}, "how often");
   fields.integer("delay_ms", delay_ms, {0, 600'000}, "how late, or how long");
-  fields.integer("value", step.value, {0, 60'000}, "how far ids jump, what is promised, or which kind");
+  fields.integer("value", step.value, {0, 60'000},
+                 "how far ids jump, what is promised, how much padding, or which kind");
   fields.integer("step_ms", step_ms, {-86'400'000, 86'400'000}, "how far time is off");
   fields.finish();
   if (!on.empty()) step.on = static_cast<CameraEvent>(index_of(kCameraEvents, on));

@@ -1,6 +1,7 @@
 /// The stream of the simulated camera as packets, and its scripted faults.
 
 #include <chrono>
+#include <thread>
 
 #include "core/base/clock.hpp"
 #include "sim/faults/fault_config.hpp"
@@ -84,6 +85,8 @@ TEST_F(ACameraStream, AnnouncesASlowAcknowledge) {
   const auto pending = client_.receive(5000);
   ASSERT_TRUE(pending);
   EXPECT_EQ(*pending, (Bytes{0, 0, 0, 0x89, 0, 4, 0x40, 0, 0, 0, 700 >> 8, 700 & 0xFF}));
+  GvcpClient other(server_.address());
+  EXPECT_EQ(other.read(gvcp::reg::kControlPrivilege), 2U) << "others are answered meanwhile";
   const auto acknowledge = client_.receive(5000);
   ASSERT_TRUE(acknowledge);
   EXPECT_EQ(gvcp::get16(*acknowledge, 2), kWrite + 1);
@@ -161,6 +164,28 @@ TEST_F(ACameraStream, MayBeInChunkModeByAFault) {
   EXPECT_EQ(packets[0].size(), 20U) << "a leader without geometry";
 }
 
+TEST_F(ACameraStream, MayNameAnotherFormatPadItsLinesAndForgetWhereItGoes) {
+  open_stream();
+  start(true);
+  for (const CameraFaultStep& step : {CameraFaultStep{.fault = CameraFault::kOtherFormat},
+                                      CameraFaultStep{.fault = CameraFault::kPaddedLines, .value = 4},
+                                      CameraFaultStep{.fault = CameraFault::kForgetStream}}) {
+    server_.faults().add(step);
+  }
+  const Bytes other = trigger_frame().at(0);
+  EXPECT_EQ(gvcp::get32(other, 20), sensor_format_info(SensorFormat::kBayerRG8).pfnc);
+  const auto padded = trigger_frame();
+  EXPECT_EQ(gvcp::get32(padded.at(0), 20), sensor_format_info(SensorFormat::kMono8).pfnc);
+  EXPECT_EQ(gvcp::get16(padded[0], 40), 4);
+  std::size_t bytes = 0;
+  for (std::size_t i = 1; i + 1 < padded.size(); ++i) bytes += padded[i].size() - 8;
+  EXPECT_EQ(bytes, kImageBytes + 48 * 4);
+  EXPECT_EQ(client_.write(feature::kTriggerSoftware, 1), 0);
+  const HostTime deadline = HostClock::now() + std::chrono::seconds(20);
+  while (client_.read(gvcp::reg::kStreamPort) != 0 && HostClock::now() < deadline) std::this_thread::yield();
+  EXPECT_EQ(client_.read(gvcp::reg::kStreamPort), 0U);
+}
+
 TEST(CameraFaultConfig, ReadsEveryFieldAndRefusesWhatCannotHappen) {
   const auto steps = read_camera_fault_steps(
       R"([{"fault": "clock_step", "on": "command", "step_ms": -3600000}, {"fault": "pending_ack", "delay_ms": 9, "value": 5}])",
@@ -168,14 +193,15 @@ TEST(CameraFaultConfig, ReadsEveryFieldAndRefusesWhatCannotHappen) {
   EXPECT_EQ(steps.at(0).step, -std::chrono::hours(1));
   EXPECT_EQ(steps[0].on, CameraEvent::kCommand);
   EXPECT_EQ(steps.at(1).value, 5);
-  EXPECT_EQ(camera_fault_names().size(), static_cast<std::size_t>(CameraFault::kChunkMode) + 1);
+  EXPECT_EQ(camera_fault_names().size(), static_cast<std::size_t>(CameraFault::kForgetStream) + 1);
   for (const auto& name : camera_fault_names()) {
     const auto read =
         read_camera_fault_steps(R"([{"delay_ms": 1, "value": 1, "step_ms": 1, "fault": ")" + name + "\"}]", "script");
     EXPECT_EQ(name_of(read[0].fault), name);
   }
   for (const char* wrong : {R"({"fault": "clock_step"})", R"({"fault": "odd_time"})", R"({"fault": "pending_ack"})",
-                            R"({"fault": "busy", "on": "frame"})", R"({"fault": "odd_time", "step_ms": 86400001})"}) {
+                            R"({"fault": "padded_lines"})", R"({"fault": "busy", "on": "frame"})",
+                            R"({"fault": "odd_time", "step_ms": 86400001})"}) {
     fvd::test::expect_error(ErrorCode::kBadConfig, {"script", "/0"},
                             [&] { (void)read_camera_fault_steps("[" + std::string(wrong) + "]", "script"); });
   }
