@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <iostream>
@@ -18,6 +19,7 @@
 #include "daemon/base/service_watchdog.hpp"
 #include "daemon/base/systemd_notify.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/devices/reaper.hpp"
 #include "daemon/options.hpp"
 
 namespace fvd {
@@ -67,6 +69,7 @@ int serve(const Config& config) {
     received = signal_within(signals, ServiceWatchdog::interval());
   }
   spdlog::info("signal {}: stopping", received);
+  Reaper::process_ends();
   notify_stopping();
   return thread_failed ? exit_code::kInternal : exit_code::kOk;
 }
@@ -81,7 +84,11 @@ int main(int argc, char** argv) try {
   const StartUp start = start_up(parsed.options, std::cout, std::cerr);
   if (start.exit) return *start.exit;
   try {
-    return serve(start.config);
+    const int code = serve(start.config);
+    if (!Reaper::left_a_device()) return code;
+    spdlog::warn("a device that answers nothing is not closed in order; the system closes its connection");
+    spdlog::shutdown();
+    std::_Exit(code);
   } catch (const Error& error) {
     spdlog::critical("{}: {}", error_name(error.code()), error.what());
     return exit_code_of(error.code());

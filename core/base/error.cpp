@@ -31,6 +31,7 @@ constexpr std::array kNames{
     NamedCode{kShuttingDown, "shutting_down"},
     NamedCode{kCameraDisconnected, "camera_disconnected"},
     NamedCode{kCameraFramesLost, "camera_frames_lost"},
+    NamedCode{kCameraNoFrames, "camera_no_frames"},
     NamedCode{kCameraTimeout, "camera_timeout"},
     NamedCode{kCameraSettings, "camera_settings"},
     NamedCode{kStageDisconnected, "stage_disconnected"},

@@ -26,6 +26,7 @@ enum class ErrorCode {
   kShuttingDown,
   kCameraDisconnected,  ///< no reply from the camera, control lost, or not open
   kCameraFramesLost,    ///< no good frame within the retries, for more slices than the recipe allows
+  kCameraNoFrames,      ///< the camera answers and takes triggers, but delivers nothing at all
   kCameraTimeout,       ///< reserved, never raised: kCameraFramesLost
   kCameraSettings,      ///< the camera refused a setting or reads back another value
   kStageDisconnected,   ///< no reply from the drive, or the link is gone

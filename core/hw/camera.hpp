@@ -34,7 +34,9 @@ struct CameraSettings {
   TriggerMode trigger = TriggerMode::kSoftware;
   std::string trigger_line = "Line0";  ///< kLine: TriggerSource
   double frame_rate_hz = 0.0;          ///< kFreeRun: AcquisitionFrameRate, 0 = as fast as the camera can
-  int pool_frames = 11;                ///< slots of the frame pool, >= 3; a scan holds three frames back to judge them
+  /// GainRaw, in a unit of the camera's own, of cameras that have no Gain in dB; -1 = the least.
+  int gain_raw = -1;
+  int pool_frames = 11;  ///< slots of the frame pool, >= 3; a scan holds three frames back to judge them
 
   /// Pixel format of the slices that these settings give.
   [[nodiscard]] PixelFormat slice_format() const { return fvd::slice_format(pixel_format, significant_bits); }
@@ -46,11 +48,18 @@ struct CameraInfo {
   std::string vendor;
   std::string model;
   std::string serial;
-  std::string address;   ///< IP address, or vendor-model-serial
+  std::string firmware;  ///< DeviceVersion, empty if the camera does not tell
+  std::string address;   ///< IP address; of a camera without one, what it was opened by
   int sensor_width = 0;  ///< pixels; the width that CameraSettings::width 0 stands for
   int sensor_height = 0;
   bool simulated = false;
 };
+
+/// "vendor model serial, firmware 1.0, at 192.168.1.20": for logs and results.
+[[nodiscard]] inline std::string camera_text(const CameraInfo& camera) {
+  const std::string firmware = camera.firmware.empty() ? "" : ", firmware " + camera.firmware + ",";
+  return camera.vendor + " " + camera.model + " " + camera.serial + firmware + " at " + camera.address;
+}
 
 /// Counters since the camera was opened.
 struct CameraHealth {
@@ -78,7 +87,8 @@ class Camera {
   virtual CameraSettings configure(const CameraSettings& settings) = 0;
 
   /// Starts one exposure; only with TriggerMode::kSoftware. Throws Error kCameraDisconnected. Blocks half a second at
-  /// most, longer only while a driver repeats the command before and the camera answers otherwise.
+  /// most, longer only while a driver repeats the command before and the camera answers otherwise; not after
+  /// interrupt(), which may leave the exposure undone.
   virtual void trigger() = 0;
 
   /// The next frame in order of arrival, good or bad; nothing if none came by `deadline`, or after interrupt(). Does
@@ -88,8 +98,17 @@ class Camera {
   /// Longest time from the start of an exposure to the arrival of its frame with the settings in force.
   [[nodiscard]] virtual std::chrono::microseconds frame_deadline() const = 0;
 
-  /// Ends the wait of next_frame(), now or at its next call; configure() cancels the request. context: any thread.
+  /// Ends the wait of next_frame(), now or at its next call, that of trigger(), and that of configure(), which then
+  /// throws Error kAborted; a configure() that begins later cancels the request. context: any thread.
   virtual void interrupt() noexcept = 0;
+
+  /// Why the last frame whose status was kWrongGeometry or kMisdated was refused: what came and what was expected.
+  /// Empty if there was none since configure().
+  [[nodiscard]] virtual std::string last_refusal() const { return {}; }
+
+  /// To be called every half second or so while nothing else is asked of the camera: notices that it is gone;
+  /// connected() tells. Blocks a tenth of a second at most.
+  virtual void look_after() {}
 
   [[nodiscard]] virtual bool connected() const noexcept = 0;
   [[nodiscard]] virtual CameraHealth health() const = 0;

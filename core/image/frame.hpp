@@ -34,6 +34,7 @@ enum class FrameStatus {
   kOk,             ///< complete, of the configured geometry
   kIncomplete,     ///< packets missing, timed out or cut short; the pixels must not be read
   kWrongGeometry,  ///< complete but not of the configured format or size
+  kMisdated,       ///< complete, but its exposure seems to end in the future: the camera's clock was set anew
 };
 
 /// context: one thread at a time; it may be handed to another thread.

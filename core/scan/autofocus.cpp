@@ -45,8 +45,7 @@ class Searcher {
     const MoveRecord move = arrive(target);
     const auto captured = capture_.capture(move.settled, plan_.frame_retries, stop_);
     if (!captured) {
-      throw Error(ErrorCode::kCameraFramesLost,
-                  "no good frame at " + std::to_string(target.value) + " um: check the camera's link");
+      throw capture_.failure("no good frame at " + std::to_string(target.value) + " um");
     }
     const ImageView& image = captured->frame.image;
     const double z_um = stage_.mean_position(captured->frame.exposure_start, captured->frame.exposure_end).mean.value;

@@ -273,6 +273,8 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
       while (!waiting.empty() && !after) {
         Waiting& oldest = waiting.front();
         if (!last && deps_.clock.now() < oldest.moment + kPositionReach) break;
+        deps_.clock.wait_until(oldest.moment + kPositionReach, stop);
+        if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
         const PositionMean position = deps_.stage.position_at(oldest.moment, kPositionReach);
         const auto place = sorter.sort(oldest.frame.id, position.mean.value, oldest.circumstances);
         report.frames = ledger.counts();

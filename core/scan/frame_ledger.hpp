@@ -10,7 +10,7 @@ namespace fvd {
 struct FrameCounts {
   std::uint64_t expected = 0;    ///< triggers sent, plus frames that came without one
   std::uint64_t ok = 0;          ///< accepted as a slice
-  std::uint64_t incomplete = 0;  ///< delivered with missing packets or of the wrong geometry
+  std::uint64_t incomplete = 0;  ///< delivered with missing packets, of the wrong geometry or dated in the future
   std::uint64_t missing = 0;     ///< nothing delivered before the deadline
   std::uint64_t stale = 0;       ///< delivered, but late, repeated, or not exposed after the stage settled
   std::uint64_t underrun = 0;    ///< lost because no buffer of the pool was free

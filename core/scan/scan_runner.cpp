@@ -45,7 +45,8 @@ Micrometers before(const ScanPlan& plan, Micrometers target, Micrometers distanc
   return plan.downwards ? target + distance : target - distance;
 }
 
-Error too_many_lost(int index, Micrometers target, const ScanPlan& plan, const ScanReport& report) {
+Error too_many_lost(int index, Micrometers target, const ScanPlan& plan, const ScanReport& report,
+                    const SliceCapture& capture) {
   std::ostringstream message;
   const int lost = report.lost_slices;
   if (!report.suspects.empty() && report.suspects.back().index == index &&
@@ -55,9 +56,11 @@ Error too_many_lost(int index, Micrometers target, const ScanPlan& plan, const S
             << ": check light, exposure and the camera's link";
     return {ErrorCode::kBadSlice, message.str()};
   }
-  message << "no good frame of slice " << index << " at " << target.value << " um within " << 1 + plan.frame_retries
-          << " triggers; " << lost << " slice(s) lost, the recipe allows " << plan.allowed_lost_slices
-          << ": check the camera's link and its packet counters";
+  message << "slice " << index << " at " << target.value << " um, " << lost << " slice(s) lost, the recipe allows "
+          << plan.allowed_lost_slices << ": no good frame";
+  if (!plan.line_trigger) return capture.failure(message.str());
+  message << " within " << 1 + plan.frame_retries
+          << " arrivals: check the trigger line, the camera's link and its packet counters";
   return {ErrorCode::kCameraFramesLost, message.str()};
 }
 
@@ -154,7 +157,7 @@ void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::functi
         for (SuspectSlice& slice : report.suspects) {
           if (slice.index == index) slice.done = SuspectDone::kLeftOut;
         }
-        if (++report.lost_slices > plan.allowed_lost_slices) throw too_many_lost(index, target, plan, report);
+        if (++report.lost_slices > plan.allowed_lost_slices) throw too_many_lost(index, target, plan, report, capture);
         step.measured = false;
         step.triggers = 1 + plan.frame_retries;
       } else {

@@ -71,6 +71,10 @@ std::string_view device_meaning(ErrorCode code) noexcept {
       return "the camera does not answer, or another program has it: look at cable, power and address";
     case ErrorCode::kCameraFramesLost:
       return "too many frames were lost: look at network, packet size and load";
+    case ErrorCode::kCameraNoFrames:
+      return "the camera answers but delivers nothing at all, and is being opened anew: look at firewall, trigger "
+             "source "
+             "and stream address";
     case ErrorCode::kCameraTimeout:
       return "reserved: a camera without frames is camera_frames_lost";
     case ErrorCode::kCameraSettings:

@@ -34,6 +34,7 @@ constexpr std::array kCodes{
     CodeOnWire{kCameraFramesLost, {1102, true}},
     CodeOnWire{kCameraTimeout, {1103, true}},
     CodeOnWire{kCameraSettings, {1104, false}},
+    CodeOnWire{kCameraNoFrames, {1105, true}},
     CodeOnWire{kStageDisconnected, {1111, true}},
     CodeOnWire{kStageLimit, {1112, false}},
     CodeOnWire{kStageNotHomed, {1113, false}},

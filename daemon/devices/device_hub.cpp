@@ -1,5 +1,6 @@
 #include "daemon/devices/device_hub.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -16,7 +17,10 @@ DeviceHub::DeviceHub(DeviceOpeners openers, Clock& clock, std::function<void(boo
       axis_(std::move(openers.axis), ErrorCode::kStageDisconnected, Predecessor::kAwaited) {
   // The axis first: one that moves on from before is stopped before a camera is waited for.
   rows_.push_back({.kind = "stage", .slot = axis_, .check = [this] { return check_axis(); }});
-  rows_.push_back({.kind = "camera", .slot = camera_, .renewed_after = ErrorCode::kCameraFramesLost});
+  rows_.push_back({.kind = "camera",
+                   .slot = camera_,
+                   .renewed_after = {ErrorCode::kCameraFramesLost, ErrorCode::kCameraNoFrames},
+                   .check = [this] { return check_camera(); }});
 }
 
 std::optional<DeviceFailure> DeviceHub::open() {
@@ -59,7 +63,7 @@ std::optional<DeviceFailure> DeviceHub::after_failure(ErrorCode code, const std:
     if (row.slot.lost() == code) {
       row.slot.drop();
       failure = DeviceFailure{code, message};
-    } else if (row.renewed_after == code) {
+    } else if (std::find(row.renewed_after.begin(), row.renewed_after.end(), code) != row.renewed_after.end()) {
       row.slot.drop();
     }
   }
@@ -71,10 +75,16 @@ void DeviceHub::drop_all() {
 }
 
 DeviceFacts DeviceHub::facts() const {
-  const CameraInfo camera = camera_.get().info();
-  DeviceFacts facts{axis_.get().info(), camera.sensor_width, camera.sensor_height, camera.simulated};
-  facts.simulated = facts.simulated || facts.stage.simulated;
+  DeviceFacts facts{axis_.get().info(), camera_.get().info()};
+  facts.simulated = facts.camera.simulated || facts.stage.simulated;
   return facts;
+}
+
+std::optional<DeviceFailure> DeviceHub::check_camera() {
+  camera_.get().look_after();
+  if (camera_.connected()) return std::nullopt;
+  camera_.drop();
+  return DeviceFailure{camera_.lost(), "the connection to the camera was lost; it is being opened again"};
 }
 
 std::optional<DeviceFailure> DeviceHub::check_axis() {

@@ -19,8 +19,7 @@ namespace fvd {
 /// What is known of the open devices without asking them.
 struct DeviceFacts {
   StageInfo stage;
-  int sensor_width = 0;  ///< pixels
-  int sensor_height = 0;
+  CameraInfo camera;
   bool simulated = false;
 };
 
@@ -66,11 +65,12 @@ class DeviceHub {
   struct Row {
     const char* kind;  ///< as messages name it
     AnyDeviceSlot& slot;
-    std::optional<ErrorCode> renewed_after = std::nullopt;          ///< an error that only a new opening mends
+    std::vector<ErrorCode> renewed_after = {};                      ///< errors that only a new opening mends
     std::function<std::optional<DeviceFailure>()> check = nullptr;  ///< what must be so of an open device
   };
 
   [[nodiscard]] std::optional<DeviceFailure> check_axis();
+  [[nodiscard]] std::optional<DeviceFailure> check_camera();
   [[nodiscard]] std::optional<DeviceFailure> lost();
   [[nodiscard]] bool moved_unasked() const;
   [[nodiscard]] std::optional<DeviceFailure> measure_standstill();

@@ -58,14 +58,13 @@ class RestoredSettings {
 
 /// A frame exposed from now on.
 Shot shoot(const Devices& devices, const CameraSettings& settings, const std::stop_token& stop) {
+  const std::stop_callback wake(stop, [&devices] { devices.camera.interrupt(); });
   Shot shot;
   shot.settings = devices.camera.configure(settings);
   FrameLedger ledger;
-  auto captured = SliceCapture(devices.camera, devices.clock, ledger).capture(devices.clock.now(), kFrameRetries, stop);
-  if (!captured) {
-    throw Error(ErrorCode::kCameraFramesLost,
-                "the camera sent no good frame for " + std::to_string(1 + kFrameRetries) + " triggers: check its link");
-  }
+  SliceCapture capture(devices.camera, devices.clock, ledger);
+  auto captured = capture.capture(devices.clock.now(), kFrameRetries, stop);
+  if (!captured) throw capture.failure("no good frame");
   shot.frame = std::move(captured->frame);
   shot.z_um = devices.stage.mean_position(shot.frame.exposure_start, shot.frame.exposure_end).mean.value;
   return shot;

@@ -15,8 +15,8 @@ void require_acceptable(const Recipe& recipe, const std::optional<DeviceFacts>& 
   const ScanPlan plan = scan_plan(recipe);
   if (recipe.mode == ScanMode::kContinuous) check_continuous(plan, recipe.camera, devices->stage);
   check_limits(objective, devices->stage, [&plan](const StageInfo& stage) { check_plan(plan, stage); });
-  const int width = recipe.camera.width > 0 ? recipe.camera.width : devices->sensor_width;
-  const int height = recipe.camera.height > 0 ? recipe.camera.height : devices->sensor_height;
+  const int width = recipe.camera.width > 0 ? recipe.camera.width : devices->camera.sensor_width;
+  const int height = recipe.camera.height > 0 ? recipe.camera.height : devices->camera.sensor_height;
   const metrology::Grid field{width, height, recipe.pixel_pitch_x_um, recipe.pixel_pitch_y_um};
   throw_if_any(outside_field(recipe.evaluation, field, "/evaluation"), ErrorCode::kRegionOutside,
                "recipe " + recipe.id);

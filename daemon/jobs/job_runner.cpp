@@ -86,9 +86,10 @@ void JobRunner::wait_for_memory(const AcceptedJob& job, const std::stop_token& s
   const auto budget = static_cast<std::size_t>(deps_.config.compute.memory_budget_mib) << 20U;
   const CameraSettings& camera = job.recipe.camera;
   const DeviceFacts facts = deps_.hub.facts();
-  const std::size_t needed = job_memory(job.recipe, camera.width > 0 ? camera.width : facts.sensor_width,
-                                        camera.height > 0 ? camera.height : facts.sensor_height, deps_.pool.threads())
-                                 .total_bytes();
+  const std::size_t needed =
+      job_memory(job.recipe, camera.width > 0 ? camera.width : facts.camera.sensor_width,
+                 camera.height > 0 ? camera.height : facts.camera.sensor_height, deps_.pool.threads())
+          .total_bytes();
   const std::size_t others = deps_.following.bytes();
   if (others + needed + (deps_.pages ? deps_.pages->kept_bytes() : 0) <= budget) return;
   if (deps_.pages) deps_.pages->release();

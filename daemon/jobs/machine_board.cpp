@@ -97,6 +97,7 @@ void MachineBoard::publish_locked() {
   status->job = record_.job;
   status->results_waiting = constants_.results_waiting();
   status->simulated = constants_.simulated || (record_.devices && record_.devices->simulated);
+  if (record_.devices) status->camera = record_.devices->camera;
   status->epoch = constants_.epoch;
   if (record_.failure) {
     status->error = record_.failure->code;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/hw/camera.hpp"
 #include "core/stage/step_history.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/jobs/device_task.hpp"
@@ -35,6 +36,7 @@ struct MachineStatus {
   std::int64_t epoch = 0;          ///< counts the daemon's starts
   std::optional<ErrorCode> error;  ///< why the state is kError
   std::string error_message;
+  std::optional<CameraInfo> camera;  ///< that is open
 };
 
 /// What readers poll: made anew at every change, never waited for.

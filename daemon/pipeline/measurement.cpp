@@ -20,8 +20,7 @@ double milliseconds_since(const Clock& clock, HostTime start) {
 }
 
 std::string describe(const CameraInfo& camera, const StageInfo& stage) {
-  return camera.vendor + " " + camera.model + " " + camera.serial + " at " + camera.address + "; " + stage.name +
-         " at " + stage.address;
+  return camera_text(camera) + "; " + stage.name + " at " + stage.address;
 }
 
 void copy_books(const ScanReport& report, ResultData& result) {
@@ -113,6 +112,12 @@ void acquire(const ScanPlan& plan, const CameraSettings& settings, const Measure
   }
 }
 
+/// A camera that answers nothing, or exposes for seconds, does not hold up a stop.
+CameraSettings configure(Camera& camera, const CameraSettings& settings, const std::stop_token& stop) {
+  const std::stop_callback wake(stop, [&camera] { camera.interrupt(); });
+  return camera.configure(settings);
+}
+
 }  // namespace
 
 ScanPlan scan_plan(const Recipe& recipe) {
@@ -143,7 +148,7 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   if (stage.feedback_resolution.value > 0.0) result.encoder_resolution_um = stage.feedback_resolution.value;
   result.scan_mode = recipe.mode;
   result.speed_um_per_s = recipe.mode == ScanMode::kContinuous ? recipe.speed_um_per_s : 0.0;
-  const CameraSettings settings = deps.camera.configure(recipe.camera);
+  const CameraSettings settings = configure(deps.camera, recipe.camera, stop);
   if (settings.exposure_us > 0.0) result.exposure_us = settings.exposure_us;
   std::optional<StreamingFocusStack> stack;
   const auto renew_stack = [&] {

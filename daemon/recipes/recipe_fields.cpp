@@ -83,6 +83,8 @@ void describe_camera(CameraSettings& camera, Fields& fields) {
   fields.integer("offset_y_px", camera.offset_y, {0, kMaxSidePx}, "upper edge of the region");
   fields.number("exposure_us", camera.exposure_us, positive(6e7), "ExposureTime");
   fields.number("gain_db", camera.gain_db, {0.0, 100.0}, "Gain");
+  fields.integer("gain_raw", camera.gain_raw, {-1, 1'000'000},
+                 "GainRaw of cameras without a Gain in dB, in a unit of their own; -1 = the least");
 }
 
 void describe_drift(Recipe& recipe, Fields& fields) {

@@ -52,6 +52,7 @@ Acquisition::Acquisition(ArvCamera* camera, const CameraConfig& config, const Ca
 Acquisition::~Acquisition() { stop(); }
 
 void Acquisition::configure(const CameraSettings& settings) {
+  intake_.forget_refusal();
   if (!requested_ || *requested_ != settings) change_to(settings);
   renew_clock();
   if (!latches_) take_clock_from_triggers();

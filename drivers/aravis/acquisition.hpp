@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include <arv.h>
 
@@ -44,11 +45,15 @@ class Acquisition {
 
   /// Whether a latch is due. context: while no renew_clock() runs.
   [[nodiscard]] bool clock_due() const { return latches_ && clock_.due(HostClock::now()); }
+  /// The time of a frame cannot be right: the next clock_due() says so.
+  void doubt_clock() { clock_.doubt(HostClock::now()); }
+  [[nodiscard]] const std::string& refusal() const { return intake_.refusal(); }
 
   [[nodiscard]] const CameraSettings& in_force() const { return in_force_; }
   /// The next buffer; waits at most `timeout`; nullptr if none came, or there is no stream yet.
   [[nodiscard]] ArvBuffer* pop(std::chrono::microseconds timeout);
-  /// The frame of a buffer; nothing for a buffer of the previous settings.
+  /// The frame of a buffer; nothing for a buffer of the previous settings, or for one whose time is older than they
+  /// are.
   [[nodiscard]] std::optional<Frame> take(ArvBuffer* buffer);
   /// To be called when a camera has restarted its block ids: Aravis would discard its frames as late ones.
   void resynchronise();

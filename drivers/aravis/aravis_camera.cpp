@@ -13,8 +13,10 @@
 
 #include "core/base/error.hpp"
 #include "drivers/aravis/acquisition.hpp"
+#include "drivers/aravis/busy_commands.hpp"
 #include "drivers/aravis/camera_features.hpp"
 #include "drivers/aravis/camera_presence.hpp"
+#include "drivers/aravis/camera_search.hpp"
 #include "drivers/aravis/device_thread.hpp"
 #include "drivers/aravis/gige_transport.hpp"
 #include "drivers/aravis/gobject.hpp"
@@ -69,29 +71,70 @@ auto answering(Command run) {
   };
 }
 
-GObjectPtr<ArvCamera> open(const CameraConfig& config, CameraPresence& presence) {
-  presence.require_free();
+/// The name by which Aravis opens the USB3 Vision camera with this serial number; empty if Aravis does not see it.
+std::string usb_id_of(const std::string& serial) {
+  arv_disable_interface("GigEVision");  // or it broadcasts, and waits for answers
+  arv_update_device_list();
+  std::string id;
+  for (unsigned i = 0; i < arv_get_n_devices(); ++i) {
+    const char* theirs = arv_get_device_serial_nbr(i);
+    if (theirs != nullptr && serial == theirs) id = arv_get_device_id(i);
+  }
+  arv_enable_interface("GigEVision");
+  return id;
+}
+
+[[noreturn]] void throw_damaged(const std::string& name, const std::string& why) {
+  throw Error(ErrorCode::kCameraDisconnected, "the description (GenICam XML) in the camera " + name + " is damaged: " +
+                                                  why + "; power the camera off and on, else renew its firmware");
+}
+
+GObjectPtr<ArvCamera> open(const CameraTarget& target, CameraPresence& presence) {
+  repeat_busy_commands();
+  const bool network = is_ipv4(target.open_by);
+  if (network) presence.require_free(target.open_by);
+  const std::string name = network ? target.open_by : usb_id_of(target.open_by);
   GErrorSlot error;
-  GObjectPtr<ArvCamera> camera(arv_camera_new(config.address.c_str(), error.out()));
+  GObjectPtr<ArvCamera> camera;
+  (void)while_busy([&] {
+    if (!name.empty()) camera.reset(arv_camera_new(name.c_str(), error.out()));
+    return !camera && error.is_busy();
+  });
+  if (error.is_bad_description()) throw_damaged(target.name, error.message());
   if (!camera) {
-    throw Error(ErrorCode::kCameraDisconnected, "no camera at " + config.address + ": " + error.message() +
-                                                    "; is it powered, in this network, and its address right?");
+    throw Error(ErrorCode::kCameraDisconnected, "the camera " + target.name + " cannot be opened: " +
+                                                    (name.empty() ? "Aravis does not list it" : error.message()));
   }
   presence.watch(arv_camera_get_device(camera.get()));
+  for (const char* feature : {"Width", "Height", "PixelFormat", "PayloadSize", "AcquisitionStart", "AcquisitionStop"}) {
+    if (arv_device_get_feature(arv_camera_get_device(camera.get()), feature) != nullptr) continue;
+    throw_damaged(target.name, std::string("it has no ") + feature);
+  }
   // Off by default: without it Aravis sends values the camera's own description forbids.
   arv_camera_set_range_check_policy(camera.get(), ARV_RANGE_CHECK_POLICY_ENABLE);
   return camera;
 }
 
+/// The configuration with the name that messages use in the address' place.
+CameraConfig called(CameraConfig config, const std::string& name) {
+  config.address = name;
+  return config;
+}
+
 class AravisCamera final : public Camera {
  public:
   AravisCamera(const CameraConfig& config, milliseconds clock_renewal)
-      : config_(config),
-        presence_(config_.address),
-        camera_(open(config_, presence_)),
+      : AravisCamera(config, find_camera(config), clock_renewal) {}
+
+  AravisCamera(const CameraConfig& config, const CameraTarget& target, milliseconds clock_renewal)
+      : config_(called(config, target.name)),
+        presence_(target.name, milliseconds(config.silence_ms)),
+        camera_(open(target, presence_)),
         features_(camera_.get(), config_.address),
         acquisition_(camera_.get(), config_, features_, presence_, clock_renewal) {
-    read_info();
+    read_info(target);
+    require_serial(config, info_.serial, camera_text(info_));
+    spdlog::info("camera: {}", camera_text(info_));
     if (arv_camera_is_gv_device(camera_.get())) {
       set_packet_size(camera_.get(), features_, config_);
       warn_of_system_limits(config_.packet_socket);
@@ -106,43 +149,47 @@ class AravisCamera final : public Camera {
   CameraSettings configure(const CameraSettings& settings) override {
     check(settings);
     interrupted_ = false;  // that was for a wait of before
+    presence_.heard();
     CameraSettings in_force = command([this, settings] {
       acquisition_.configure(settings);
       return acquisition_.in_force();
     });
-    quiet_since_ = HostClock::now();
+    hear();
     return in_force;
   }
 
   void trigger() override {
     presence_.require_connected();
-    while (trigger_.valid() && !acknowledged()) presence_.require_life();
-    quiet_since_ = HostClock::now();
+    while (trigger_.valid() && !acknowledged(kPollInterval)) {
+      if (interrupted_) return;
+      if (HostClock::now() > triggered_ + kAcknowledgeTimeout) (void)presence_.alive();
+    }
+    triggered_ = quiet_since_ = HostClock::now();
     trigger_ = device_.post(answering([this] {
       acquisition_.send_trigger();
       return true;
     }));
     renew_clock_if_due();
-    if (!acknowledged()) presence_.require_life();  // an acknowledge may get lost; the frame comes all the same
+    // An acknowledge may get lost; the frame comes all the same.
+    if (!acknowledged(kAcknowledgeTimeout)) (void)presence_.alive();
   }
 
   [[nodiscard]] std::optional<Frame> next_frame(HostTime deadline) override {
-    CameraPresence::Question question;
     for (;;) {
       const HostTime now = HostClock::now();
       const auto left = std::chrono::duration_cast<microseconds>(std::max(deadline, now) - now);
-      const microseconds wait = question.open ? kPollInterval : std::min(left, kPollInterval);
-      if (ArvBuffer* buffer = acquisition_.pop(wait)) {
-        quiet_since_ = HostClock::now();
+      if (ArvBuffer* buffer = acquisition_.pop(std::min(left, kPollInterval))) {
+        hear();
         auto frame = acquisition_.take(buffer);
+        if (seems_too_old(frame)) acquisition_.doubt_clock();
+        renew_clock_if_due();
         if (!frame) continue;
-        if (frame->status == FrameStatus::kOk) renew_clock_if_due();
         return frame;
       }
       if (interrupted_.exchange(false)) return std::nullopt;
       presence_.require_connected();
-      if (left > microseconds(0) || question.open) watch_over(question);
-      if (HostClock::now() >= deadline && !question.open) return std::nullopt;
+      if (left > microseconds(0) || presence_.asking()) watch_over();
+      if (HostClock::now() >= deadline) return std::nullopt;
     }
   }
 
@@ -150,29 +197,63 @@ class AravisCamera final : public Camera {
 
   void interrupt() noexcept override { interrupted_ = true; }
 
+  [[nodiscard]] std::string last_refusal() const override { return acquisition_.refusal(); }
+
+  void look_after() override {
+    try {
+      presence_.look_after();
+    } catch (const Error& error) {
+      spdlog::warn("{}", error.what());
+    }
+  }
+
   [[nodiscard]] bool connected() const noexcept override { return !presence_.lost(); }
 
   [[nodiscard]] CameraHealth health() const override { return acquisition_.health(); }
 
  private:
-  void read_info() {
+  /// What a GigE Vision camera tells everybody is not asked again.
+  void read_info(const CameraTarget& target) {
     const auto text = [](const char* value) { return std::string(value == nullptr ? "" : value); };
     GErrorSlot error;
-    info_.vendor = text(arv_camera_get_vendor_name(camera_.get(), error.out()));
-    info_.model = text(arv_camera_get_model_name(camera_.get(), error.out()));
-    info_.serial = text(arv_camera_get_device_serial_number(camera_.get(), error.out()));
-    info_.address = config_.address;
+    const FoundCamera& known = target.identity.value_or(FoundCamera{});
+    info_.vendor = target.identity ? known.vendor : text(arv_camera_get_vendor_name(camera_.get(), error.out()));
+    info_.model = target.identity ? known.model : text(arv_camera_get_model_name(camera_.get(), error.out()));
+    info_.serial =
+        target.identity ? known.serial : text(arv_camera_get_device_serial_number(camera_.get(), error.out()));
+    info_.firmware = known.version;
+    for (const char* feature : {"DeviceFirmwareVersion", "DeviceVersion"}) {
+      if (!info_.firmware.empty() || !features_.available(feature)) continue;
+      info_.firmware = text(arv_camera_get_string(camera_.get(), feature, error.out()));
+    }
+    info_.address = target.open_by;
     features_.sensor_size(info_.sensor_width, info_.sensor_height);
+    info_.sensor_width = features_.on_grid("Width", info_.sensor_width);
+    info_.sensor_height = features_.on_grid("Height", info_.sensor_height);
     info_.simulated = config_.simulated || (info_.vendor == "fvd" && info_.model == "SimulatedCamera");
   }
 
   /// Asks a camera that is silent for longer than it should be whether it is alive.
-  void watch_over(CameraPresence::Question& question) {
+  void watch_over() {
     const HostTime now = HostClock::now();
-    if (!question.open && now < quiet_since_ + acquisition_.longest_frame_time() + kFrameOverdue) return;
-    if (!presence_.answers(question)) return;
+    if (!presence_.asking() && now < quiet_since_ + acquisition_.longest_frame_time() + kFrameOverdue) return;
+    if (!presence_.alive()) return;
     quiet_since_ = now;
     acquisition_.resynchronise();
+  }
+
+  void hear() {
+    quiet_since_ = HostClock::now();
+    presence_.heard();
+  }
+
+  /// Exposed before it was triggered, or longer ago than a frame takes: late, a repetition, or the clock was set back.
+  [[nodiscard]] bool seems_too_old(const std::optional<Frame>& frame) const {
+    if (!frame) return true;
+    if (frame->status != FrameStatus::kOk) return false;
+    return acquisition_.in_force().trigger == TriggerMode::kSoftware
+               ? frame->exposure_end < triggered_
+               : frame->exposure_end < HostClock::now() - acquisition_.frame_deadline();
   }
 
   /// Runs it on the device's thread and waits for as long as the camera is alive. What the command refers to must not
@@ -181,7 +262,12 @@ class AravisCamera final : public Camera {
   auto command(Command run) -> decltype(run()) {
     presence_.require_connected();
     auto result = device_.post(answering(std::move(run)));
-    while (result.wait_for(kAcknowledgeTimeout) != std::future_status::ready) presence_.require_life();
+    const HostTime begun = HostClock::now();
+    while (result.wait_for(kPollInterval) != std::future_status::ready) {
+      if (interrupted_)
+        throw Error(ErrorCode::kAborted, "stopped while the camera at " + config_.address + " was set up");
+      if (HostClock::now() > begun + kAcknowledgeTimeout) (void)presence_.alive();
+    }
     auto answer = result.get();
     if (answer.value) return std::move(*answer.value);
     if (answer.code == ErrorCode::kCameraDisconnected) presence_.set_lost();
@@ -189,10 +275,13 @@ class AravisCamera final : public Camera {
   }
 
   /// True once the last trigger was answered.
-  bool acknowledged() {
-    if (trigger_.wait_for(kAcknowledgeTimeout) != std::future_status::ready) return false;
+  bool acknowledged(microseconds within) {
+    if (trigger_.wait_for(within) != std::future_status::ready) return false;
     const auto answer = trigger_.get();
-    if (answer.value) return true;
+    if (answer.value) {
+      presence_.heard();
+      return true;
+    }
     if (answer.code == ErrorCode::kCameraDisconnected) {
       presence_.set_lost();
       throw Error(answer.code, answer.message);
@@ -216,6 +305,7 @@ class AravisCamera final : public Camera {
   CameraInfo info_;
   Acquisition acquisition_;
   HostTime quiet_since_{};  // last thing heard or asked of the camera
+  HostTime triggered_{};
   std::atomic<bool> interrupted_{false};
   std::future<Answer<bool>> trigger_;
   std::future<void> renewal_;

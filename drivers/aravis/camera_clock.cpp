@@ -1,5 +1,6 @@
 #include "drivers/aravis/camera_clock.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/aravis/gobject.hpp"
@@ -12,6 +13,8 @@ constexpr int kLatches = 12;
 /// Pairs closer together than this say nothing of the rate.
 constexpr std::chrono::seconds kRateBase{2};
 constexpr std::chrono::seconds kRateSpan{60};
+/// A pair that is no older is not measured again for one odd frame.
+constexpr std::chrono::milliseconds kNewPair{50};
 /// A larger difference is no drift: the camera's clock was set anew.
 constexpr double kLargestRateError = 1e-3;
 
@@ -70,6 +73,7 @@ std::optional<ClockPair> latch_clock(ArvDevice* device) {
 
 void CameraClock::add(const ClockPair& pair) {
   const MutexLock lock(mutex_);
+  doubted_ = false;
   const bool follows = first_ && pair.camera_ns > latest_->camera_ns && pair.host > latest_->host &&
                        std::abs(rate_between(*latest_, pair) - 1.0) <=
                            kLargestRateError + nanoseconds(pair.bound + latest_->bound) /
@@ -82,6 +86,11 @@ void CameraClock::add(const ClockPair& pair) {
   latest_ = pair;
 }
 
+void CameraClock::doubt(HostTime now) {
+  const MutexLock lock(mutex_);
+  doubted_ = latest_ && now - latest_->host > kNewPair;
+}
+
 bool CameraClock::known() const {
   const MutexLock lock(mutex_);
   return latest_.has_value();
@@ -89,14 +98,18 @@ bool CameraClock::known() const {
 
 bool CameraClock::due(HostTime now) const {
   const MutexLock lock(mutex_);
-  return !latest_ || now - latest_->host > renew_after_;
+  return !latest_ || doubted_ || now - latest_->host > renew_after_;
 }
 
 std::optional<HostTime> CameraClock::to_host(std::uint64_t camera_ns) const {
   const MutexLock lock(mutex_);
   if (!latest_) return std::nullopt;
   const double rate = latest_->host - first_->host >= kRateBase ? rate_between(*first_, *latest_) : 1.0;
-  const auto since = static_cast<double>(static_cast<std::int64_t>(camera_ns) - latest_->camera_ns);
+  // A number of 64 bit that means nothing must not become a host time that overflows.
+  constexpr double kMonth_ns = 30.0 * 24 * 3600 * 1e9;
+  // The difference of unsigned numbers is exact, and right for the times before as well.
+  const auto difference = static_cast<std::int64_t>(camera_ns - static_cast<std::uint64_t>(latest_->camera_ns));
+  const double since = std::clamp(static_cast<double>(difference), -kMonth_ns, kMonth_ns);
   return latest_->host + std::chrono::nanoseconds(std::llround(since * rate));
 }
 

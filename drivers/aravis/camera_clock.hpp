@@ -32,10 +32,13 @@ class CameraClock {
   explicit CameraClock(std::chrono::milliseconds renew_after) : renew_after_(renew_after) {}
 
   void add(const ClockPair& pair);
+  /// A frame's time cannot be right: the camera's clock may have been set. due() is true from now on, unless the latest
+  /// pair is quite new.
+  void doubt(HostTime now);
   [[nodiscard]] bool known() const;
   /// Whether another pair should be added; true before the first.
   [[nodiscard]] bool due(HostTime now) const;
-  /// Host time of a camera time; nothing before the first pair.
+  /// Host time of a camera time, within a month of the latest pair; nothing before the first.
   [[nodiscard]] std::optional<HostTime> to_host(std::uint64_t camera_ns) const;
 
  private:
@@ -43,6 +46,7 @@ class CameraClock {
   mutable Mutex mutex_;
   std::optional<ClockPair> first_ FVD_GUARDED_BY(mutex_);  // of the present rate
   std::optional<ClockPair> latest_ FVD_GUARDED_BY(mutex_);
+  bool doubted_ FVD_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace fvd

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include <spdlog/spdlog.h>
+
 #include "core/base/error.hpp"
 #include "drivers/aravis/gobject.hpp"
 
@@ -88,6 +90,7 @@ CameraSettings CameraFeatures::apply_shape(const CameraSettings& settings) const
   GErrorSlot error;
   arv_camera_set_acquisition_mode(camera_, ARV_ACQUISITION_MODE_CONTINUOUS, error.out());
   error.check("the camera at " + where_ + " has no continuous acquisition");
+  switch_chunks_off();
   set_pixel_format(settings.pixel_format);
   set_region(settings, in_force);
   return in_force;
@@ -95,7 +98,13 @@ CameraSettings CameraFeatures::apply_shape(const CameraSettings& settings) const
 
 void CameraFeatures::apply_timing(const CameraSettings& settings, CameraSettings& in_force) const {
   in_force.exposure_us = set_exposure_us(settings.exposure_us);
-  in_force.gain_db = set_gain_db(settings.gain_db);
+  // A gain in the camera's own unit is never taken for one in dB.
+  if (!available("Gain") && available("GainRaw")) {
+    in_force.gain_raw = set_gain_raw(settings);
+  } else {
+    if (settings.gain_raw >= 0) refuse("it has no GainRaw; use gain_db");
+    in_force.gain_db = set_gain_db(settings.gain_db);
+  }
   if (settings.trigger == TriggerMode::kFreeRun) in_force.frame_rate_hz = set_frame_rate_hz(settings.frame_rate_hz);
   set_trigger(settings);
   in_force.trigger = settings.trigger;
@@ -135,13 +144,42 @@ void CameraFeatures::set_region(const CameraSettings& settings, CameraSettings& 
   int sensor_width = 0;
   int sensor_height = 0;
   sensor_size(sensor_width, sensor_height);
-  if (settings.width == 0) in_force.width = sensor_width - settings.offset_x;
-  if (settings.height == 0) in_force.height = sensor_height - settings.offset_y;
+  if (settings.width == 0) in_force.width = largest("Width", sensor_width - settings.offset_x);
+  if (settings.height == 0) in_force.height = largest("Height", sensor_height - settings.offset_y);
   set_integer("Width", in_force.width);
   set_integer("Height", in_force.height);
   if (!movable) return;
   set_integer("OffsetX", settings.offset_x);
   set_integer("OffsetY", settings.offset_y);
+}
+
+/// Of the values that the feature accepts, the largest that fits.
+int CameraFeatures::largest(const char* feature, gint64 room) const {
+  GErrorSlot error;
+  gint64 min = 0;
+  gint64 max = 0;
+  arv_camera_get_integer_bounds(camera_, feature, &min, &max, error.out());
+  error.check("the camera at " + where_ + " does not tell the range of " + feature);
+  return on_grid(feature, std::min(max, room));
+}
+
+int CameraFeatures::on_grid(const char* feature, gint64 room) const {
+  GErrorSlot error;
+  gint64 min = 0;
+  gint64 max = 0;
+  arv_camera_get_integer_bounds(camera_, feature, &min, &max, error.out());
+  if (error.failed() || room < min) return static_cast<int>(room);
+  const gint64 step = increment(feature);
+  return static_cast<int>(min + (room - min) / step * step);
+}
+
+/// Chunks are not needed. A camera that keeps them on is taken with them.
+void CameraFeatures::switch_chunks_off() const {
+  if (!available("ChunkModeActive")) return;
+  GErrorSlot error;
+  if (arv_camera_get_boolean(camera_, "ChunkModeActive", error.out()) == FALSE || error.failed()) return;
+  arv_camera_set_boolean(camera_, "ChunkModeActive", FALSE, error.out());
+  if (error.failed()) spdlog::info("the camera at {} keeps its chunks: {}", where_, error.message());
 }
 
 double CameraFeatures::set_exposure_us(double exposure_us) const {
@@ -199,6 +237,25 @@ double CameraFeatures::set_gain_db(double gain_db) const {
   return got;
 }
 
+int CameraFeatures::set_gain_raw(const CameraSettings& settings) const {
+  GErrorSlot error;
+  gint64 min = 0;
+  gint64 max = 0;
+  arv_camera_get_integer_bounds(camera_, "GainRaw", &min, &max, error.out());
+  error.check("the camera at " + where_ + " does not tell the range of GainRaw");
+  if (settings.gain_db != 0.0) {
+    refuse("its gain is GainRaw, in a unit of its own, and not in dB; use gain_raw, accepted: " + std::to_string(min) +
+           " to " + std::to_string(max) + ", and gain_db 0");
+  }
+  if (arv_camera_is_gain_auto_available(camera_, nullptr) != FALSE) {
+    arv_camera_set_gain_auto(camera_, ARV_AUTO_OFF, error.out());
+    error.check("the camera at " + where_ + " keeps GainAuto on");
+  }
+  const gint64 asked = settings.gain_raw < 0 ? min : settings.gain_raw;
+  set_integer("GainRaw", asked);
+  return static_cast<int>(asked);
+}
+
 double CameraFeatures::set_frame_rate_hz(double frame_rate_hz) const {
   GErrorSlot error;
   double min = 0.0;
@@ -233,27 +290,31 @@ void CameraFeatures::set_trigger(const CameraSettings& settings) const {
     return;
   }
   const std::string source = settings.trigger == TriggerMode::kSoftware ? "Software" : settings.trigger_line;
-  const auto read = [&](const char* feature) -> std::string {
-    const char* text = arv_camera_get_string(camera_, feature, error.out());
-    error.check("the camera at " + where_ + " does not tell " + feature);
-    return text == nullptr ? "" : text;
-  };
   // arv_camera_set_trigger() turns every trigger off in between: a camera that acquires then exposes once by itself,
   // and takes no trigger until that is over.
   bool taken = false;
-  if (available("TriggerMode") && read("TriggerMode") == "On") {
+  if (available("TriggerMode") && text("TriggerMode") == "On") {
     GErrorSlot refused;
-    if (read("TriggerSource") != source) arv_camera_set_string(camera_, "TriggerSource", source.c_str(), refused.out());
+    if (text("TriggerSource") != source) arv_camera_set_string(camera_, "TriggerSource", source.c_str(), refused.out());
     taken = !refused.failed();
   }
   if (!taken) {
     arv_camera_set_trigger(camera_, source.c_str(), error.out());
     error.check("the camera at " + where_ + " refuses TriggerSource = " + source);
   }
-  const std::string mode = read("TriggerMode");
-  const std::string got = read("TriggerSource");
-  if (mode != "On") refuse("TriggerMode = On was asked for and reads back " + mode);
-  if (got != source) refuse("TriggerSource = " + source + " was asked for and reads back " + got);
+  const auto mode = text("TriggerMode");
+  const auto got = text("TriggerSource");
+  if (mode && mode != "On") refuse("TriggerMode = On was asked for and reads back " + *mode);
+  if (got && got != source) refuse("TriggerSource = " + source + " was asked for and reads back " + *got);
+}
+
+/// What the feature reads; nothing if the camera lets it be written only. Whether such a trigger is right, frames tell.
+std::optional<std::string> CameraFeatures::text(const char* feature) const {
+  GErrorSlot error;
+  const char* value = arv_camera_get_string(camera_, feature, error.out());
+  if (error.is_connection_loss()) error.check("the camera at " + where_ + " does not tell " + feature);
+  if (error.failed() || value == nullptr) return std::nullopt;
+  return value;
 }
 
 }  // namespace fvd

@@ -3,6 +3,7 @@
 /// Writes settings to the camera's features in the order that cameras accept, checks each and reads it back. Inside the
 /// driver only: this header includes Aravis.
 
+#include <optional>
 #include <string>
 
 #include <arv.h>
@@ -25,6 +26,8 @@ class CameraFeatures {
   /// Updates in_force.
   void apply_timing(const CameraSettings& settings, CameraSettings& in_force) const;
 
+  /// The largest size up to `room` that the increments of Width or Height allow, whatever its offset allows now.
+  [[nodiscard]] int on_grid(const char* feature, gint64 room) const;
   /// Size of the sensor in pixels.
   void sensor_size(int& width, int& height) const;
   void set_integer(const char* feature, gint64 value) const;
@@ -38,6 +41,10 @@ class CameraFeatures {
   void set_region(const CameraSettings& settings, CameraSettings& in_force) const;
   [[nodiscard]] double set_exposure_us(double exposure_us) const;
   [[nodiscard]] double set_gain_db(double gain_db) const;
+  [[nodiscard]] int set_gain_raw(const CameraSettings& settings) const;
+  [[nodiscard]] int largest(const char* feature, gint64 room) const;
+  [[nodiscard]] std::optional<std::string> text(const char* feature) const;
+  void switch_chunks_off() const;
   [[nodiscard]] double set_frame_rate_hz(double frame_rate_hz) const;
   void set_trigger(const CameraSettings& settings) const;
   [[noreturn]] void refuse(const std::string& what) const;

@@ -19,13 +19,16 @@ namespace fvd {
 /// that uses the camera; lost() and set_lost() any.
 class CameraPresence {
  public:
-  /// address: IP address, or vendor-model-serial.
-  explicit CameraPresence(std::string address) : address_(std::move(address)) {}
+  /// name: as messages call the camera. silence: a camera that answers nothing for so long is lost.
+  CameraPresence(std::string name, std::chrono::milliseconds silence) : name_(std::move(name)), silence_(silence) {}
+  ~CameraPresence();
+  CameraPresence(const CameraPresence&) = delete;
+  CameraPresence& operator=(const CameraPresence&) = delete;
 
-  /// Checks that the camera answers before it is opened, because Aravis searches for an absent one for seconds. Throws
-  /// Error kBadConfig for an empty address, kCameraDisconnected if it does not answer or another program controls it.
-  void require_free() const;
-  /// Called once, with the device that was opened. Throws Error kCameraDisconnected if another program controls it.
+  /// Checks that a GigE Vision camera answers before it is opened, because Aravis searches for an absent one for
+  /// seconds. Throws Error kCameraDisconnected if it does not answer, or denies control to this program.
+  void require_free(const std::string& ip) const;
+  /// Called once, with the device that was opened. Throws Error kCameraDisconnected if the camera denies control.
   void watch(ArvDevice* device);
 
   [[nodiscard]] ArvDevice* device() const { return control_.device(); }
@@ -33,31 +36,32 @@ class CameraPresence {
   void set_lost() noexcept { control_.set_lost(); }
   /// Throws Error kCameraDisconnected once the connection is lost.
   void require_connected() const;
-  /// To be called when a command takes too long: throws Error kCameraDisconnected if the camera does not answer a
-  /// request either.
-  void require_life();
 
-  /// A pending request to a silent camera, used while waiting for its frames.
-  struct Question {
-    bool open = false;
-    HostTime asked{};
-  };
-  /// Sends the request, or checks for the answer to the pending one. True if the camera is alive; false while there is
-  /// no answer yet, and always if the camera answers its controller only. Throws Error kCameraDisconnected if it is
-  /// lost.
-  [[nodiscard]] bool answers(Question& question);
+  /// To be called again and again while the camera owes something: sends a request, or looks for the answer to the one
+  /// before, without waiting. True if the camera is alive; false while there is no answer yet, and always if the camera
+  /// answers its controller only. Throws Error kCameraDisconnected if it is lost.
+  [[nodiscard]] bool alive();
+  /// A request is open: its answer decides whether the camera is lost.
+  [[nodiscard]] bool asking() const { return asked_.has_value(); }
+  /// Something came from the camera: the open request is settled.
+  void heard() noexcept { asked_.reset(); }
+  /// alive(), but waits for the answer, a tenth of a second at most.
+  void look_after();
 
  private:
-  void open_probe();
-  void require_control() const;
-  [[noreturn]] void throw_controlled() const;
+  void open_probe(const std::string& ip);
+  void take_control(const std::string& ip) const;
+  [[noreturn]] void throw_controlled(const std::string& ip) const;
   [[noreturn]] void lose(const char* why);
-  bool judge(GvcpProbe::Answer answer);
 
-  std::string address_;
+  const std::string name_;
+  const std::chrono::milliseconds silence_;
   std::string loss_ = "its heartbeat failed; check power and cable";
+  std::string held_;  // the camera this program controls, by its IP address
   ControlWatch control_;
   std::optional<GvcpProbe> probe_;  // nothing: not GigE Vision, or it answers its controller only
+  std::optional<HostTime> asked_;
+  HostTime looked_{};  // for the answer, last
 };
 
 }  // namespace fvd

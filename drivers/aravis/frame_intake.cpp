@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "core/image/unpack.hpp"
 #include "drivers/aravis/frame_check.hpp"
 
@@ -30,7 +32,8 @@ std::optional<Frame> FrameIntake::take(FrameBuffers& buffers, ArvBuffer* buffer,
                                        HostTime configured) {
   Frame frame;
   frame.lease = buffers.lease(buffer);
-  frame.status = check_frame(buffer, in_force);
+  std::string refusal;
+  frame.status = check_frame(buffer, in_force, refusal);
   if (frame.status == FrameStatus::kIncomplete) {
     // Everything but the status may be left over from the slot's last use.
     ++frames_failed_;
@@ -39,6 +42,7 @@ std::optional<Frame> FrameIntake::take(FrameBuffers& buffers, ArvBuffer* buffer,
   }
   count_id(arv_buffer_get_frame_id(buffer), frame);
   if (frame.status != FrameStatus::kOk) {
+    refusal_ = std::move(refusal);
     ++frames_failed_;
     return frame;
   }
@@ -46,15 +50,34 @@ std::optional<Frame> FrameIntake::take(FrameBuffers& buffers, ArvBuffer* buffer,
   frame.exposure_end = frame.exposure_start + std::chrono::duration_cast<HostClock::duration>(
                                                   std::chrono::duration<double, std::micro>(in_force.exposure_us));
   if (frame.exposure_start < configured - kClockTolerance) return std::nullopt;
-  const std::byte* pixels = wire_image(buffer, in_force).data();
+  if (misdated(frame)) return frame;
+  const std::span<const std::byte> image = wire_image(buffer, in_force);
+  const std::byte* pixels = image.data();
   if (slices_) {
-    if (!unpack_into_slice(buffer, in_force, frame)) return frame;
+    if (!unpack_into_slice(in_force, image, frame)) return frame;
     pixels = slices_->bytes(frame.lease).data();
   }
   ++frames_complete_;
   frame.image = {in_force.slice_format(), in_force.width, in_force.height,
                  static_cast<std::ptrdiff_t>(in_force.width) * bytes_per_pixel(in_force.slice_format()), pixels};
   return frame;
+}
+
+/// A frame that has arrived was exposed before. A camera may date it by the end of its exposure; what lies further
+/// ahead is no time of this clock any more.
+bool FrameIntake::misdated(Frame& frame) {
+  const HostTime now = HostClock::now();
+  const auto ahead = frame.exposure_end - now;
+  if (ahead <= frame.exposure_end - frame.exposure_start + kClockTolerance) return false;
+  frame.status = FrameStatus::kMisdated;
+  ++frames_failed_;
+  clock_.doubt(now);
+  const bool first = refusal_.empty();
+  refusal_ = "a frame came whose exposure is to end " +
+             std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(ahead).count()) +
+             " ms later: the camera's clock was set (PTP) or wrapped; it is measured anew";
+  if (first) spdlog::warn("camera: {}", refusal_);
+  return true;
 }
 
 void FrameIntake::count_id(std::uint64_t block_id, Frame& frame) {
@@ -65,7 +88,7 @@ void FrameIntake::count_id(std::uint64_t block_id, Frame& frame) {
 }
 
 /// False, and the frame is incomplete, if all slices are lent. Else the frame holds a slice and the buffer is back.
-bool FrameIntake::unpack_into_slice(ArvBuffer* buffer, const CameraSettings& in_force, Frame& frame) {
+bool FrameIntake::unpack_into_slice(const CameraSettings& in_force, std::span<const std::byte> image, Frame& frame) {
   FrameLease slot = slices_->borrow();
   if (!slot) {
     ++slice_underruns_;
@@ -73,8 +96,7 @@ bool FrameIntake::unpack_into_slice(ArvBuffer* buffer, const CameraSettings& in_
     frame.status = FrameStatus::kIncomplete;
     return false;
   }
-  unpack({in_force.pixel_format, in_force.significant_bits, in_force.bayer, in_force.width, in_force.height,
-          wire_image(buffer, in_force)},
+  unpack({in_force.pixel_format, in_force.significant_bits, in_force.bayer, in_force.width, in_force.height, image},
          slices_->bytes(slot));
   frame.lease = std::move(slot);
   return true;
@@ -82,7 +104,8 @@ bool FrameIntake::unpack_into_slice(ArvBuffer* buffer, const CameraSettings& in_
 
 std::uint64_t FrameIntake::discard(FrameBuffers& buffers, ArvBuffer* buffer, const CameraSettings& in_force) {
   const FrameLease lease = buffers.lease(buffer);
-  if (check_frame(buffer, in_force) != FrameStatus::kOk) return 0;
+  std::string refusal;
+  if (check_frame(buffer, in_force, refusal) != FrameStatus::kOk) return 0;
   (void)counter_.unwrap(arv_buffer_get_frame_id(buffer));
   return arv_buffer_get_timestamp(buffer);
 }

@@ -37,6 +37,19 @@ class GErrorSlot {
   [[nodiscard]] bool failed() const { return error_ != nullptr; }
   [[nodiscard]] std::string message() const { return error_ == nullptr ? "" : error_->message; }
 
+  /// The camera said that it is busy; the same again may succeed.
+  [[nodiscard]] bool is_busy() const {
+    return g_error_matches(error_, ARV_DEVICE_ERROR, ARV_DEVICE_ERROR_PROTOCOL_ERROR_BUSY) != FALSE;
+  }
+  [[nodiscard]] bool is_access_denied() const {
+    return g_error_matches(error_, ARV_DEVICE_ERROR, ARV_DEVICE_ERROR_PROTOCOL_ERROR_ACCESS_DENIED) != FALSE;
+  }
+
+  /// The camera's description cannot be read, or is none.
+  [[nodiscard]] bool is_bad_description() const {
+    return g_error_matches(error_, ARV_DEVICE_ERROR, ARV_DEVICE_ERROR_GENICAM_NOT_FOUND) != FALSE;
+  }
+
   /// True if the device did not answer; false if it answered with a refusal.
   [[nodiscard]] bool is_connection_loss() const {
     return error_ != nullptr && error_->domain == ARV_DEVICE_ERROR &&

@@ -22,6 +22,8 @@ using std::chrono::milliseconds;
 
 /// Maximum age of a sample that is treated as current while the axis rests.
 constexpr milliseconds kSampleAge{50};
+/// A position is not waited for any longer.
+constexpr milliseconds kLongestLookAhead{2000};
 /// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
 constexpr Micrometers kSweepWindow{5.0};
 constexpr milliseconds kSweepGrace{3000};
@@ -102,11 +104,13 @@ class AxisController final : public Axis {
   }
 
   [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
+    require_near(to);
     (void)poller_.sample_after(to, {});
     return poller_.mean(from, to);
   }
 
   [[nodiscard]] PositionMean position_at(HostTime at, std::chrono::microseconds reach) override {
+    require_near(at + reach);
     (void)poller_.sample_after(at + reach, {});
     return poller_.line(at, reach);
   }
@@ -141,6 +145,14 @@ class AxisController final : public Axis {
     require_done(traits_, enabled, "enable");
     disabled_.enabled();
     changed_ = HostClock::now();
+  }
+
+  /// Times of exposures are told by the camera's clock, and nobody can end a wait for them.
+  void require_near(HostTime time) const {
+    const auto ahead = std::chrono::duration_cast<milliseconds>(time - HostClock::now());
+    if (ahead <= kLongestLookAhead) return;
+    throw Error(ErrorCode::kInternal, "the position of the axis at " + traits_.address + " was asked for at a time " +
+                                          std::to_string(ahead.count()) + " ms ahead; is the camera's clock right?");
   }
 
   void require_enabled(const AxisSample& sample) {

@@ -11,13 +11,16 @@
 namespace fvd {
 
 struct CameraConfig {
-  std::string driver = "aravis";             ///< "aravis" or "replay"
-  std::string address;                       ///< IP address, or vendor-model-serial; addresses open without a broadcast
-  int packet_size_bytes = 0;                 ///< GevSCPSPacketSize, 576..16000; 0 = the largest that comes through
-  int packet_delay_ns = 0;                   ///< GevSCPD, 0..1e6; 0 = leave it
-  bool packet_socket = true;                 ///< receive through AF_PACKET where CAP_NET_RAW allows; off on loopback
-  int stream_priority = 10;                  ///< real-time priority of the receiving thread, 1..99; 0 = none
-  std::string usb_mode = "sync";             ///< USB3 Vision: "sync", or "async", which Aravis 0.8.26 does not master
+  std::string driver = "aravis";  ///< "aravis" or "replay"
+  std::string address;  ///< IP, serial number, MAC, user-defined name or vendor-model-serial; an IP needs no search
+  std::string serial;   ///< serial number that the camera must have; empty = any
+  std::string search_address;     ///< where a camera without an IP is searched; empty = broadcasts on every interface
+  int silence_ms = 1000;          ///< a camera that answers nothing for so long is lost, 50..60000
+  int packet_size_bytes = 0;      ///< GevSCPSPacketSize, 576..16000; 0 = the largest that comes through
+  int packet_delay_ns = 0;        ///< GevSCPD, 0..1e6; 0 = leave it
+  bool packet_socket = true;      ///< receive through AF_PACKET where CAP_NET_RAW allows; off on loopback
+  int stream_priority = 10;       ///< real-time priority of the receiving thread, 1..99; 0 = none
+  std::string usb_mode = "sync";  ///< USB3 Vision: "sync", or "async", which Aravis 0.8.26 does not master
   std::chrono::microseconds time_offset{0};  ///< added to its time stamps where the stage's position is asked for
   int frame_margin_ms = 300;         ///< added to exposure and readout before a frame counts as missing, 10..10000
   bool simulated = false;            ///< stamped into every result; a camera that calls itself simulated sets it too

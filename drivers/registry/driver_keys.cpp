@@ -67,7 +67,15 @@ void describe_all_cameras(CameraConfig& camera, Fields& fields) {
 }
 
 void describe_aravis(CameraConfig& camera, Fields& fields) {
-  fields.text("address", camera.address, kMaxNameBytes, "IP address, or vendor-model-serial");
+  fields.text("address", camera.address, kMaxNameBytes,
+              "IP address, serial number, MAC, user-defined name, or vendor-model-serial; only an IP needs no search");
+  fields.text("serial", camera.serial, kMaxNameBytes,
+              "serial number that the camera must have, another one is refused; empty = any");
+  fields.text(
+      "search_address", camera.search_address, kMaxNameBytes,
+      "where a camera without an IP is searched: a broadcast address such as 192.168.1.255; empty = all networks");
+  fields.integer("silence_ms", camera.silence_ms, {50, 60000},
+                 "a camera that answers nothing for so long is lost; a frame that is due has its own deadline");
   fields.integer("packet_size_bytes", camera.packet_size_bytes, {0, 16000},
                  "GevSCPSPacketSize; 0 = the largest that comes through, never above the MTU of the interface");
   fields.integer("packet_delay_ns", camera.packet_delay_ns, {0, 1000000}, "GevSCPD; 0 = leave it as it is");
@@ -127,7 +135,9 @@ void describe_replay(StageConfig& stage, Fields& fields) {
 
 void check_aravis(const CameraConfig& camera, Problems& problems) {
   if (!camera.address.empty()) return;
-  problems.push_back({"/camera/address", "is empty; expected the camera's IP address or vendor-model-serial"});
+  problems.push_back({"/camera/address",
+                      "is empty; expected the camera's IP address, serial number, MAC, user-defined "
+                      "name or vendor-model-serial"});
 }
 
 void check_replay(const CameraConfig& camera, Problems& problems) {

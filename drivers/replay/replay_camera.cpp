@@ -48,7 +48,14 @@ class ReplayCamera final : public Camera {
       : stack_(config.replay_dir), bench_(replay_bench(config.replay_dir)), address_(config.replay_dir.string()) {}
 
   [[nodiscard]] CameraInfo info() const override {
-    return {"fvd", "recorded slices " + stack_.list().description, "", address_, stack_.width(), stack_.height(), true};
+    return {.vendor = "fvd",
+            .model = "recorded slices " + stack_.list().description,
+            .serial = {},
+            .firmware = {},
+            .address = address_,
+            .sensor_width = stack_.width(),
+            .sensor_height = stack_.height(),
+            .simulated = true};
   }
 
   CameraSettings configure(const CameraSettings& settings) override {

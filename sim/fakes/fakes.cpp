@@ -29,7 +29,7 @@ FakeCamera::~FakeCamera() {
   std::abort();
 }
 
-CameraInfo FakeCamera::info() const { return {"fake", "camera", "1", "in process", width_, height_, true}; }
+CameraInfo FakeCamera::info() const { return {"fake", "camera", "1", "", "in process", width_, height_, true}; }
 
 CameraSettings FakeCamera::configure(const CameraSettings& settings) {
   interrupted_ = false;

@@ -1,7 +1,8 @@
 /// What the camera driver does on a simulated camera: faults, loss, restarts, the wrap of block ids, throughput, slices
 /// per second, and a scan in one motion against the same slices step by step. Prints a table; the last line is one JSON
-/// object. With the argument "soak" it lets a camera run free at 2048 x 2048 over a gigabit line for ten minutes
-/// instead.
+/// object. With the argument
+/// "devices" the faults and the names of cameras alone. With "soak" it lets a camera run free at 2048 x 2048 over a
+/// gigabit line for ten minutes instead.
 
 #include <algorithm>
 #include <cstdio>
@@ -54,6 +55,18 @@ int run() {
   return 0;
 }
 
+int devices() {
+  const FaultFigures faults = run_faults();
+  const nlohmann::ordered_json figures{
+      {"camera_found_by", camera_found_by()},
+      {"wrong_camera_used", wrong_camera_used()},
+      {"fault_cases_camera", faults.as_expected},
+      {"wrong_slices_accepted", faults.wrong},
+  };
+  std::cout << figures.dump() << std::endl;
+  return 0;
+}
+
 int soak() {
   const Throughput result = run_free(1000.0, 28.0, 600.0, false);
   std::cout << nlohmann::json{{"soak_s", result.duration_s},
@@ -73,6 +86,7 @@ int main(int argc, char** argv) {
   spdlog::set_level(spdlog::level::err);
   const std::string part = argc > 1 ? argv[1] : "";
   if (part == "soak") return fvd::test::soak();
+  if (part == "devices") return fvd::test::devices();
   if (part == "motion") {
     fvd::test::print_position_error();
     const auto motion = fvd::test::run_motion();

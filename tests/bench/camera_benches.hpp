@@ -9,6 +9,7 @@ namespace fvd::test {
 
 struct FaultFigures {
   int cases = 0;
+  int as_expected = 0;      ///< cases that ended as they should
   int wrong = 0;            ///< accepted slices whose pixels or z are wrong
   int violations = 0;       ///< scans whose books do not balance
   double hang_ms = 0.0;     ///< longest from the last frame of a camera that hangs to the error
@@ -16,6 +17,11 @@ struct FaultFigures {
 };
 
 FaultFigures run_faults();
+/// Number of kinds of name by which a camera was opened, of IP address, serial number, MAC, user-defined name and
+/// vendor-model-serial.
+int camera_found_by();
+/// Number of cameras that were opened although they have another serial number than expected.
+int wrong_camera_used();
 /// Time from the return of a camera that was killed to its first frame, in ms.
 double recover_after_kill();
 /// Number of correct slices of successive scans on one connection.

@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "drivers/aravis/camera_search.hpp"
 #include "tests/bench/camera_benches.hpp"
 #include "tests/support/camera_fault_case.hpp"
 #include "tests/support/marked_plan.hpp"
@@ -26,6 +27,8 @@ FaultFigures run_faults() {
   for (const CameraFaultCase& fault : camera_fault_cases()) {
     const CameraFaultOutcome outcome = run_camera_fault_case(fault);
     ++figures.cases;
+    const bool otherwise = outcome.end != fault.end || outcome.unconsumed > 0;
+    figures.as_expected += otherwise ? 0 : 1;
     figures.wrong += outcome.wrong;
     figures.violations += outcome.unbalanced;
     const std::string name = fault.name;
@@ -35,9 +38,48 @@ FaultFigures run_faults() {
                 outcome.slices, outcome.wrong,
                 outcome.end ? std::string(error_name(*outcome.end)).c_str() : "completed", outcome.end_ms,
                 outcome.recover_ms);
-    if (outcome.end != fault.end || outcome.unconsumed > 0) std::printf("  OTHERWISE: %s\n", outcome.story.c_str());
+    if (otherwise) std::printf("  OTHERWISE: %s\n", outcome.story.c_str());
   }
   return figures;
+}
+
+int camera_found_by() {
+  sim::GigeCameraOptions options;
+  options.serial = "S-4711";
+  options.user_name = "left";
+  MarkedCamera marked(64, 48, options);
+  CameraConfig config = marked.config();
+  config.search_address = marked.address();
+  const auto known = identify_camera(marked.address(), seconds(5));
+  int found = 0;
+  for (const std::string& name : {marked.address(), std::string("S-4711"), known ? known->mac : std::string("no MAC"),
+                                  std::string("left"), std::string("fvd-SimulatedCamera-S-4711")}) {
+    config.address = name;
+    try {
+      found += open_aravis_camera(config)->info().serial == "S-4711" ? 1 : 0;
+    } catch (const Error& error) {
+      std::printf("by '%s': %s\n", name.c_str(), error.what());
+    }
+  }
+  return found;
+}
+
+int wrong_camera_used() {
+  MarkedCamera marked(64, 48);
+  CameraConfig config = marked.config();
+  config.search_address = marked.address();
+  int used = 0;
+  for (const std::string& name : {marked.address(), std::string("SIM01"), std::string("fvd-SimulatedCamera-SIM01")}) {
+    config.address = name;
+    config.serial = "SIM02";
+    try {
+      (void)open_aravis_camera(config);
+      ++used;
+    } catch (const Error& error) {
+      std::printf("refused: %s\n", error.what());
+    }
+  }
+  return used;
 }
 
 double recover_after_kill() {

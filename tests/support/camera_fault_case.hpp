@@ -86,6 +86,7 @@ struct CameraFaultCase {
   sim::CameraFaultStep step;
   /// The error with which the scan must end; nothing = it completes.
   std::optional<ErrorCode> end{};
+  int repeat = 1;  ///< the step stands in the script so often
 };
 
 /// For the names of the tests.
@@ -121,7 +122,7 @@ inline std::vector<CameraFaultCase> camera_fault_cases() {
       {"DropPacketForGood", step(CameraFault::kDropPacket, milliseconds(0), 1)},
       {"DropFrame", step(CameraFault::kDropFrame)},
       {"DropFrameThreeTimes", step(CameraFault::kDropFrame, milliseconds(0), 0, 3)},
-      {"DropFrameTooOften", step(CameraFault::kDropFrame, milliseconds(0), 0, 5), ErrorCode::kCameraFramesLost},
+      {"DropFrameTooOften", step(CameraFault::kDropFrame, milliseconds(0), 0, 5), ErrorCode::kCameraNoFrames},
       {"DropAck", step(CameraFault::kDropAck)},
       {"IgnoreTrigger", step(CameraFault::kIgnoreTrigger)},
       {"NackTrigger", step(CameraFault::kNackTrigger)},
@@ -137,6 +138,29 @@ inline std::vector<CameraFaultCase> camera_fault_cases() {
       {"IdsRestart", step(CameraFault::kIdsRestart)},
       {"StaleFrame", step(CameraFault::kStaleFrame)},
       {"MuteForAWink", step(CameraFault::kMute, milliseconds(120))},
+      {"MuteShorterThanAllowed", step(CameraFault::kMute, milliseconds(600))},
+      {"MuteAtTriggerShorterThanAllowed", at_trigger(CameraFault::kMute, milliseconds(600))},
+      {"MuteAtCommandShorterThanAllowed", at_command(CameraFault::kMute, milliseconds(600))},
+      {"HangShorterThanAllowed", step(CameraFault::kHang, milliseconds(600))},
+      {"BusyNowAndThen", step(CameraFault::kBusy), std::nullopt, 5},
+      {"BusyTenTimes", step(CameraFault::kBusy, milliseconds(0), 0, 10)},
+      {"PendingAck", step(CameraFault::kPendingAck, milliseconds(400)), std::nullopt, 2},
+      {"PendingAckForLong", step(CameraFault::kPendingAck, milliseconds(1500))},
+      {"ClockStepAhead", step(CameraFault::kClockStep, milliseconds(0), 3600)},
+      {"ClockStepBack", step(CameraFault::kClockStep, milliseconds(0), -3600)},
+      {"ClockStepAheadEveryFourthFrame", step(CameraFault::kClockStep, milliseconds(0), 3600), std::nullopt, 3},
+      {"ClockStepBackEveryFourthFrame", step(CameraFault::kClockStep, milliseconds(0), -3600), std::nullopt, 3},
+      {"ClockSetAheadASecond", step(CameraFault::kClockSet, milliseconds(0), 1)},
+      {"ClockSetBackASecond", step(CameraFault::kClockSet, milliseconds(0), -1)},
+      {"ClockSetAhead", step(CameraFault::kClockSet, milliseconds(0), 3600)},
+      {"ClockSetBack", step(CameraFault::kClockSet, milliseconds(0), -3600)},
+      {"OtherFormat", step(CameraFault::kOtherFormat)},
+      {"OtherFormatTooOften", step(CameraFault::kOtherFormat, milliseconds(0), 0, 4), ErrorCode::kCameraFramesLost},
+      {"Chunks", step(CameraFault::kChunks, milliseconds(0), 0, 5)},
+      {"ChunkData", step(CameraFault::kChunks, milliseconds(0), 1, 5)},
+      {"PaddedLines", step(CameraFault::kPaddedLines, milliseconds(0), 8, 5)},
+      {"Unavailable", step(CameraFault::kUnavailable)},
+      {"ForgetStream", step(CameraFault::kForgetStream), ErrorCode::kCameraNoFrames},
       {"Mute", step(CameraFault::kMute, milliseconds(3000)), ErrorCode::kCameraDisconnected},
       {"HangInExposure", step(CameraFault::kHang, milliseconds(1500)), ErrorCode::kCameraDisconnected},
       {"HangAtTrigger", at_trigger(CameraFault::kHang, milliseconds(1500)), ErrorCode::kCameraDisconnected},
@@ -188,13 +212,17 @@ inline std::unique_ptr<Camera> open_again(const CameraConfig& config) {
 
 /// A scan with the fault in it, then one without on the same connection, or on a new one if that was lost.
 inline CameraFaultOutcome run_camera_fault_case(const CameraFaultCase& fault) {
-  MarkedCamera marked;
+  sim::GigeCameraOptions options;
+  const bool longer =
+      fault.step.fault == sim::CameraFault::kChunks || fault.step.fault == sim::CameraFault::kPaddedLines;
+  if (longer) options.payload_margin_bytes = 4096;
+  MarkedCamera marked(160, 120, options);
   CameraFaultOutcome outcome;
   std::ostringstream story;
   auto camera = open_aravis_camera(marked.config());
   camera->configure(camera_fault_settings());
   SystemClock clock;
-  marked.server().faults().add(fault.step);
+  for (int i = 0; i < fault.repeat; ++i) marked.server().faults().add(fault.step);
   std::jthread reaper;
   HostTime struck{};
   for (int round = 0; round < 2; ++round) {
@@ -221,7 +249,7 @@ inline CameraFaultOutcome run_camera_fault_case(const CameraFaultCase& fault) {
           << report.frames.stale << " underrun " << report.frames.underrun << "; " << sink.what.str();
     if (round == 1) break;
     struck = last_slice;
-    if (outcome.end == ErrorCode::kCameraDisconnected) {
+    if (outcome.end == ErrorCode::kCameraDisconnected || outcome.end == ErrorCode::kCameraNoFrames) {
       outcome.end_ms = std::chrono::duration<double, std::milli>(HostClock::now() - struck).count();
       // Closing it takes as long as the camera is silent, and it keeps control for so long.
       reaper = std::jthread([dead = std::move(camera)]() mutable { dead.reset(); });

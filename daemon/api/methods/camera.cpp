@@ -50,9 +50,9 @@ void describe_exposure(Fields& fields) {
   result.any("grey", "an object as that of camera.snap");
 }
 
-const std::vector<ErrorCode> kImageErrors{ErrorCode::kUnknownRecipe,      ErrorCode::kBadRecipe,
-                                          ErrorCode::kCameraDisconnected, ErrorCode::kCameraFramesLost,
-                                          ErrorCode::kCameraTimeout,      ErrorCode::kCameraSettings};
+const std::vector<ErrorCode> kImageErrors{
+    ErrorCode::kUnknownRecipe, ErrorCode::kBadRecipe,      ErrorCode::kCameraDisconnected, ErrorCode::kCameraFramesLost,
+    ErrorCode::kCameraTimeout, ErrorCode::kCameraSettings, ErrorCode::kCameraNoFrames};
 
 }  // namespace
 

@@ -70,10 +70,10 @@ const std::vector<ErrorCode> kMotionErrors{ErrorCode::kStageDisconnected, ErrorC
 
 void add_stage_methods(MethodTable& methods, const Services& services) {
   auto focus_errors = kMotionErrors;
-  focus_errors.insert(
-      focus_errors.end(),
-      {ErrorCode::kBadInput, ErrorCode::kUnknownRecipe, ErrorCode::kBadRecipe, ErrorCode::kCameraDisconnected,
-       ErrorCode::kCameraFramesLost, ErrorCode::kCameraTimeout, ErrorCode::kCameraSettings, ErrorCode::kFocusRange});
+  focus_errors.insert(focus_errors.end(),
+                      {ErrorCode::kBadInput, ErrorCode::kUnknownRecipe, ErrorCode::kBadRecipe,
+                       ErrorCode::kCameraDisconnected, ErrorCode::kCameraFramesLost, ErrorCode::kCameraTimeout,
+                       ErrorCode::kCameraSettings, ErrorCode::kCameraNoFrames, ErrorCode::kFocusRange});
   methods["stage.autofocus"] = {
       .about = task_description("Moves the stage to where the middle of the image is sharpest",
                                 described<FocusParams>(), describe_focus, focus_errors, TaskMotion::kMoves),

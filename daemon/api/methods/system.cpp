@@ -29,6 +29,20 @@ void describe_info(Fields& fields) {
   result.text("version", "of the program");
   result.integer("api", "version of the wire contract");
   result.boolean("simulated", "a device is simulated");
+  result.any("camera", "an object: vendor, model, serial, firmware, address of the camera that is open",
+             Presence::kSometimes);
+}
+
+Reply info_of(const MachineStatus& machine) {
+  Reply reply{{"name", "fvd"}, {"version", kVersion}, {"api", 1}, {"simulated", machine.simulated}};
+  if (const auto& camera = machine.camera) {
+    reply["camera"] = {{"vendor", camera->vendor},
+                       {"model", camera->model},
+                       {"serial", camera->serial},
+                       {"firmware", camera->firmware},
+                       {"address", camera->address}};
+  }
+  return reply;
 }
 
 }  // namespace
@@ -46,9 +60,7 @@ void add_system_methods(MethodTable& methods, const Services& services, std::chr
       }};
   methods["system.info"] = {
       .about = {.summary = "Who answers", .params = described<NoParams>(), .result = describe_info},
-      .peek = [&machine = services.machine](const Call&) {
-        return Reply{{"name", "fvd"}, {"version", kVersion}, {"api", 1}, {"simulated", machine.snapshot()->simulated}};
-      }};
+      .peek = [&machine = services.machine](const Call&) { return info_of(*machine.snapshot()); }};
   methods["system.state"] = {.about = {.summary = "The machine's state, flat and cheap to poll",
                                        .params = described<NoParams>(),
                                        .result = describe_machine_status},

@@ -13,6 +13,22 @@ using sim::FakeCamera;
 using sim::FakeClock;
 using sim::TriggerOutcome;
 
+/// Somebody stops the scan while it waits.
+class StoppingClock final : public Clock {
+ public:
+  StoppingClock(const FakeClock& clock, std::stop_source& stop) : clock_(clock), stop_(stop) {}
+  [[nodiscard]] HostTime now() const override { return clock_.now(); }
+  void wait_until(HostTime /*deadline*/, std::stop_token /*stop*/) override {
+    ++waits;
+    stop_.request_stop();
+  }
+  int waits = 0;
+
+ private:
+  const FakeClock& clock_;
+  std::stop_source& stop_;
+};
+
 class ASliceCapture : public testing::Test {
  protected:
   /// Captures `slices` slices one after the other with 3 retries; returns how many were had.
@@ -86,6 +102,48 @@ TEST_F(ASliceCapture, TellsAnUnderrunFromAMissingFrame) {
 TEST_F(ASliceCapture, GivesUpAfterItsRetries) {
   EXPECT_EQ(capture(std::deque<TriggerOutcome>(4, TriggerOutcome::kNothing), 1), 0);
   EXPECT_EQ(ledger_.counts(), (FrameCounts{.expected = 4, .missing = 4}));
+}
+
+/// The error after a slice that was lost with these outcomes.
+ErrorCode failure_after(FakeClock& clock, TriggerOutcome outcome, int retries) {
+  FakeCamera camera(clock, 4, 3, std::deque<TriggerOutcome>(static_cast<std::size_t>(retries) + 1, outcome));
+  FrameLedger ledger;
+  SliceCapture capture(camera, clock, ledger);
+  EXPECT_FALSE(capture.capture(clock.now(), retries, {}).has_value());
+  return capture.failure("slice 3").code();
+}
+
+TEST_F(ASliceCapture, TellsACameraThatDeliversNothingFromOneThatLosesFrames) {
+  EXPECT_EQ(failure_after(clock_, TriggerOutcome::kNothing, 3), ErrorCode::kCameraNoFrames);
+  EXPECT_EQ(failure_after(clock_, TriggerOutcome::kIncomplete, 3), ErrorCode::kCameraFramesLost);
+  EXPECT_EQ(failure_after(clock_, TriggerOutcome::kUnderrun, 3), ErrorCode::kCameraFramesLost);
+  EXPECT_EQ(failure_after(clock_, TriggerOutcome::kNothing, 0), ErrorCode::kCameraFramesLost)
+      << "one frame may get lost";
+}
+
+/// By the end of its exposure, as some cameras date it: the end that the scan knows lies in the future.
+TEST_F(ASliceCapture, HandsAFrameOutWhenItsExposureIsOver) {
+  FakeCamera camera(clock_, 4, 3);
+  camera.clock_error = std::chrono::milliseconds(40);
+  SliceCapture capture(camera, clock_, ledger_);
+  const auto captured = capture.capture(clock_.now(), 0, {});
+  ASSERT_TRUE(captured.has_value());
+  EXPECT_GE(clock_.now(), captured->frame.exposure_end);
+}
+
+TEST_F(ASliceCapture, EndsItsWaitForAnExposureAfterAStopRequest) {
+  FakeCamera camera(clock_, 4, 3);
+  camera.clock_error = std::chrono::hours(1);
+  std::stop_source stop;
+  StoppingClock clock(clock_, stop);
+  SliceCapture capture(camera, clock, ledger_);
+  try {
+    (void)capture.capture(clock_.now(), 0, stop.get_token());
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kAborted);
+  }
+  EXPECT_EQ(clock.waits, 1);
 }
 
 TEST_F(ASliceCapture, PassesOnThatTheCameraIsGone) {

@@ -169,11 +169,13 @@ TEST_F(ADeviceHub, GivesUpTheDeviceThatAnErrorNamesAndOpensNothing) {
 
 TEST_F(ADeviceHub, RenewsACameraThatLostFramesAtTheNextOpeningOnly) {
   ASSERT_EQ(hub_.open(), std::nullopt);
-  opened_.clear();
-  EXPECT_EQ(hub_.after_failure(ErrorCode::kCameraFramesLost, "no frames"), std::nullopt);
-  EXPECT_TRUE(opened_.empty()) << "the end of the job is told first";
-  EXPECT_EQ(hub_.open(), std::nullopt);
-  EXPECT_EQ(opened_, Strings{"camera"});
+  for (const ErrorCode code : {ErrorCode::kCameraFramesLost, ErrorCode::kCameraNoFrames}) {
+    opened_.clear();
+    EXPECT_EQ(hub_.after_failure(code, "no frames"), std::nullopt);
+    EXPECT_TRUE(opened_.empty()) << "the end of the job is told first";
+    EXPECT_EQ(hub_.open(), std::nullopt);
+    EXPECT_EQ(opened_, Strings{"camera"});
+  }
 }
 
 TEST_F(ADeviceHub, KeepsItsDevicesAfterAnErrorThatIsNotTheirs) {

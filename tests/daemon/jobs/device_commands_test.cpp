@@ -28,7 +28,7 @@ TEST(SuggestExposure, PutsTheExposureBackWhenTheCameraFails) {
   DeviceTask task(exposure_work(settings, 0.7));
   task.run({camera, stage, clock, {}}, {});
   ASSERT_TRUE(task.outcome().has_value());
-  EXPECT_EQ(task.outcome()->error, ErrorCode::kCameraFramesLost);
+  EXPECT_EQ(task.outcome()->error, ErrorCode::kCameraNoFrames);
   ASSERT_GE(camera.exposures_us.size(), 3U);
   EXPECT_NE(camera.exposures_us[1], 2000.0) << "the second look has another exposure";
   EXPECT_EQ(camera.exposures_us.back(), 2000.0);

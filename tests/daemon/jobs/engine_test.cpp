@@ -261,7 +261,7 @@ TEST_F(AnEngine, TellsTheEndOfAJobBeforeItOpensTheCameraAnew) {
   opening.get_future().wait();
   const auto now = machine().snapshot();
   EXPECT_EQ(now->job->state, JobState::kFailed);
-  EXPECT_EQ(now->job->error, ErrorCode::kCameraFramesLost);
+  EXPECT_EQ(now->job->error, ErrorCode::kCameraNoFrames);
   EXPECT_EQ(store_->find(ClientSeq{1}).status.state, JobState::kFailed);
   go.set_value();
   ASSERT_TRUE(await([this](const MachineStatus&) {

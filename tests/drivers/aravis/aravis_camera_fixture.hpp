@@ -2,12 +2,16 @@
 
 /// A simulated camera on a loopback address of its own, whose pixels tell the exposure they belong to.
 
+#include <array>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "drivers/aravis/aravis_camera.hpp"
 #include "sim/camera/gige_camera_server.hpp"
@@ -40,21 +44,59 @@ class CountingSource final : public sim::FrameSource {
   }
 };
 
+/// Another program that controls the camera, for as long as it lives.
+class Controller {
+ public:
+  explicit Controller(const std::string& address) : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in camera{};
+    camera.sin_family = AF_INET;
+    camera.sin_port = htons(3956);
+    ::inet_pton(AF_INET, address.c_str(), &camera.sin_addr);
+    ::connect(socket_, reinterpret_cast<const sockaddr*>(&camera), sizeof camera);
+    // WRITEREG of the control channel privilege.
+    constexpr std::array<std::uint8_t, 16> kTake{0x42, 1, 0, 0x82, 0, 8, 0, 1, 0, 0, 0x0A, 0, 0, 0, 0, 2};
+    std::array<std::uint8_t, 64> answer{};
+    ::send(socket_, kTake.data(), kTake.size(), 0);
+    EXPECT_EQ(::recv(socket_, answer.data(), answer.size(), 0), 12);
+    EXPECT_EQ(answer[0], 0);
+  }
+  ~Controller() { ::close(socket_); }
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+ private:
+  int socket_;
+};
+
 class AnAravisCamera : public testing::Test {
  protected:
   void serve(std::uint16_t first_block_id = 1) {
+    sim::GigeCameraOptions options;
+    options.first_block_id = first_block_id;
+    serve(options);
+  }
+  void serve(sim::GigeCameraOptions options) {
     server_.reset();
-    server_ = std::make_unique<sim::GigeCameraServer>(
-        source_, sim::GigeCameraOptions{.address = address_, .first_block_id = first_block_id});
+    options.address = address_;
+    server_ = std::make_unique<sim::GigeCameraServer>(source_, options);
+  }
+
+  /// The next steps of the camera's script.
+  void fault(const sim::CameraFaultStep& step) { server_->faults().add(step); }
+
+  [[nodiscard]] CameraConfig config() const {
+    CameraConfig config;
+    config.address = address_;
+    config.packet_socket = false;
+    config.packet_size_bytes = 1500;
+    return config;
   }
 
   [[nodiscard]] std::unique_ptr<Camera> open(int packet_size = 1500,
                                              std::chrono::milliseconds clock_renewal = std::chrono::seconds(5)) const {
-    CameraConfig config;
-    config.address = address_;
-    config.packet_socket = false;
-    config.packet_size_bytes = packet_size;
-    return open_aravis_camera(config, clock_renewal);
+    CameraConfig wanted = config();
+    wanted.packet_size_bytes = packet_size;
+    return open_aravis_camera(wanted, clock_renewal);
   }
 
   static CameraSettings settings() {

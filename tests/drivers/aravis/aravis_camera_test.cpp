@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "drivers/aravis/gvcp_probe.hpp"
 #include "tests/drivers/aravis/aravis_camera_fixture.hpp"
 #include "tests/support/expect_error.hpp"
 
@@ -44,7 +45,9 @@ TEST_F(AnAravisCamera, RefusesSettingsOutOfRangeWithTheRange) {
 
 TEST_F(AnAravisCamera, RefusesToShareControl) {
   serve();
-  const auto first = open();
+  GvcpProbe other(address_);
+  ASSERT_FALSE(other.control_denied(std::chrono::seconds(5))) << "nobody controls it yet";
+  const test::Controller controller(address_);
   FVD_EXPECT_ERROR_SAYING(kCameraDisconnected, (void)open(), HasSubstr("another program"));
 }
 
