@@ -46,7 +46,7 @@ class Acquisition {
   /// Whether a latch is due. context: while no renew_clock() runs.
   [[nodiscard]] bool clock_due() const { return latches_ && clock_.due(HostClock::now()); }
   /// The time of a frame cannot be right: the next clock_due() says so.
-  void doubt_clock() { clock_.doubt(HostClock::now()); }
+  void doubt_clock() { clock_.doubt(); }
   [[nodiscard]] const std::string& refusal() const { return intake_.refusal(); }
 
   [[nodiscard]] const CameraSettings& in_force() const { return in_force_; }

@@ -84,9 +84,11 @@ std::string usb_id_of(const std::string& serial) {
   return id;
 }
 
-[[noreturn]] void throw_damaged(const std::string& name, const std::string& why) {
-  throw Error(ErrorCode::kCameraDisconnected, "the description (GenICam XML) in the camera " + name + " is damaged: " +
-                                                  why + "; power the camera off and on, else renew its firmware");
+[[noreturn]] void throw_damaged(const std::string& name, const std::string& why, const LogCollector& parser) {
+  const std::string detail = parser.first().empty() ? "" : " (" + parser.first() + ")";
+  throw Error(ErrorCode::kCameraDisconnected, "the description (GenICam XML) in the camera " + name +
+                                                  " is damaged: " + why + detail +
+                                                  "; power the camera off and on, else renew its firmware");
 }
 
 GObjectPtr<ArvCamera> open(const CameraTarget& target, CameraPresence& presence) {
@@ -94,13 +96,14 @@ GObjectPtr<ArvCamera> open(const CameraTarget& target, CameraPresence& presence)
   const bool network = is_ipv4(target.open_by);
   if (network) presence.require_free(target.open_by);
   const std::string name = network ? target.open_by : usb_id_of(target.open_by);
+  const LogCollector parser("XML");
   GErrorSlot error;
   GObjectPtr<ArvCamera> camera;
   (void)while_busy([&] {
     if (!name.empty()) camera.reset(arv_camera_new(name.c_str(), error.out()));
     return !camera && error.is_busy();
   });
-  if (error.is_bad_description()) throw_damaged(target.name, error.message());
+  if (error.is_bad_description()) throw_damaged(target.name, error.message(), parser);
   if (!camera) {
     throw Error(ErrorCode::kCameraDisconnected, "the camera " + target.name + " cannot be opened: " +
                                                     (name.empty() ? "Aravis does not list it" : error.message()));
@@ -108,7 +111,7 @@ GObjectPtr<ArvCamera> open(const CameraTarget& target, CameraPresence& presence)
   presence.watch(arv_camera_get_device(camera.get()));
   for (const char* feature : {"Width", "Height", "PixelFormat", "PayloadSize", "AcquisitionStart", "AcquisitionStop"}) {
     if (arv_device_get_feature(arv_camera_get_device(camera.get()), feature) != nullptr) continue;
-    throw_damaged(target.name, std::string("it has no ") + feature);
+    throw_damaged(target.name, std::string("it has no ") + feature, parser);
   }
   // Off by default: without it Aravis sends values the camera's own description forbids.
   arv_camera_set_range_check_policy(camera.get(), ARV_RANGE_CHECK_POLICY_ENABLE);
@@ -184,6 +187,7 @@ class AravisCamera final : public Camera {
         if (seems_too_old(frame)) acquisition_.doubt_clock();
         renew_clock_if_due();
         if (!frame) continue;
+        if (frame->status == FrameStatus::kMisdated) await_clock();  // or the next frame would be refused as well
         return frame;
       }
       if (interrupted_.exchange(false)) return std::nullopt;
@@ -289,6 +293,18 @@ class AravisCamera final : public Camera {
     // There, but busy: no frame comes, and the caller's deadline tells.
     spdlog::warn("{}", answer.message);
     return true;
+  }
+
+  /// Waits until the clock was measured since it became doubtful.
+  void await_clock() {
+    const HostTime begun = HostClock::now();
+    for (int i = 0; i < 2; ++i) {  // one renewal may have been on its way before
+      while (renewal_.valid() && renewal_.wait_for(kPollInterval) != std::future_status::ready) {
+        if (interrupted_) return;
+        if (HostClock::now() > begun + kAcknowledgeTimeout) (void)presence_.alive();
+      }
+      renew_clock_if_due();
+    }
   }
 
   void renew_clock_if_due() {

@@ -13,8 +13,6 @@ constexpr int kLatches = 12;
 /// Pairs closer together than this say nothing of the rate.
 constexpr std::chrono::seconds kRateBase{2};
 constexpr std::chrono::seconds kRateSpan{60};
-/// A pair that is no older is not measured again for one odd frame.
-constexpr std::chrono::milliseconds kNewPair{50};
 /// A larger difference is no drift: the camera's clock was set anew.
 constexpr double kLargestRateError = 1e-3;
 
@@ -86,9 +84,9 @@ void CameraClock::add(const ClockPair& pair) {
   latest_ = pair;
 }
 
-void CameraClock::doubt(HostTime now) {
+void CameraClock::doubt() {
   const MutexLock lock(mutex_);
-  doubted_ = latest_ && now - latest_->host > kNewPair;
+  doubted_ = latest_.has_value();
 }
 
 bool CameraClock::known() const {

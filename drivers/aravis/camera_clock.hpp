@@ -32,9 +32,8 @@ class CameraClock {
   explicit CameraClock(std::chrono::milliseconds renew_after) : renew_after_(renew_after) {}
 
   void add(const ClockPair& pair);
-  /// A frame's time cannot be right: the camera's clock may have been set. due() is true from now on, unless the latest
-  /// pair is quite new.
-  void doubt(HostTime now);
+  /// A frame's time cannot be right: the camera's clock may have been set. due() is true until the next pair.
+  void doubt();
   [[nodiscard]] bool known() const;
   /// Whether another pair should be added; true before the first.
   [[nodiscard]] bool due(HostTime now) const;

@@ -71,7 +71,7 @@ bool FrameIntake::misdated(Frame& frame) {
   if (ahead <= frame.exposure_end - frame.exposure_start + kClockTolerance) return false;
   frame.status = FrameStatus::kMisdated;
   ++frames_failed_;
-  clock_.doubt(now);
+  clock_.doubt();
   const bool first = refusal_.empty();
   refusal_ = "a frame came whose exposure is to end " +
              std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(ahead).count()) +

@@ -21,6 +21,36 @@ struct GObjectDeleter {
 template <typename Object>
 using GObjectPtr = std::unique_ptr<Object, GObjectDeleter>;
 
+/// Collects what GLib logs in one domain while it lives, in place of standard error: a damaged description is some
+/// three hundred messages. One object per domain at a time.
+class LogCollector {
+ public:
+  explicit LogCollector(const char* domain)
+      : domain_(domain),
+        handler_(g_log_set_handler(
+            domain, static_cast<GLogLevelFlags>(G_LOG_LEVEL_MASK | G_LOG_FLAG_FATAL | G_LOG_FLAG_RECURSION), &take,
+            this)) {}
+  ~LogCollector() { g_log_remove_handler(domain_, handler_); }
+  LogCollector(const LogCollector&) = delete;
+  LogCollector& operator=(const LogCollector&) = delete;
+
+  /// The first message on one line, empty if there was none.
+  [[nodiscard]] const std::string& first() const { return first_; }
+
+ private:
+  static void take(const char* /*domain*/, GLogLevelFlags /*level*/, const char* message, void* self) {
+    std::string& first = static_cast<LogCollector*>(self)->first_;
+    if (!first.empty() || message == nullptr) return;
+    first = message;
+    for (char& c : first) c = c == '\n' ? ' ' : c;
+    while (!first.empty() && first.back() == ' ') first.pop_back();
+  }
+
+  const char* domain_;
+  guint handler_;
+  std::string first_;
+};
+
 /// Collects the GError of one call: pass out(), then check(). Aravis returns plausible defaults beside an error, so the
 /// error is what counts, never the value.
 class GErrorSlot {
