@@ -2,8 +2,11 @@
 
 /// GLib objects and errors as C++ expects them.
 
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <string_view>
 
 #include <arv.h>
 
@@ -22,15 +25,16 @@ template <typename Object>
 using GObjectPtr = std::unique_ptr<Object, GObjectDeleter>;
 
 /// Collects what GLib logs in one domain while it lives, in place of standard error: a damaged description is some
-/// three hundred messages. One object per domain at a time.
+/// three hundred messages. One object at a time.
 class LogCollector {
  public:
-  explicit LogCollector(const char* domain)
-      : domain_(domain),
-        handler_(g_log_set_handler(
-            domain, static_cast<GLogLevelFlags>(G_LOG_LEVEL_MASK | G_LOG_FLAG_FATAL | G_LOG_FLAG_RECURSION), &take,
-            this)) {}
-  ~LogCollector() { g_log_remove_handler(domain_, handler_); }
+  explicit LogCollector(const char* domain) : domain_(domain) {
+    // Aravis logs by fields, which only the process' one writer sees.
+    static std::once_flag once;
+    std::call_once(once, [] { g_log_set_writer_func(&write, nullptr, nullptr); });
+    active() = this;
+  }
+  ~LogCollector() { active() = nullptr; }
   LogCollector(const LogCollector&) = delete;
   LogCollector& operator=(const LogCollector&) = delete;
 
@@ -38,16 +42,30 @@ class LogCollector {
   [[nodiscard]] const std::string& first() const { return first_; }
 
  private:
-  static void take(const char* /*domain*/, GLogLevelFlags /*level*/, const char* message, void* self) {
-    std::string& first = static_cast<LogCollector*>(self)->first_;
-    if (!first.empty() || message == nullptr) return;
-    first = message;
-    for (char& c : first) c = c == '\n' ? ' ' : c;
-    while (!first.empty() && first.back() == ' ') first.pop_back();
+  static std::atomic<LogCollector*>& active() {
+    static std::atomic<LogCollector*> collector{nullptr};
+    return collector;
   }
 
-  const char* domain_;
-  guint handler_;
+  static GLogWriterOutput write(GLogLevelFlags level, const GLogField* fields, gsize count, gpointer data) {
+    LogCollector* const collector = active();
+    std::string domain;
+    std::string message;
+    for (gsize i = 0; i < count; ++i) {
+      const bool text = fields[i].length < 0 && fields[i].value != nullptr;
+      if (text && std::string_view(fields[i].key) == "GLIB_DOMAIN") domain = static_cast<const char*>(fields[i].value);
+      if (text && std::string_view(fields[i].key) == "MESSAGE") message = static_cast<const char*>(fields[i].value);
+    }
+    if (collector == nullptr || domain != collector->domain_) return g_log_writer_default(level, fields, count, data);
+    if (collector->first_.empty()) {
+      for (char& c : message) c = c == '\n' ? ' ' : c;
+      while (!message.empty() && message.back() == ' ') message.pop_back();
+      collector->first_ = message;
+    }
+    return G_LOG_WRITER_HANDLED;
+  }
+
+  const std::string domain_;
   std::string first_;
 };
 
