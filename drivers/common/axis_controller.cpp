@@ -22,8 +22,7 @@ using std::chrono::milliseconds;
 
 /// Maximum age of a sample that is treated as current while the axis rests.
 constexpr milliseconds kSampleAge{50};
-/// A position is not waited for any longer.
-constexpr milliseconds kLongestLookAhead{2000};
+constexpr milliseconds kLongestLookAhead{2000};  ///< a position is not waited for any longer
 /// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
 constexpr Micrometers kSweepWindow{5.0};
 constexpr milliseconds kSweepGrace{3000};
