@@ -73,8 +73,7 @@ std::string_view device_meaning(ErrorCode code) noexcept {
       return "too many frames were lost: look at network, packet size and load";
     case ErrorCode::kCameraNoFrames:
       return "the camera answers but delivers nothing at all, and is being opened anew: look at firewall, trigger "
-             "source "
-             "and stream address";
+             "source and stream address";
     case ErrorCode::kCameraTimeout:
       return "reserved: a camera without frames is camera_frames_lost";
     case ErrorCode::kCameraSettings:

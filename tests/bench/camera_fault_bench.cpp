@@ -46,7 +46,7 @@ FaultFigures run_faults() {
 int camera_found_by() {
   sim::GigeCameraOptions options;
   options.serial = "S-4711";
-  options.user_name = "left";
+  options.name = "left";
   MarkedCamera marked(64, 48, options);
   CameraConfig config = marked.config();
   config.search_address = marked.address();

@@ -95,7 +95,9 @@ inline void PrintTo(const CameraFaultCase& of, std::ostream* out) { *out << of.n
 inline std::vector<CameraFaultCase> camera_fault_cases() {
   using sim::CameraEvent;
   using sim::CameraFault;
+  using std::chrono::hours;
   using std::chrono::milliseconds;
+  using std::chrono::seconds;
   const auto step = [](CameraFault fault, milliseconds delay = milliseconds(0), int value = 0, int count = 1) {
     sim::CameraFaultStep one;
     one.fault = fault;
@@ -113,6 +115,11 @@ inline std::vector<CameraFaultCase> camera_fault_cases() {
   const auto at_trigger = [&](CameraFault fault, milliseconds delay) {
     sim::CameraFaultStep one = step(fault, delay);
     one.on = CameraEvent::kTrigger;
+    return one;
+  };
+  const auto in_time = [&](CameraFault fault, milliseconds off) {
+    sim::CameraFaultStep one = step(fault);
+    one.step = off;
     return one;
   };
   return {
@@ -144,22 +151,21 @@ inline std::vector<CameraFaultCase> camera_fault_cases() {
       {"HangShorterThanAllowed", step(CameraFault::kHang, milliseconds(600))},
       {"BusyNowAndThen", step(CameraFault::kBusy), std::nullopt, 5},
       {"BusyTenTimes", step(CameraFault::kBusy, milliseconds(0), 0, 10)},
-      {"PendingAck", step(CameraFault::kPendingAck, milliseconds(400)), std::nullopt, 2},
-      {"PendingAckForLong", step(CameraFault::kPendingAck, milliseconds(1500))},
-      {"ClockStepAhead", step(CameraFault::kClockStep, milliseconds(0), 3600)},
-      {"ClockStepBack", step(CameraFault::kClockStep, milliseconds(0), -3600)},
-      {"ClockStepAheadEveryFourthFrame", step(CameraFault::kClockStep, milliseconds(0), 3600), std::nullopt, 3},
-      {"ClockStepBackEveryFourthFrame", step(CameraFault::kClockStep, milliseconds(0), -3600), std::nullopt, 3},
-      {"ClockSetAheadASecond", step(CameraFault::kClockSet, milliseconds(0), 1)},
-      {"ClockSetBackASecond", step(CameraFault::kClockSet, milliseconds(0), -1)},
-      {"ClockSetAhead", step(CameraFault::kClockSet, milliseconds(0), 3600)},
-      {"ClockSetBack", step(CameraFault::kClockSet, milliseconds(0), -3600)},
+      {"PendingAck", step(CameraFault::kPendingAck, milliseconds(400), 800), std::nullopt, 2},
+      {"PendingAckForLong", step(CameraFault::kPendingAck, milliseconds(1500), 3000)},
+      {"OddTimeAhead", in_time(CameraFault::kOddTime, hours(1))},
+      {"OddTimeBack", in_time(CameraFault::kOddTime, -hours(1))},
+      {"OddTimeAheadEveryFourthFrame", in_time(CameraFault::kOddTime, hours(1)), std::nullopt, 3},
+      {"OddTimeBackEveryFourthFrame", in_time(CameraFault::kOddTime, -hours(1)), std::nullopt, 3},
+      {"ClockStepAheadASecond", in_time(CameraFault::kClockStep, seconds(1))},
+      {"ClockStepBackASecond", in_time(CameraFault::kClockStep, -seconds(1))},
+      {"ClockStepAhead", in_time(CameraFault::kClockStep, hours(1))},
+      {"ClockStepBack", in_time(CameraFault::kClockStep, -hours(1))},
       {"OtherFormat", step(CameraFault::kOtherFormat)},
       {"OtherFormatTooOften", step(CameraFault::kOtherFormat, milliseconds(0), 0, 4), ErrorCode::kCameraFramesLost},
-      {"Chunks", step(CameraFault::kChunks, milliseconds(0), 0, 5)},
-      {"ChunkData", step(CameraFault::kChunks, milliseconds(0), 1, 5)},
+      {"ChunkMode", step(CameraFault::kChunkMode)},
+      {"ChunkModeOfOldCameras", step(CameraFault::kChunkMode, milliseconds(0), 1)},
       {"PaddedLines", step(CameraFault::kPaddedLines, milliseconds(0), 8, 5)},
-      {"Unavailable", step(CameraFault::kUnavailable)},
       {"ForgetStream", step(CameraFault::kForgetStream), ErrorCode::kCameraNoFrames},
       {"Mute", step(CameraFault::kMute, milliseconds(3000)), ErrorCode::kCameraDisconnected},
       {"HangInExposure", step(CameraFault::kHang, milliseconds(1500)), ErrorCode::kCameraDisconnected},
@@ -214,7 +220,7 @@ inline std::unique_ptr<Camera> open_again(const CameraConfig& config) {
 inline CameraFaultOutcome run_camera_fault_case(const CameraFaultCase& fault) {
   sim::GigeCameraOptions options;
   const bool longer =
-      fault.step.fault == sim::CameraFault::kChunks || fault.step.fault == sim::CameraFault::kPaddedLines;
+      fault.step.fault == sim::CameraFault::kChunkMode || fault.step.fault == sim::CameraFault::kPaddedLines;
   if (longer) options.payload_margin_bytes = 4096;
   MarkedCamera marked(160, 120, options);
   CameraFaultOutcome outcome;

@@ -38,20 +38,21 @@ LASTING = {
         for fault in (
             "drop_leader drop_trailer drop_frame drop_ack ignore_trigger nack_trigger duplicate_frame reorder_packets "
             "wrong_size too_long early_leader ids_restart stale_frame dark_frame half_frame busy other_format "
-            "unavailable forget_stream chunks"
+            "forget_stream chunk_mode"
         ).split()
     },
     "drop_packet": {"fault": "drop_packet", "count": FOREVER, "value": 1},
     "id_jump": {"fault": "id_jump", "count": FOREVER, "value": 7},
+    "padded_lines": {"fault": "padded_lines", "count": FOREVER, "value": 8},
     "late_frame": {"fault": "late_frame", "count": FOREVER, "delay_ms": 400},
     "mute": {"fault": "mute", "delay_ms": 60000},
     "hang": {"fault": "hang", "delay_ms": 60000},
     "restart": {"fault": "restart", "delay_ms": 60000},
-    "pending_ack": {"fault": "pending_ack", "count": FOREVER, "delay_ms": 2000},
-    "clock_step_ahead": {"fault": "clock_step", "count": FOREVER, "value": 3600},
-    "clock_step_back": {"fault": "clock_step", "count": FOREVER, "value": -3600},
-    "clock_set_ahead": {"fault": "clock_set", "count": FOREVER, "value": 3600},
-    "clock_set_back": {"fault": "clock_set", "count": FOREVER, "value": -1},
+    "pending_ack": {"fault": "pending_ack", "count": FOREVER, "delay_ms": 2000, "value": 4000},
+    "odd_time_ahead": {"fault": "odd_time", "count": FOREVER, "step_ms": 3_600_000},
+    "odd_time_back": {"fault": "odd_time", "count": FOREVER, "step_ms": -3_600_000},
+    "clock_step_ahead": {"fault": "clock_step", "count": FOREVER, "step_ms": 3_600_000},
+    "clock_step_back": {"fault": "clock_step", "count": FOREVER, "step_ms": -1000},
 }
 
 
@@ -259,7 +260,7 @@ def main():
     if "busy" in PARTS:
         figures["gvcp_busy5_jobs_ok_of_20"] = jobs_ok("busy", [{"fault": "busy", "after": 19}] * 3000)
     if "pending" in PARTS:
-        step = {"fault": "pending_ack", "after": 25, "delay_ms": 350}
+        step = {"fault": "pending_ack", "after": 25, "delay_ms": 350, "value": 700}
         figures["pending_ack_ok_of_20"] = jobs_ok("pending", [step] * 200)
     if "silence" in PARTS:
         step = {"fault": "mute", "on": "trigger", "after": 17, "delay_ms": 600}

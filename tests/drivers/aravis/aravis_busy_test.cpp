@@ -59,9 +59,9 @@ TEST_F(AnAravisCamera, WaitsForAsLongAsAPendingAcknowledgeSays) {
   CameraConfig impatient = config();
   impatient.silence_ms = 200;
   const auto camera = open_aravis_camera(impatient);
-  fault({.fault = CameraFault::kPendingAck, .after = 2, .delay = milliseconds(1500)});
+  fault({.fault = CameraFault::kPendingAck, .after = 2, .delay = milliseconds(1500), .value = 3000});
   camera->configure(settings());
-  fault({.fault = CameraFault::kPendingAck, .delay = milliseconds(700)});
+  fault({.fault = CameraFault::kPendingAck, .delay = milliseconds(700), .value = 1400});
   camera->trigger();
   int good = 0;
   for (int i = 0; i < 4 && good == 0; ++i) {
@@ -113,7 +113,7 @@ TEST_F(AnAravisCamera, NoticesLossWhileNothingIsAskedOfIt) {
 TEST_F(AnAravisCamera, IsInterruptedWhileItIsSetUp) {
   serve();
   const auto camera = open();
-  fault({.fault = CameraFault::kPendingAck, .after = 2, .delay = milliseconds(3000)});
+  fault({.fault = CameraFault::kPendingAck, .after = 2, .delay = milliseconds(3000), .value = 6000});
   const auto interrupter = start_thread("interrupt", [&](const std::stop_token& stop) {
     while (!stop.stop_requested() && server_->faults().unconsumed() > 0) std::this_thread::yield();
     camera->interrupt();

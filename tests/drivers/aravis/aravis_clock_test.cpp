@@ -40,7 +40,7 @@ TEST_P(ACameraWhoseClockIsSet, DatesItsFramesRightSoonAfterwards) {
   serve();
   const auto camera = open();
   camera->configure(settings());
-  fault({.fault = CameraFault::kClockSet, .after = 2, .value = GetParam()});
+  fault({.fault = CameraFault::kClockStep, .after = 2, .step = std::chrono::seconds(GetParam())});
   int refused = 0;
   for (int i = 0; i < 6; ++i) {
     const HostTime before = HostClock::now();
@@ -61,7 +61,7 @@ TEST_F(AnAravisCamera, RefusesAFrameOfTheFutureByName) {
   serve();
   const auto camera = open();
   camera->configure(settings());
-  fault({.fault = CameraFault::kClockStep, .value = 3600});
+  fault({.fault = CameraFault::kOddTime, .step = std::chrono::hours(1)});
   const auto frame = shoot(*camera);
   ASSERT_TRUE(frame.has_value());
   EXPECT_EQ(frame->status, FrameStatus::kMisdated);

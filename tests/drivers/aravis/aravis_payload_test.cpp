@@ -30,14 +30,26 @@ class APayload : public AnAravisCamera {
 };
 
 TEST_F(APayload, IsTakenWithChunksBehindTheImage) {
-  for (const int chunk_data : {0, 1}) {
-    const auto camera = open_with({.fault = CameraFault::kChunks, .count = 3, .value = chunk_data});
+  for (const int plain : {0, 1}) {
+    const auto camera = open_with({.fault = CameraFault::kChunkMode, .after = 1, .value = plain});
     for (std::uint64_t i = 1; i <= 4; ++i) {
       const auto frame = shoot(*camera);
       ASSERT_TRUE(frame.has_value()) << i;
       ASSERT_EQ(frame->status, FrameStatus::kOk) << i << " " << camera->last_refusal();
       EXPECT_TRUE(shows(*frame, i));
     }
+  }
+}
+
+TEST_F(APayload, IsTakenWithChunksThatTheCameraAnnounces) {
+  serve();
+  for (const int plain : {0, 1}) {
+    const auto camera = open();
+    fault({.fault = CameraFault::kChunkMode, .on = sim::CameraEvent::kCommand, .value = plain});
+    camera->configure(settings());
+    const auto frame = shoot(*camera);
+    ASSERT_TRUE(frame.has_value());
+    EXPECT_EQ(frame->status, FrameStatus::kOk) << camera->last_refusal();
   }
 }
 
@@ -73,7 +85,7 @@ TEST_F(APayload, OfAnotherSizeIsRefusedByItsSize) {
 
 TEST_F(APayload, WithAPacketThatIsUnavailableIsFollowedByAGoodOne) {
   for (const bool extended_ids : {false, true}) {
-    const auto camera = open_with({.fault = CameraFault::kUnavailable}, SensorFormat::kMono8, extended_ids);
+    const auto camera = open_with({.fault = CameraFault::kDropPacket, .value = 1}, SensorFormat::kMono8, extended_ids);
     const auto frame = shoot(*camera);
     EXPECT_TRUE(!frame || frame->status == FrameStatus::kIncomplete);
     const auto next = shoot(*camera);

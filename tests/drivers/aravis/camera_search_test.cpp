@@ -22,7 +22,7 @@ class ANamedCamera : public AnAravisCamera {
   ANamedCamera() {
     sim::GigeCameraOptions options;
     options.serial = "S-4711";
-    options.user_name = "left";
+    options.name = "left";
     serve(options);
   }
 
