@@ -97,7 +97,7 @@ TEST_F(ADeviceHub, OpensTheAxisFirstAndEachDeviceOnce) {
   EXPECT_EQ(opened_, (Strings{"axis", "camera"}));
   EXPECT_EQ(hub_.openings(), 2);
   EXPECT_EQ(rest_, std::vector<bool>{true});
-  EXPECT_EQ(hub_.facts().sensor_height, 12);
+  EXPECT_EQ(hub_.facts().camera.sensor_height, 12);
 }
 
 TEST_F(ADeviceHub, TriesAMissingDeviceAgainAndStopsTheAxisMeanwhile) {
