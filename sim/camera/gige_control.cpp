@@ -107,6 +107,7 @@ GvcpReply GigeControl::answer(GvcpPeer peer, std::span<const std::uint8_t> packe
     const auto promised = fault->value != 0 ? fault->value : static_cast<int>(fault->delay.count());
     reply.pending = pending(request, promised);
     reply.delay = fault->delay;
+    last_heard_ += fault->delay;  // a client that waits for the answer sends no heartbeat
   }
   const bool dropped = fault && fault->fault == CameraFault::kDropAck;
   if (dropped || (packet[1] & kAcknowledgeWanted) == 0) return {};
