@@ -221,6 +221,13 @@ StepRecord record(int index, const Frame& frame, const PositionMean& position) {
   return step;
 }
 
+/// Where the stage was then. A stop request ends the wait for it.
+PositionMean position_at(const ScanDependencies& deps, HostTime moment, const std::stop_token& stop) {
+  deps.clock.wait_until(moment + kPositionReach, stop);
+  if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
+  return deps.stage.position_at(moment, kPositionReach);
+}
+
 }  // namespace
 
 void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
@@ -273,9 +280,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
       while (!waiting.empty() && !after) {
         Waiting& oldest = waiting.front();
         if (!last && deps_.clock.now() < oldest.moment + kPositionReach) break;
-        deps_.clock.wait_until(oldest.moment + kPositionReach, stop);
-        if (stop.stop_requested()) throw Error(ErrorCode::kAborted, "the scan was stopped");
-        const PositionMean position = deps_.stage.position_at(oldest.moment, kPositionReach);
+        const PositionMean position = position_at(deps_, oldest.moment, stop);
         const auto place = sorter.sort(oldest.frame.id, position.mean.value, oldest.circumstances);
         report.frames = ledger.counts();
         require_frames_as_planned(sorter, plan, report.frames);

@@ -92,36 +92,33 @@ struct CameraFaultCase {
 /// For the names of the tests.
 inline void PrintTo(const CameraFaultCase& of, std::ostream* out) { *out << of.name; }
 
+/// Steps that strike at the fourth event.
+namespace camera_fault_steps {
+
+using sim::CameraFault;
+using std::chrono::milliseconds;
+
+inline sim::CameraFaultStep step(CameraFault fault, milliseconds delay = milliseconds(0), int value = 0,
+                                 int count = 1) {
+  return {.fault = fault, .after = 3, .count = count, .delay = delay, .value = value};
+}
+inline sim::CameraFaultStep at_command(CameraFault fault, milliseconds delay) {
+  return {.fault = fault, .on = sim::CameraEvent::kCommand, .after = 3, .delay = delay};
+}
+inline sim::CameraFaultStep at_trigger(CameraFault fault, milliseconds delay) {
+  return {.fault = fault, .on = sim::CameraEvent::kTrigger, .after = 3, .delay = delay};
+}
+/// Of time: off by so much.
+inline sim::CameraFaultStep in_time(CameraFault fault, milliseconds off) {
+  return {.fault = fault, .after = 3, .step = off};
+}
+
+}  // namespace camera_fault_steps
+
 inline std::vector<CameraFaultCase> camera_fault_cases() {
-  using sim::CameraEvent;
-  using sim::CameraFault;
+  using namespace camera_fault_steps;
   using std::chrono::hours;
-  using std::chrono::milliseconds;
   using std::chrono::seconds;
-  const auto step = [](CameraFault fault, milliseconds delay = milliseconds(0), int value = 0, int count = 1) {
-    sim::CameraFaultStep one;
-    one.fault = fault;
-    one.after = 3;
-    one.delay = delay;
-    one.value = value;
-    one.count = count;
-    return one;
-  };
-  const auto at_command = [&](CameraFault fault, milliseconds delay) {
-    sim::CameraFaultStep one = step(fault, delay);
-    one.on = CameraEvent::kCommand;
-    return one;
-  };
-  const auto at_trigger = [&](CameraFault fault, milliseconds delay) {
-    sim::CameraFaultStep one = step(fault, delay);
-    one.on = CameraEvent::kTrigger;
-    return one;
-  };
-  const auto in_time = [&](CameraFault fault, milliseconds off) {
-    sim::CameraFaultStep one = step(fault);
-    one.step = off;
-    return one;
-  };
   return {
       {"DropLeader", step(CameraFault::kDropLeader)},
       {"DropTrailer", step(CameraFault::kDropTrailer)},
