@@ -89,11 +89,27 @@ void RpcSession::read() {
     if (error) return self->close();
     // Input after a refusal is read and dropped: closing with unread input would discard the refusal.
     if (!self->refused_) {
-      self->input_.append(self->chunk_.data(), count);
+      self->receive({self->chunk_.data(), count});
       self->process();
     }
     self->read();
   });
+}
+
+void RpcSession::receive(std::string_view bytes) {
+  const HostTime now = HostClock::now();
+  input_.append(bytes);
+  std::size_t begin = 0;
+  for (;;) {
+    const std::size_t end = input_.find_first_of(kTerminators, begin);
+    if (end == std::string::npos) break;
+    std::string line = input_.substr(begin, end - begin);
+    begin = end + 1;
+    if (line.find_first_not_of(" \t") == std::string::npos) continue;
+    line_bytes_ += line.size();
+    lines_.push_back({std::move(line), now});
+  }
+  input_.erase(0, begin);
 }
 
 void RpcSession::half_close() {
@@ -106,50 +122,45 @@ void RpcSession::close_if_all_is_said() {
 }
 
 void RpcSession::process() {
-  std::size_t begin = 0;
-  while (!has_request() && !refused_) {
-    const std::size_t end = input_.find_first_of(kTerminators, begin);
-    if (end == std::string::npos) break;
-    const std::string_view line(input_.data() + begin, end - begin);
-    begin = end + 1;
-    if (line.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-    if (begins_foreign_protocol(line)) return refuse_with(Dispatcher::foreign_protocol());
+  while (!has_request() && !refused_ && !lines_.empty()) {
+    const Line line = std::move(lines_.front());
+    lines_.pop_front();
+    line_bytes_ -= line.text.size();
+    if (looked_at_ > 0) --looked_at_;
+    if (line.text.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
+    if (begins_foreign_protocol(line.text)) return refuse_with(Dispatcher::foreign_protocol());
     watch_idle();
-    caller_.received = std::chrono::steady_clock::now();
-    if (auto handled = host_.dispatcher.try_handle(line, caller_)) {
+    caller_.received = line.received;
+    if (auto handled = host_.dispatcher.try_handle(line.text, caller_)) {
       take(std::move(*handled));
     } else {
-      work<Handled>([line = std::string(line),
-                     caller = caller_](const Dispatcher& dispatcher) { return dispatcher.handle(line, caller); },
+      work<Handled>([text = line.text,
+                     caller = caller_](const Dispatcher& dispatcher) { return dispatcher.handle(text, caller); },
                     &RpcSession::take_and_go_on);
     }
   }
   if (refused_) return;
-  input_.erase(0, begin);
-  looked_at_ -= std::min(looked_at_, begin);
   if (has_request()) overtake();
   if (refused_) return;
   // Also limits the input that collects behind an open request.
-  if (input_.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
+  if (line_bytes_ + input_.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
   close_if_all_is_said();
 }
 
 void RpcSession::overtake() {
-  while (!refused_) {
-    const std::size_t end = input_.find_first_of(kTerminators, looked_at_);
-    if (end == std::string::npos) return;
-    const std::string_view line(input_.data() + looked_at_, end - looked_at_);
+  while (!refused_ && looked_at_ < lines_.size()) {
+    const auto line = lines_.begin() + static_cast<std::ptrdiff_t>(looked_at_);
     // A line of another protocol is refused when its turn comes, and nothing behind it is read.
-    if (begins_foreign_protocol(line)) return;
+    if (begins_foreign_protocol(line->text)) return;
     Caller caller = caller_;
-    caller.received = std::chrono::steady_clock::now();
-    auto handled = host_.dispatcher.try_urgent(line, caller);
+    caller.received = line->received;
+    auto handled = host_.dispatcher.try_urgent(line->text, caller);
     if (!handled) {
-      looked_at_ = end + 1;
+      ++looked_at_;
       continue;
     }
-    input_.erase(looked_at_, end + 1 - looked_at_);
+    line_bytes_ -= line->text.size();
+    lines_.erase(line);
     if (handled->reply) send(std::move(*handled->reply));
   }
 }
@@ -209,6 +220,7 @@ void RpcSession::end_wait(std::optional<std::string> reply) {
 void RpcSession::refuse_with(std::string line) {
   refused_ = true;
   input_.clear();
+  lines_.clear();
   send(std::move(line));
   idle_.expires_after(kRefusalGrace);
   idle_.async_wait([self = shared_from_this()](ErrorCodeOf error) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>  // before Asio 1.74, which forgets it
 
 #include <boost/asio/generic/stream_protocol.hpp>
@@ -58,9 +59,16 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
  private:
   using ErrorCodeOf = boost::system::error_code;
 
+  struct Line {
+    std::string text;
+    HostTime received;  ///< when its end came, however long it waits then
+  };
+
   /// Restarts the idle timeout; an unfinished line does not restart it.
   void watch_idle();
   void read();
+  /// Cuts what has come into lines.
+  void receive(std::string_view bytes);
   /// The client closed its sending side; its open requests are still answered.
   void half_close();
   void close_if_all_is_said();
@@ -91,8 +99,10 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   boost::asio::steady_timer idle_;
   boost::asio::steady_timer wait_;
   std::array<char, 4096> chunk_{};
-  std::string input_;
-  std::size_t looked_at_ = 0;  // bytes of input_, whole lines, that hold no urgent request
+  std::string input_;           // the beginning of a line whose end has not come
+  std::deque<Line> lines_;      // that wait for their turn; none is blank
+  std::size_t line_bytes_ = 0;  // of lines_
+  std::size_t looked_at_ = 0;   // so many of lines_ hold no urgent request
   std::deque<std::string> unsent_;
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;

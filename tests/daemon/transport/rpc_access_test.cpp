@@ -150,5 +150,30 @@ TEST_F(AGuardedRpcServer, StopsWhileTheWorkerAndTheConnectionAreBusy) {
   }
 }
 
+TEST_F(AGuardedRpcServer, MovesNothingThatStoodBehindAMotionWhenAStopCame) {
+  config_.access.loopback_role = Role::kAdminister;
+  std::promise<void> begun;
+  std::promise<void> released;
+  service_.before_start = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  serve();
+  LineClient client(server_->port());
+  client.send(call("job.start", {{"seq", 5}, {"part_id", "p"}}) + "\n" + call("stage.move", {{"z_um", 1}}, 2) + "\n" +
+              call("stage.stop", json::object(), 3) + "\n");
+  begun.get_future().wait();
+  auto line = client.line();
+  ASSERT_TRUE(line);
+  EXPECT_EQ(json::parse(*line)["id"], 3);
+  released.set_value();
+  ASSERT_TRUE(client.line());
+  line = client.line();
+  ASSERT_TRUE(line);
+  EXPECT_EQ(json::parse(*line)["id"], 2);
+  EXPECT_EQ(json::parse(*line).value("/error/code"_json_pointer, 0), 1012) << *line;
+  EXPECT_TRUE(service_.motions.empty()) << "it was asked for before the stop, however late its turn came";
+}
+
 }  // namespace
 }  // namespace fvd
