@@ -22,7 +22,7 @@ ControlLease::Holder ControlLease::acquire(const Request& request) {
   const bool job_runs = job_runs_();  // not under the lock
   const Holder wanted{request.who.name, request.owner, now_() + request.time};
   const MutexLock lock(mutex_);
-  const auto before = holder_locked();
+  const auto before = holder_locked(job_runs);
   if (before && before->who != wanted.who) {
     if (!request.force) {
       throw AccessError(AccessCode::kNoControl,
@@ -36,6 +36,8 @@ ControlLease::Holder ControlLease::acquire(const Request& request) {
     }
     spdlog::warn("control is taken from {} by {}", text_of(*before), text_of(wanted));
   } else if (!before) {
+    // Who started it goes on without control: he is asked for none until somebody has it.
+    if (job_runs) throw Error(ErrorCode::kBusy, "a job runs that was started without control: wait for its end");
     spdlog::info("{} has control", text_of(wanted));
   }
   holder_ = wanted;
@@ -56,12 +58,13 @@ void ControlLease::require(const std::string& who) const {
 }
 
 std::optional<ControlLease::Holder> ControlLease::holder() const {
+  const bool job_runs = job_runs_();  // not under the lock
   const MutexLock lock(mutex_);
-  return holder_locked();
+  return holder_locked(job_runs);
 }
 
-std::optional<ControlLease::Holder> ControlLease::holder_locked() const {
-  if (!holder_ || now_() >= holder_->until) return std::nullopt;
+std::optional<ControlLease::Holder> ControlLease::holder_locked(bool job_runs) const {
+  if (!holder_ || (now_() >= holder_->until && !job_runs)) return std::nullopt;
   return holder_;
 }
 

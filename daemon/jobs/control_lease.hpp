@@ -30,12 +30,12 @@ class ControlLease {
     bool force = false;  ///< take it from another
   };
 
-  /// job_runs: whether a job runs now.
+  /// job_runs: whether a job runs now; blocks for nothing. While one does, nobody's time is over.
   ControlLease(std::function<HostTime()> now, std::function<bool()> job_runs);
 
   /// From now on for the time given; the holder itself renews it so. Throws AccessError kNoControl where another holds
   /// it and force is not set, kNotAllowed where it is set by one who does not administer; Error kBusy where it is set
-  /// while a job runs.
+  /// while a job runs, or where nobody has it meanwhile.
   Holder acquire(const Request& request);
   /// No effect where the identity does not hold it.
   void release(const std::string& who);
@@ -45,7 +45,7 @@ class ControlLease {
   [[nodiscard]] std::optional<Holder> holder() const;
 
  private:
-  [[nodiscard]] std::optional<Holder> holder_locked() const FVD_REQUIRES(mutex_);
+  [[nodiscard]] std::optional<Holder> holder_locked(bool job_runs) const FVD_REQUIRES(mutex_);
 
   const std::function<HostTime()> now_;
   const std::function<bool()> job_runs_;

@@ -61,6 +61,25 @@ TEST_F(AControlLease, EndsByItselfAndIsRenewedByItsHolder) {
   EXPECT_EQ(refusal_of([&] { lease_.require(plc_.name); }), AccessCode::kNoControl);
 }
 
+TEST_F(AControlLease, OutlastsItsTimeWhileAJobRuns) {
+  acquire(plc_);
+  now_ += seconds(61);
+  job_runs_ = true;
+  EXPECT_EQ(refusal_of([&] { acquire(page_); }), AccessCode::kNoControl);
+  EXPECT_EQ(refusal_of([&] { lease_.require(page_.name); }), AccessCode::kNoControl);
+  EXPECT_EQ(lease_.holder()->who, plc_.name);
+  job_runs_ = false;
+  EXPECT_NO_THROW(acquire(page_));
+}
+
+TEST_F(AControlLease, IsGivenToNobodyWhileAJobRunsThatWasStartedWithoutIt) {
+  job_runs_ = true;
+  EXPECT_THROW(acquire(page_), Error);
+  EXPECT_NO_THROW(lease_.require(plc_.name));
+  job_runs_ = false;
+  EXPECT_NO_THROW(acquire(page_));
+}
+
 TEST_F(AControlLease, IsTakenByForceOnlyByWhoAdministersAndNeverWhileAJobRuns) {
   acquire(plc_);
   EXPECT_EQ(refusal_of([&] { acquire(page_, true); }), AccessCode::kNotAllowed);
