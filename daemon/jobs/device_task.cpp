@@ -4,7 +4,17 @@
 
 namespace fvd {
 
+void DeviceTask::foretell(const Outcome& outcome) noexcept {
+  std::function<void(const Outcome&)> when_ended;
+  {
+    const MutexLock lock(mutex_);
+    when_ended = std::exchange(when_ended_, {});
+  }
+  if (when_ended) when_ended(outcome);
+}
+
 void DeviceTask::end(Outcome outcome) noexcept {
+  foretell(outcome);
   const MutexLock lock(mutex_);
   if (!outcome_) outcome_ = std::move(outcome);
 }

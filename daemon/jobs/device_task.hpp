@@ -40,12 +40,17 @@ class DeviceTask {
     std::string message;
   };
 
-  explicit DeviceTask(Work work, TaskMotion motion = TaskMotion::kNone) : work_(std::move(work)), motion_(motion) {}
+  /// when_ended: called once with the answer, before anybody else sees it; must not throw.
+  explicit DeviceTask(Work work, TaskMotion motion = TaskMotion::kNone,
+                      std::function<void(const Outcome&)> when_ended = {})
+      : work_(std::move(work)), motion_(motion), when_ended_(std::move(when_ended)) {}
   /// A task that is done already.
   explicit DeviceTask(Outcome outcome) : outcome_(std::move(outcome)) {}
 
   /// Does the work and tells nobody yet: the machine's state comes before the answer.
   [[nodiscard]] Outcome perform(const Devices& devices, std::stop_token stop) const noexcept;
+  /// Tells when_ended what the answer will be: while the devices are not free yet.
+  void foretell(const Outcome& outcome) noexcept;
   /// Gives the answer; only the first call counts.
   void end(Outcome outcome) noexcept;
   /// perform() and end().
@@ -60,6 +65,7 @@ class DeviceTask {
   Work work_;
   TaskMotion motion_ = TaskMotion::kNone;
   mutable Mutex mutex_;
+  std::function<void(const Outcome&)> when_ended_ FVD_GUARDED_BY(mutex_);
   std::optional<Outcome> outcome_ FVD_GUARDED_BY(mutex_);
 };
 

@@ -61,9 +61,10 @@ JobService::Started JobQueue::start(const JobRequest& request) {
 
 JobQueue::Offer JobQueue::offer(const JobRequest& request) {
   Offer offer;
-  const HostTime stopped = last_stop_;
+  const HostTime stopped = deps_.board.last_stop();
   deps_.board.update([&](MachineRecord& machine) {
     machine.require(Command::kStartJob);
+    deps_.board.require_unstopped(request.asked);
     machine.apply(MachineEvent::kJobOffered);
     offer = {request.recipe.empty() ? machine.recipe : request.recipe, machine.devices, machine.objective, stopped};
   });
@@ -95,7 +96,7 @@ void JobQueue::accept(const AcceptedJob& job, const Offer& offer) {
     machine.recipe = job.recipe.id;
     machine.job = job.status;
     // stop_job() or stop_motion() was called before it could reach this job
-    if (machine.state.halted || last_stop_.load() != offer.stopped) stop.request_stop();
+    if (machine.state.halted || deps_.board.last_stop() != offer.stopped) stop.request_stop();
     task_stop = deps_.task_stop();
     {
       const MutexLock lock(mutex_);
@@ -149,7 +150,7 @@ std::optional<JobStatus> JobQueue::try_abort(const JobKey& key) {
 }
 
 JobService::Stopped JobQueue::stop_motion() {
-  last_stop_ = HostClock::now();  // first: a job that is accepted from now on sees it, one before is on the board
+  deps_.board.note_stop();  // first: what begins from now on sees it, what began before is on the board
   const MachineState now = deps_.board.read().state;
   if (now.task == TaskState::kMoves) deps_.task_stop().request_stop();
   if (now.job == JobStage::kHoldsPart) stop_job();

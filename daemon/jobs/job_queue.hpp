@@ -2,7 +2,6 @@
 
 /// Accepts jobs, one at a time, and tells of them and their results.
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -50,7 +49,7 @@ class JobQueue final : public JobService, public ResultService {
   JobStatus abort(const JobKey& key) override;
   std::optional<JobStatus> try_abort(const JobKey& key) override;
   Stopped stop_motion() override;
-  [[nodiscard]] bool stopped_since(HostTime time) const override { return last_stop_.load() > time; }
+  [[nodiscard]] bool stopped_since(HostTime time) const override { return deps_.board.last_stop() > time; }
   void prepare(const std::string& recipe_id) override;
 
   [[nodiscard]] StoredJob stored(const JobKey& key) const override;
@@ -85,7 +84,6 @@ class JobQueue final : public JobService, public ResultService {
 
   const Dependencies deps_;
   bool restored_ = false;
-  std::atomic<HostTime> last_stop_{HostTime{}};  ///< of stop_motion()
 
   Mutex mutex_;
   Condition claim_ended_;

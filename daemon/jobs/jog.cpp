@@ -16,6 +16,7 @@ namespace fvd {
 namespace {
 
 constexpr std::chrono::seconds kFailureIsNews{1};
+constexpr std::chrono::milliseconds kLetGo{500};  // no repeat for so long: whoever asks again means to
 
 /// Inside the limits by one step, for a target is rounded to whole steps.
 Micrometers target_of(const JogRequest& request, const Devices& devices) {
@@ -49,7 +50,7 @@ void jog(const Devices& devices, JogHold& hold, const std::stop_token& stop) {
 
 bool JogHold::extend(const JogRequest& request) {
   const MutexLock lock(mutex_);
-  if (over_) return false;
+  if (over_ || HostClock::now() >= until_) return false;
   const bool repeated = request_.repeats(request);
   until_ = repeated ? std::max(until_, request.until) : HostTime{};
   changed_.notify_all();
@@ -72,26 +73,33 @@ void JogHold::fail(ErrorCode code, const std::string& message) {
   const MutexLock lock(mutex_);
   over_ = true;
   failure_.emplace(code, message);
-  failed_ = HostClock::now();
+  failed_ = refused_ = HostClock::now();
 }
 
 std::optional<Error> JogHold::take_failure(const JogRequest& repeat) {
   const MutexLock lock(mutex_);
+  const HostTime now = HostClock::now();
+  if (repeat.who != request_.who) return std::nullopt;
+  if (failure_ && failure_->code() == ErrorCode::kAborted) {
+    // A button that is still held goes on repeating after a stop, and must begin nothing.
+    if (now - std::exchange(refused_, now) <= kLetGo) return failure_;
+    failure_.reset();
+  }
   auto failure = std::exchange(failure_, std::nullopt);
-  if (!request_.repeats(repeat) || HostClock::now() - failed_ > kFailureIsNews) failure.reset();
+  if (!request_.repeats(repeat) || now - failed_ > kFailureIsNews) failure.reset();
   return failure;
 }
 
-DeviceTask::Work jog_work(std::shared_ptr<JogHold> hold) {
-  return [hold = std::move(hold)](const Devices& devices, const std::stop_token& stop) {
-    try {
-      jog(devices, *hold, stop);
-    } catch (const Error& error) {
-      hold->fail(error.code(), error.what());
-      throw;
-    }
-    return nlohmann::ordered_json{{"z_um", devices.stage.status().position.value}}.dump();
-  };
+std::shared_ptr<DeviceTask> jog_task(const std::shared_ptr<JogHold>& hold) {
+  return std::make_shared<DeviceTask>(
+      [hold](const Devices& devices, const std::stop_token& stop) {
+        jog(devices, *hold, stop);
+        return nlohmann::ordered_json{{"z_um", devices.stage.status().position.value}}.dump();
+      },
+      TaskMotion::kMoves,
+      [hold](const DeviceTask::Outcome& outcome) {
+        if (outcome.error) hold->fail(*outcome.error, outcome.message);
+      });
 }
 
 }  // namespace fvd

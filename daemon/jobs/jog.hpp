@@ -2,6 +2,7 @@
 
 /// A motion that goes on only while somebody says so.
 
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -18,6 +19,7 @@ struct JogRequest {
   double speed_um_per_s = 0.0;  ///< above 0, at most the stage's
   HostTime until{};             ///< when it ends unless it is repeated
   std::string who;              ///< asks for it
+  HostTime asked{};             ///< when the request came
 
   /// The same motion of the same caller.
   [[nodiscard]] bool repeats(const JogRequest& other) const {
@@ -38,7 +40,8 @@ class JogHold {
 
   /// The jog failed.
   void fail(ErrorCode code, const std::string& message);
-  /// Why it failed, once, to who repeats it within a second.
+  /// Why it failed, once, to who repeats it within a second. That it was stopped: to every further jog of its caller,
+  /// until none comes for 500 ms.
   [[nodiscard]] std::optional<Error> take_failure(const JogRequest& repeat);
 
  private:
@@ -49,10 +52,11 @@ class JogHold {
   bool over_ FVD_GUARDED_BY(mutex_) = false;
   std::optional<Error> failure_ FVD_GUARDED_BY(mutex_);
   HostTime failed_ FVD_GUARDED_BY(mutex_){};
+  HostTime refused_ FVD_GUARDED_BY(mutex_){};  ///< when its failure was told last
 };
 
-/// Moves towards the soft limit, of the objective where one is confirmed, and halts when the hold is over. The axis'
-/// own errors are kept in the hold, for nobody waits for this work.
-[[nodiscard]] DeviceTask::Work jog_work(std::shared_ptr<JogHold> hold);
+/// Moves towards the soft limit, of the objective where one is confirmed, and halts when the hold is over. Why it
+/// failed, or could not begin, is kept in the hold, for nobody waits for this task.
+[[nodiscard]] std::shared_ptr<DeviceTask> jog_task(const std::shared_ptr<JogHold>& hold);
 
 }  // namespace fvd

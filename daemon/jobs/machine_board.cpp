@@ -118,6 +118,11 @@ void MachineBoard::update(const std::function<void(MachineRecord&)>& change) {
   tell();
 }
 
+void MachineBoard::require_unstopped(HostTime asked) const {
+  if (asked == HostTime{} || last_stop() <= asked) return;
+  throw Error(ErrorCode::kAborted, "this was asked for before a stop, and had not begun: nothing was moved");
+}
+
 void MachineBoard::publish_locked() {
   auto status = std::make_shared<MachineStatus>();
   status->state = scan_state(record_.state);

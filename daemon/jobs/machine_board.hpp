@@ -2,12 +2,14 @@
 
 /// What is known of the machine: changed in one place, read by everybody without waiting.
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/clock.hpp"
 #include "core/base/mutex.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/jobs/machine_state.hpp"
@@ -67,11 +69,21 @@ class MachineBoard final : public MachineView {
   /// that is held while the board is called.
   void update(const std::function<void(MachineRecord&)>& change);
 
+  /// From now on nothing that was asked for before begins. The caller reads the record afterwards, and ends what has
+  /// begun by then.
+  void note_stop() noexcept { last_stop_ = HostClock::now(); }
+  /// When motion was stopped last.
+  [[nodiscard]] HostTime last_stop() const noexcept { return last_stop_; }
+  /// For the change that begins a motion, inside update(): no stop is lost between this and its beginning. Throws Error
+  /// kAborted if motion was stopped after that time; no time was asked at = never.
+  void require_unstopped(HostTime asked) const;
+
  private:
   void publish_locked() FVD_REQUIRES(mutex_);
   void tell();
 
   const Constants constants_;
+  std::atomic<HostTime> last_stop_{HostTime{}};
 
   mutable Mutex mutex_;
   MachineRecord record_ FVD_GUARDED_BY(mutex_);

@@ -17,8 +17,8 @@
 #include "core/stage/step_history.hpp"
 #include "daemon/access/access_rules.hpp"
 #include "daemon/config/config.hpp"
-#include "daemon/jobs/control_lease.hpp"
 #include "daemon/devices/devices_health.hpp"
+#include "daemon/jobs/control_lease.hpp"
 #include "daemon/jobs/device_task.hpp"
 #include "daemon/jobs/jog.hpp"
 #include "daemon/jobs/machine_state.hpp"
@@ -88,7 +88,8 @@ class JobService {
   /// Accepts a job and returns after its row is durable; the scan runs later on the machine's thread. A repeated
   /// request returns the existing job, also while the first is still being made durable: it waits for it then. Throws
   /// Error kNotReady, kBusy, kUnknownRecipe, kBadRecipe, kStageLimit, kObjectiveMismatch, kRegionOutside,
-  /// kMemoryBudget, kSeqConflict, kSeqStale, kInterrupted, kStorageFull, kStorageWrite, kDatabase, kShuttingDown.
+  /// kMemoryBudget, kSeqConflict, kSeqStale, kInterrupted, kStorageFull, kStorageWrite, kDatabase, kShuttingDown,
+  /// kAborted if stop_motion() came after it was asked for.
   virtual Started start(const JobRequest& request) = 0;
 
   /// Throws Error kUnknownJob.
@@ -143,8 +144,9 @@ class TaskService {
   virtual ~TaskService() = default;
 
   /// Does something with the devices as soon as they are free; a job that is started meanwhile ends it. Throws
-  /// Error kBusy while a job runs or another task waits, kNotReady without the devices, kShuttingDown.
-  virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) = 0;
+  /// Error kBusy while a job runs or another task waits, kNotReady without the devices, kShuttingDown, kAborted if it
+  /// moves, was asked for at that time and stop_motion() came after it.
+  virtual std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion, HostTime asked = {}) = 0;
   /// As submit(preview_work(settings)); while a job runs, the newest of its slices instead, scaled down.
   virtual std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) = 0;
 

@@ -6,13 +6,19 @@
 
 namespace fvd {
 
-std::shared_ptr<DeviceTask> TaskRunner::submit(DeviceTask::Work work, TaskMotion motion) {
+std::shared_ptr<DeviceTask> TaskRunner::submit(DeviceTask::Work work, TaskMotion motion, HostTime asked) {
   auto task = std::make_shared<DeviceTask>(std::move(work), motion);
+  post(task, asked);
+  return task;
+}
+
+void TaskRunner::post(const std::shared_ptr<DeviceTask>& task, HostTime asked) {
   const std::stop_source stop;
   bool posted = false;
   // In one piece: a job that is accepted later finds the command's stop in place and is behind it in the queue.
   deps_.board.update([&](MachineRecord& machine) {
     machine.require(Command::kRunTask);
+    if (task->moves()) deps_.board.require_unstopped(asked);
     machine.apply(task->moves() ? MachineEvent::kMotionStarted : MachineEvent::kLookStarted);
     {
       const MutexLock lock(mutex_);
@@ -22,12 +28,12 @@ std::shared_ptr<DeviceTask> TaskRunner::submit(DeviceTask::Work work, TaskMotion
                               .refuse = [this, task] { refuse(*task); }});
   });
   if (!posted) refuse(*task);
-  return task;
 }
 
 std::shared_ptr<DeviceTask> TaskRunner::preview(const CameraSettings& settings) {
   const auto now = deps_.board.snapshot();
-  if (!now->job || now->job->state != JobState::kProcessing) return submit(preview_work(settings), TaskMotion::kNone);
+  if (!now->job || now->job->state != JobState::kProcessing)
+    return submit(preview_work(settings), TaskMotion::kNone, {});
   auto picture = deps_.preview.newest();
   if (!picture) throw Error(ErrorCode::kBusy, "the job has shown no slice yet; ask again");
   return std::make_shared<DeviceTask>(DeviceTask::Outcome{std::move(*picture), std::nullopt, {}});
@@ -51,7 +57,7 @@ void TaskRunner::jog(const JogRequest& request) {
     throw Error(ErrorCode::kTimeout, "the request waited for longer than it asked to move; nothing was moved");
   }
   auto hold = std::make_shared<JogHold>(request);
-  (void)submit(jog_work(hold), TaskMotion::kMoves);
+  post(jog_task(hold), request.asked);
   const MutexLock lock(mutex_);
   jog_ = std::move(hold);
 }
@@ -79,6 +85,7 @@ void TaskRunner::run(DeviceTask& task, const std::stop_token& stop) {
     if (!outcome.error && task.moves()) deps_.hub.confirm_rest();
     failure = outcome.error ? deps_.hub.after_failure(*outcome.error, outcome.message) : deps_.hub.failure();
   }
+  task.foretell(outcome);  // a repeated jog finds why it ended before it could begin anew
   deps_.board.update([&](MachineRecord& machine) {
     machine.apply(MachineEvent::kTaskEnded);
     if (begins) machine.set_devices(failure);

@@ -37,7 +37,7 @@ class TaskRunner final : public TaskService {
   };
   explicit TaskRunner(Dependencies dependencies) : deps_(std::move(dependencies)) {}
 
-  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) override;
+  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion, HostTime asked) override;
   std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override;
   void jog(const JogRequest& request) override;
   [[nodiscard]] bool extend_jog(const JogRequest& request) override;
@@ -47,6 +47,7 @@ class TaskRunner final : public TaskService {
   [[nodiscard]] std::stop_source task_stop();
 
  private:
+  void post(const std::shared_ptr<DeviceTask>& task, HostTime asked);
   void run(DeviceTask& task, const std::stop_token& stop);
   void refuse(DeviceTask& task);
   [[nodiscard]] std::shared_ptr<JogHold> last_jog();

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <variant>
 
+#include "core/base/clock.hpp"
 #include "core/base/error.hpp"
 #include "core/scan/frame_ledger.hpp"
 
@@ -23,6 +24,7 @@ struct JobRequest {
   std::string client = kDefaultClient;  ///< whose seq it is
   std::optional<double> temperature_c = {};  ///< -50..100, of the part; absent = not given
   std::string session = {};  ///< of the client, which names it as it likes; a number is never repeated in another one
+  HostTime asked = {};       ///< when the request came; none = unknown. Not stored
 };
 
 /// OPC 40100-1 result states: processing, completed, aborted, failed.

@@ -85,9 +85,9 @@ std::optional<JobStatus> running_job(const MachineView& machine, const JobKey& k
   return job;
 }
 
-Answer start_job(JobService& jobs, const StartParams& params) {
+Answer start_job(JobService& jobs, const Call& call, const StartParams& params) {
   const auto started = jobs.start({params.seq, checked_part_id(params.part_id), params.recipe, params.client.checked(),
-                                   params.temperature_c, params.session});
+                                   params.temperature_c, params.session, call.caller.received});
   return Reply{{"job_id", started.job.job_id},
                {"seq", params.seq},
                {"client", params.client.client},
@@ -119,8 +119,9 @@ void add_job_methods(MethodTable& methods, const Services& services) {
                 .needs_control = true,
                 .is_audited = true,
                 .needs_id = true},
-      .run = with<StartParams>(
-          [&jobs = services.jobs](const Call&, const StartParams& params) { return start_job(jobs, params); })};
+      .run = with<StartParams>([&jobs = services.jobs](const Call& call, const StartParams& params) {
+        return start_job(jobs, call, params);
+      })};
   methods["job.status"] = {
       .about = {.summary = "What a job is doing",
                 .role = Role::kView,

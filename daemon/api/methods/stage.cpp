@@ -78,7 +78,7 @@ struct JogParams {
 
   [[nodiscard]] JogRequest request(const Caller& caller) const {
     const HostTime from = caller.received == HostTime{} ? HostClock::now() : caller.received;
-    return {direction == "up", speed_um_per_s, from + std::chrono::milliseconds(until_ms), caller.who.name};
+    return {direction == "up", speed_um_per_s, from + std::chrono::milliseconds(until_ms), caller.who.name, from};
   }
 };
 
@@ -152,22 +152,24 @@ void add_stage_methods(MethodTable& methods, const Services& services) {
                                 described<FocusParams>(), describe_focus, focus_errors, TaskMotion::kMoves),
       .run = with<FocusParams>([services](const Call& call, const FocusParams& params) -> Answer {
         require_wait(call);
-        return reply_when_done(services.tasks.submit(
-            autofocus_work(params.image.settings(services.recipes), params.plan()), TaskMotion::kMoves));
+        return reply_when_done(
+            services.tasks.submit(autofocus_work(params.image.settings(services.recipes), params.plan()),
+                                  TaskMotion::kMoves, call.caller.received));
       })};
   methods["stage.home"] = {
       .about = task_description("Finds the stage's reference", Role::kOperate, described<NoParams>(), describe_homed,
                                 kMotionErrors, TaskMotion::kMoves),
       .run = [&tasks = services.tasks](const Call& call) -> Answer {
         require_wait(call);
-        return reply_when_done(tasks.submit(home_work(), TaskMotion::kMoves));
+        return reply_when_done(tasks.submit(home_work(), TaskMotion::kMoves, call.caller.received));
       }};
   methods["stage.move"] = {
       .about = task_description("Moves the stage", Role::kSetUp, described<MoveParams>(), describe_moved, kMotionErrors,
                                 TaskMotion::kMoves),
       .run = with<MoveParams>([&tasks = services.tasks](const Call& call, const MoveParams& params) -> Answer {
         require_wait(call);
-        return reply_when_done(tasks.submit(move_work(Micrometers{params.z_um}), TaskMotion::kMoves));
+        return reply_when_done(
+            tasks.submit(move_work(Micrometers{params.z_um}), TaskMotion::kMoves, call.caller.received));
       })};
   add_stop_and_jog(methods, services);
   methods["stage.accuracy"] = {

@@ -227,7 +227,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return std::make_shared<const MachineStatus>(status);
   }
   /// Done only when a test runs it.
-  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion) override {
+  std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion, HostTime /*asked*/) override {
     motions.push_back(motion);
     if (refuse_tasks) throw Error(ErrorCode::kBusy, "a job is running");
     task = std::make_shared<DeviceTask>(std::move(work));
@@ -236,7 +236,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   std::shared_ptr<DeviceTask> preview(const CameraSettings& settings) override {
     if (before_preview) before_preview();
     previewed = settings;
-    return submit([](const Devices&, std::stop_token) { return std::string(R"({"seq": 1})"); }, TaskMotion::kNone);
+    return submit([](const Devices&, std::stop_token) { return std::string(R"({"seq": 1})"); }, TaskMotion::kNone, {});
   }
   std::vector<TaskMotion> motions;  ///< of the commands so far
   std::shared_ptr<DeviceTask> task;

@@ -42,8 +42,9 @@ class AJog : public testing::Test {
   /// Runs the jog on a thread of its own.
   void begin(const JogRequest& request) {
     hold_ = std::make_shared<JogHold>(request);
+    task_ = jog_task(hold_);
     thread_ = start_thread("jog", [this](const std::stop_token&) {
-      task_.run({camera_, axis_, clock_, "", objective_}, stop_.get_token());
+      task_->run({camera_, axis_, clock_, "", objective_}, stop_.get_token());
     });
     axis_.began.get_future().wait();
   }
@@ -55,8 +56,7 @@ class AJog : public testing::Test {
   const ObjectiveConfig* objective_ = nullptr;
   std::stop_source stop_;
   std::shared_ptr<JogHold> hold_;
-  DeviceTask task_{[this](const Devices& devices, std::stop_token stop) { return jog_work(hold_)(devices, stop); },
-                   TaskMotion::kMoves};
+  std::shared_ptr<DeviceTask> task_;
   std::jthread thread_;
 };
 
@@ -65,7 +65,7 @@ TEST_F(AJog, EndsByItself) {
   begin(asked);
   end();
   EXPECT_GE(axis_.ended, asked.until);
-  EXPECT_FALSE(task_.outcome()->error) << task_.outcome()->message;
+  EXPECT_FALSE(task_->outcome()->error) << task_->outcome()->message;
   EXPECT_EQ(axis_.targets_um, std::vector<double>{499.99}) << "the upper limit, by one step inside";
   EXPECT_FALSE(hold_->extend(request())) << "it is over: a new one has to begin";
   spdlog::info("a jog ended {} us after its time", (axis_.ended - asked.until) / std::chrono::microseconds(1));
@@ -96,18 +96,32 @@ TEST_F(AJog, EndsWithAStopAndSaysSo) {
   begin(request(milliseconds(10000)));
   stop_.request_stop();
   end();
-  EXPECT_EQ(task_.outcome()->error, ErrorCode::kAborted);
+  EXPECT_EQ(task_->outcome()->error, ErrorCode::kAborted);
   const auto told = hold_->take_failure(request());
   ASSERT_TRUE(told);
   EXPECT_EQ(told->code(), ErrorCode::kAborted);
-  EXPECT_FALSE(hold_->take_failure(request())) << "it is told once";
+  JogRequest other_way = request(milliseconds(150), false);
+  EXPECT_TRUE(hold_->take_failure(other_way)) << "a stop holds for all that its caller goes on asking";
+  EXPECT_TRUE(hold_->take_failure(request()));
+  other_way.who = "token other";
+  EXPECT_FALSE(hold_->take_failure(other_way)) << "another may begin";
+}
+
+TEST_F(AJog, IsOverWhenItsTimeIsThoughItNeverBegan) {
+  hold_ = std::make_shared<JogHold>(request(milliseconds(0)));
+  EXPECT_FALSE(hold_->extend(request())) << "nothing moves that could go on";
+  jog_task(hold_)->fail(ErrorCode::kNotReady, "no stage is plugged in");
+  const auto told = hold_->take_failure(request());
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->code(), ErrorCode::kNotReady);
 }
 
 TEST_F(AJog, MovesNothingAtItsLimit) {
   axis_.description.max = Micrometers{0.0};  // where the fake stands
   hold_ = std::make_shared<JogHold>(request());
-  task_.run({camera_, axis_, clock_, "", nullptr}, {});
-  EXPECT_EQ(task_.outcome()->error, ErrorCode::kStageLimit);
+  task_ = jog_task(hold_);
+  task_->run({camera_, axis_, clock_, "", nullptr}, {});
+  EXPECT_EQ(task_->outcome()->error, ErrorCode::kStageLimit);
   EXPECT_TRUE(axis_.targets_um.empty());
   JogRequest others = request();
   others.who = "token other";

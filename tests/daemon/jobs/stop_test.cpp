@@ -55,6 +55,23 @@ TEST_F(AnEngine, AbortsAJobThatHoldsThePart) {
   EXPECT_EQ(jobs().try_abort(JobKey{job.job_id})->state, JobState::kAborted) << "no effect on one that has ended";
 }
 
+TEST_F(AnEngine, BeginsNothingThatWasAskedForBeforeAStop) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  const HostTime before = HostClock::now();
+  jobs().stop_motion();
+  JobRequest job{1, "p", "part"};
+  job.asked = before;
+  FVD_EXPECT_ERROR(kAborted, jobs().start(job));
+  FVD_EXPECT_ERROR(kAborted, tasks().submit([](const Devices&, std::stop_token) { return std::string("{}"); },
+                                            TaskMotion::kMoves, before));
+  FVD_EXPECT_ERROR(kAborted, tasks().jog({true, 1e9, HostClock::now() + std::chrono::seconds(5), "test", before}));
+  EXPECT_FALSE(jobs().highest("plc")) << "its number is not used up";
+  job.asked = HostClock::now();
+  EXPECT_FALSE(jobs().start(job).duplicate);
+  EXPECT_TRUE(await_end_of(1));
+}
+
 TEST_F(AnEngine, JogsAndTellsTheNextRepeatWhyItEnded) {
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
