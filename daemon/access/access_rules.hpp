@@ -27,8 +27,8 @@ class AccessRules {
   /// Asks the system for the numbers of the groups, once; a group that does not exist lets nobody in.
   explicit AccessRules(const AccessConfig& config);
 
-  /// Of several rules that fit the one with the longest prefix; without one loopback_role for this machine's own
-  /// addresses, else no role. Blocks for nothing, as the next.
+  /// Of several rules that fit the one with the longest prefix; without one loopback_role for 127.0.0.0/8 and ::1,
+  /// else no role. Blocks for nothing, as the next.
   [[nodiscard]] Identity of_address(const AddressBytes& address, const std::string& text) const;
   /// root and the daemon's own user administer; of several groups the highest role.
   [[nodiscard]] Identity of_local_peer(const LocalPeer& peer) const;
