@@ -135,6 +135,8 @@ std::optional<Handled> Dispatcher::try_urgent(std::string_view line, const Calle
   if (name == document->end() || !name->is_string()) return std::nullopt;
   const auto method = methods_.find(name->get<std::string>());
   if (method == methods_.end() || !method->second.about.is_urgent) return std::nullopt;
+  // Who may not yet may log in with a line before it: then it keeps its turn.
+  if (!may_call(caller, method->second.about)) return std::nullopt;
   return handle_line(line, caller, false);
 }
 
@@ -146,8 +148,7 @@ Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& ca
     replies = refuse_batch(batch, *fault);
   } else {
     for (const json& request : batch) {
-      // The members before this one were answered from the snapshot, or stopped something: handling the batch again
-      // repeats nothing.
+      // The members before this one were answered from the snapshot: handling the batch again repeats nothing.
       Outcome answer = handle_request(request, caller, {may_block, true});
       if (answer.would_block) return answer;
       accepted = accepted || answer.is_accepted;
@@ -188,7 +189,11 @@ void Dispatcher::run_method(const json& request, const json& id, Caller caller, 
   }
   const Method& method = found->second;
   const bool is_notification = !request.contains("id");
+  if (!may_call(caller, method.about)) note(method, {caller, name, request.value("params", json())}, "not_allowed");
   require_callable(name, method.about, caller, is_notification);
+  if (mode.in_batch && method.about.is_urgent) {
+    throw ProtocolError{json_rpc::kInvalidRequest, name + " is for a request of its own, which nothing holds back"};
+  }
   const auto given = request.find("params");
   const json params = checked_params(name, method.about.params, given == request.end() ? json(nullptr) : *given);
   if (const auto client = params.find("client"); client != params.end()) {
@@ -198,7 +203,6 @@ void Dispatcher::run_method(const json& request, const json& id, Caller caller, 
   const LogScope scope({.caller = caller.name});
   // Whoever has no role is accepted once he has said who he is.
   outcome.is_accepted = method.about.role > Role::kNone;
-  if (method.about.needs_control) services_.control.require(caller.who.name);
   auto answer = answer_of(method, {caller, name, params, !mode.in_batch && !is_notification}, mode.may_block);
   if (!answer) {
     outcome.would_block = true;
@@ -216,6 +220,7 @@ void Dispatcher::run_method(const json& request, const json& id, Caller caller, 
 std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& call, bool may_block) const {
   const MethodDescription& about = method.about;
   try {
+    if (about.needs_control) services_.control.require(call.caller.who.name);
     if (method.peek) {
       if (auto answer = method.peek(call)) {
         if (about.is_urgent) note(method, call, "ok");

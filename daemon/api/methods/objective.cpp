@@ -97,6 +97,7 @@ void add_objective_methods(MethodTable& methods, const Services& services) {
                 .params = described<ConfirmParams>(),
                 .result = describe_confirmed,
                 .errors = {kBadInput, kBusy, kShuttingDown, kStorageFull, kDatabase},
+                .needs_control = true,
                 .is_audited = true,
                 .needs_id = true},
       .run =

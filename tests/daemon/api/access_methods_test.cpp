@@ -36,7 +36,7 @@ TEST_F(AnInstrumentWithSeveralCallers, ObeysOnlyWhoHasControl) {
   EXPECT_EQ(state["yours"], false);
   for (const std::string& line :
        {start_, call("recipe.prepare", {{"id", "chapter"}}), call("stage.move", {{"z_um", 1}}), call("stage.home"),
-        call("stage.autofocus", {{"from_um", 0}, {"to_um", 10}}),
+        call("objective.confirm", {{"name", "20x"}}), call("stage.autofocus", {{"from_um", 0}, {"to_um", 10}}),
         call("stage.jog", {{"direction", "up"}, {"speed_um_per_s", 1}})}) {
     EXPECT_EQ(code_of(page_, line), 1003) << line;
   }
@@ -82,6 +82,10 @@ TEST_F(AnInstrumentWithSeveralCallers, StopsWithoutAWorker) {
     EXPECT_FALSE(dispatcher_.try_urgent(line, plc_)) << line;
   }
   EXPECT_EQ(code_of({.who = {"viewer", Role::kView}}, call("stage.stop")), 1004);
+  EXPECT_FALSE(dispatcher_.try_urgent(call("stage.stop"), {.who = {"viewer", Role::kView}}))
+      << "a log-in before it may give it the role";
+  const json batch = answer_to(plc_, "[" + call("system.ping") + "," + call("stage.stop") + "]");
+  EXPECT_EQ(batch[1]["error"]["code"], -32600) << "nothing is to hold it back, and nothing to do it twice";
   EXPECT_EQ(service_.stops, 1);
 }
 
@@ -121,19 +125,24 @@ TEST_F(AnInstrumentWithSeveralCallers, WritesDownWhoAskedForWhat) {
   answer_to(page_, call("stage.stop"));
   answer_to(page_, call("system.state"));
   answer_to({.who = {"viewer", Role::kView}}, start_);
+  service_.control.acquire({plc_.who, "plc", std::chrono::seconds(60)});
+  answer_to(page_, call("stage.move", {{"z_um", 1}}));
   const json entries = answer_to(page_, call("audit.list"))["result"]["entries"];
-  ASSERT_EQ(entries.size(), 3U) << "looks, and what a role forbids, are no rows: " << entries;
-  EXPECT_EQ(entries[2]["what"], "job.start");
-  EXPECT_EQ(entries[2]["who"], "address 10.0.0.7");
-  EXPECT_EQ(entries[2]["role"], "operate");
-  EXPECT_EQ(entries[2]["peer"], "10.0.0.7:4000");
-  EXPECT_EQ(entries[2]["client"], "plc");
-  EXPECT_EQ(entries[2]["outcome"], "ok");
-  EXPECT_NE(entries[2]["detail"].get<std::string>().find("\"part_id\":\"p\""), std::string::npos);
-  EXPECT_EQ(entries[1]["what"], "recipe.save");
-  EXPECT_EQ(entries[1]["outcome"], "recipe_conflict");
-  EXPECT_EQ(entries[1]["detail"].get<std::string>().find("{}"), std::string::npos) << "no documents";
-  EXPECT_EQ(entries[0]["what"], "stage.stop");
+  ASSERT_EQ(entries.size(), 5U) << "looks are no rows: " << entries;
+  EXPECT_EQ(entries[0]["outcome"], "no_control");
+  EXPECT_EQ(entries[1]["who"], "viewer");
+  EXPECT_EQ(entries[1]["outcome"], "not_allowed");
+  EXPECT_EQ(entries[4]["what"], "job.start");
+  EXPECT_EQ(entries[4]["who"], "address 10.0.0.7");
+  EXPECT_EQ(entries[4]["role"], "operate");
+  EXPECT_EQ(entries[4]["peer"], "10.0.0.7:4000");
+  EXPECT_EQ(entries[4]["client"], "plc");
+  EXPECT_EQ(entries[4]["outcome"], "ok");
+  EXPECT_NE(entries[4]["detail"].get<std::string>().find("\"part_id\":\"p\""), std::string::npos);
+  EXPECT_EQ(entries[3]["what"], "recipe.save");
+  EXPECT_EQ(entries[3]["outcome"], "recipe_conflict");
+  EXPECT_EQ(entries[3]["detail"].get<std::string>().find("{}"), std::string::npos) << "no documents";
+  EXPECT_EQ(entries[2]["what"], "stage.stop");
   const json older = answer_to(page_, call("audit.list", {{"most", 1}, {"before", 3}}))["result"]["entries"];
   ASSERT_EQ(older.size(), 1U);
   EXPECT_EQ(older[0]["what"], "recipe.save");
