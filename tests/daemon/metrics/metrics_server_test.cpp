@@ -86,7 +86,7 @@ TEST_F(AMetricsServer, ServesOthersBesideConnectionsThatSayNothing) {
 
 TEST_F(AMetricsServer, RefusesAPortThatIsTaken) {
   test::expect_error(ErrorCode::kNotReady, {"cannot listen on 127.0.0.1", "/metrics/port"},
-               [this] { const MetricsServer other("127.0.0.1", server_.port(), machine_); });
+                     [this] { const MetricsServer other("127.0.0.1", server_.port(), machine_); });
 }
 
 }  // namespace
