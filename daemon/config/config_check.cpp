@@ -76,8 +76,9 @@ class ConfigCheck {
     check_listener("/rpc/address", rpc.address);
     const auto address = address_bytes(rpc.address);
     report_if(
-        address && !is_loopback(*address) && rpc.access.allow.empty() && rpc.access.token_file.empty(), "/rpc/address",
-        {"/rpc/allow", "/rpc/token_file"},
+        why_no_listener(rpc.address).empty() && address && !is_loopback(*address) && rpc.access.allow.empty() &&
+            rpc.access.token_file.empty(),
+        "/rpc/address", {"/rpc/allow", "/rpc/token_file"},
         "'" + rpc.address +
             "' is reached from the network, and nothing says who may move the stage from there; give /rpc/allow or "
             "/rpc/token_file, or listen on 127.0.0.1");

@@ -241,6 +241,24 @@ void add_stage_commands(CLI::App& app, StageArguments& a, const Terminal& termin
   accuracy->callback([&] { chosen = [&] { return run_stage_accuracy(a, terminal); }; });
 }
 
+/// Commands that have commands of their own.
+void add_command_groups(CLI::App& app, Arguments& a, const Terminal& terminal, Command& chosen) {
+  add_stage_commands(app, a.stage, terminal, chosen);
+  add_device_commands(app, a.devices, terminal, chosen);
+  add_setup_command(app, a.setup, terminal, chosen);
+  add_recipe_commands(
+      app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
+  add_study_commands(
+      app, a.study, [&a] { return connect(a); }, a.client, terminal, chosen);
+
+  add_backup_commands(app, a.backup, terminal, chosen);
+  add_objective_commands(
+      app, a.objective, [&a] { return connect(a); }, terminal, chosen);
+
+  add_access_commands(
+      app, a.access, [&a] { return connect(a); }, terminal, chosen);
+}
+
 void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command& chosen) {
   const auto command = [&app, &chosen](const char* name, const char* help, Command run) {
     CLI::App* sub = app.add_subcommand(name, help);
@@ -300,20 +318,7 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
                 [&] { return run_report(a.report, terminal); });
   add_report_options(*sub, a.report);
 
-  add_stage_commands(app, a.stage, terminal, chosen);
-  add_device_commands(app, a.devices, terminal, chosen);
-  add_setup_command(app, a.setup, terminal, chosen);
-  add_recipe_commands(
-      app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
-  add_study_commands(
-      app, a.study, [&a] { return connect(a); }, a.client, terminal, chosen);
-
-  add_backup_commands(app, a.backup, terminal, chosen);
-  add_objective_commands(
-      app, a.objective, [&a] { return connect(a); }, terminal, chosen);
-
-  add_access_commands(
-      app, a.access, [&a] { return connect(a); }, terminal, chosen);
+  add_command_groups(app, a, terminal, chosen);
 
   sub = command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
                 [&] { return run_suggest(a.suggest_source, a.suggest_choice, terminal); });

@@ -72,6 +72,7 @@ Reply health_of(const MachineStatus& machine) {
 void add_health_methods(MethodTable& methods, const Services& services) {
   methods["system.health"] = {
       .about = {.summary = "Devices, their lines, threads and disk, as they were between jobs and commands",
+                .role = Role::kView,
                 .params = described<NoParams>(),
                 .result = describe_health},
       .peek = [&machine = services.machine](const Call&) { return health_of(*machine.snapshot()); }};

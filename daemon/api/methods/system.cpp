@@ -1,8 +1,8 @@
 /// The machine as a whole.
 
 #include "daemon/api/json_shapes.hpp"
-#include "daemon/api/methods/job_key_params.hpp"
 #include "daemon/api/methods/device_task.hpp"
+#include "daemon/api/methods/job_key_params.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/result_fields.hpp"

@@ -61,6 +61,7 @@ const std::map<std::string, Role>& expected_roles() {
                                                   {"stage.stop", kOperate},
                                                   {"study.get", kView},
                                                   {"study.list", kView},
+                                                  {"system.health", kView},
                                                   {"system.info", kView},
                                                   {"system.ping", kView},
                                                   {"system.state", kView},

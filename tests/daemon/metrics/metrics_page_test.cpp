@@ -50,7 +50,12 @@ TEST(MetricsPage, TellsStatesCountersAndUnits) {
 
 TEST(MetricsPage, HasAFewSeriesWhateverIsMeasured) {
   MachineStatus machine = a_busy_station();
-  machine.job = JobStatus{.job_id = "job-1234", .request = {.seq = 9, .part_id = "part-77", .client = "line-3"}};
+  JobStatus job;
+  job.job_id = "job-1234";
+  job.request.seq = 9;
+  job.request.part_id = "part-77";
+  job.request.client = "line-3";
+  machine.job = job;
   const std::string page = metrics_text(machine);
   std::istringstream lines(page);
   int series = 0;

@@ -85,8 +85,8 @@ TEST_F(AMetricsServer, ServesOthersBesideConnectionsThatSayNothing) {
 }
 
 TEST_F(AMetricsServer, RefusesAPortThatIsTaken) {
-  expect_error(ErrorCode::kNotReady, {"cannot listen on 127.0.0.1", "/metrics/port"},
-               [this] { const MetricsServer other("127.0.0.1", server_.port(), machine_); });
+  test::expect_error(ErrorCode::kNotReady, {"cannot listen on 127.0.0.1", "/metrics/port"},
+                     [this] { const MetricsServer other("127.0.0.1", server_.port(), machine_); });
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ TEST_F(AService, WaitsForAPortThatAnotherProgramHas) {
 }
 
 TEST_F(AService, EndsWhileItWaitsForAnAddress) {
-  configure({{"rpc", {{"address", "192.0.2.1"}, {"port", 1}}}});
+  const nlohmann::json allow = nlohmann::json::array({{{"address", "192.0.2.9"}, {"role", "operate"}}});
+  configure({{"rpc", {{"address", "192.0.2.1"}, {"port", 1}, {"allow", allow}}}});
   start();
   EXPECT_THAT(told("STATUS=waiting"), HasSubstr("no network card has this address yet"));
   EXPECT_EQ(end(), 0);
