@@ -78,17 +78,15 @@ bool names_an_evaluation(const std::string& name) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-int remove_lost_evaluations(JobStore& store, const fs::path& results) {
-  int removed = 0;
+/// They may have been told by a newer database than the one that was put back.
+void name_lost_evaluations(JobStore& store, const fs::path& results) {
   std::error_code error;
   for (fs::directory_iterator entry(results, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (name.starts_with('.') || !names_an_evaluation(name) || store.evaluations().find(name)) continue;
-    spdlog::warn("{}: the daemon stopped before this evaluation was known to anybody: removed", entry->path().string());
-    file_calls().remove_all(entry->path());
-    ++removed;
+    spdlog::warn("{}: the database does not know this evaluation: it stays, and its number is not used again",
+                 entry->path().string());
   }
-  return removed;
 }
 
 }  // namespace
@@ -112,7 +110,7 @@ Reconciled reconcile_results(JobStore& store, const fs::path& results) {
     file_calls().remove_all(folder);
     ++done.removed;
   }
-  done.removed += remove_lost_evaluations(store, results);
+  name_lost_evaluations(store, results);
   return done;
 }
 

@@ -13,9 +13,8 @@ struct Reconciled {
   int removed = 0;  ///< folders that nobody was told of
 };
 
-/// A folder whose job has no end becomes that job's result if it is whole, else it is removed; the folder of an
-/// evaluation without a row is removed. Each is logged. Folders of jobs that the database does not know stay. Throws
-/// Error kDatabase, kStorageFull.
+/// A folder whose job has no end becomes that job's result if it is whole, else it is removed. Each is logged. Folders
+/// of jobs and of evaluations that the database does not know stay. Throws Error kDatabase, kStorageFull.
 /// context: before anybody is told of jobs.
 Reconciled reconcile_results(JobStore& store, const std::filesystem::path& results);
 
