@@ -77,7 +77,8 @@ struct JobStore::Impl {
   StorageReserve reserve FVD_GUARDED_BY(mutex);
   StoreMarker marker FVD_GUARDED_BY(mutex);
   AuditTable audit{{database, mutex}, {reader, read_mutex}};
-  std::int64_t epoch = 0;       // set before the store is used
+  std::int64_t epoch = 0;  // set before the store is used, as the next one
+  std::vector<std::string> interrupted;
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
   std::atomic<int> results{0};  // of these the completed ones
   mutable Mutex newest_mutex;   // held for a pointer's copy alone
@@ -98,6 +99,9 @@ void JobStore::Impl::count_start() {
     raise_seq_floors(database, found->newest_seq, found->margin);
   }
   database.execute("UPDATE starts SET epoch = epoch + 1");
+  Statement running(database, "SELECT job_id FROM jobs WHERE state = ?");
+  running.bind(job_state_name(JobState::kProcessing));
+  while (running.step()) interrupted.push_back(running.text(0));
   Statement(database, "UPDATE jobs SET state = ?, error = ?, error_message = ?, ended_utc = ? WHERE state = ?")
       .bind(job_state_name(JobState::kFailed))
       .bind(error_name(ErrorCode::kInterrupted))
@@ -364,6 +368,8 @@ ObjectiveTable& JobStore::objectives() noexcept { return impl_->objectives; }
 AuditTable& JobStore::audit() noexcept { return impl_->audit; }
 EvaluationTable& JobStore::evaluations() noexcept { return impl_->evaluations; }
 ResultTable& JobStore::results() noexcept { return impl_->on_disk; }
+
+const std::vector<std::string>& JobStore::interrupted_by_start() const noexcept { return impl_->interrupted; }
 
 const std::filesystem::path& JobStore::file() const noexcept { return impl_->file; }
 

@@ -179,6 +179,7 @@ TEST_F(AKillBetweenFolderAndRow, LeavesTheJobItsWholeResult) {
   EXPECT_EQ(now.status.state, JobState::kCompleted);
   EXPECT_EQ(now.status.error, std::nullopt);
   EXPECT_EQ(now.status.slices_planned, 3);
+  EXPECT_FALSE(now.status.acquired) << "nobody knows whether standstill was measured";
   EXPECT_EQ(now.result_json, test::read_text(fs::path(now.result_dir) / "result.json"));
   EXPECT_TRUE(now.files_pending) << "the files that follow are still to be made";
   EXPECT_EQ(store_->unacknowledged_results(), 1);
@@ -195,8 +196,19 @@ TEST_F(AKillBetweenFolderAndRow, LeavesNothingOfAFolderThatIsNotWhole) {
 
 TEST_F(AKillBetweenFolderAndRow, ChangesNothingThatWasToldAndAcknowledged) {
   (void)store_->acknowledge(ClientSeq{1});
-  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1);
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").set_aside, 1);
   EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
+}
+
+TEST_F(AKillBetweenFolderAndRow, ChangesNothingThatAStartBeforeTold) {
+  store_.reset();
+  store_ = std::make_unique<JobStore>(folder_ / "fvd.sqlite");
+  const Reconciled done = reconcile_results(*store_, folder_ / "results");
+  EXPECT_EQ(done.adopted, 0);
+  EXPECT_EQ(done.set_aside, 1);
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
+  EXPECT_TRUE(fs::is_empty(folder_ / "results"));
+  EXPECT_TRUE(fs::exists(folder_ / "set-aside" / job_.job_id / "result.json")) << "nothing measured is lost";
 }
 
 TEST_F(AKillBetweenFolderAndRow, LeavesFoldersOfJobsAndEvaluationsThatTheDatabaseDoesNotKnow) {
