@@ -27,22 +27,36 @@ std::vector<std::string> results_in(const fs::path& database_file) {
   return names;
 }
 
+/// False where it is not there, or goes meanwhile: the daemon may remove results, or their slices, to make room.
+bool copy_result(const fs::path& from, const fs::path& to) {
+  for (bool again = false;; again = true) {
+    std::error_code error;
+    if (!fs::is_directory(from, error)) return false;
+    try {
+      copy_durably(from, to);
+      return true;
+    } catch (const Error& failure) {
+      fs::remove_all(to, error);
+      const bool is_there = fs::is_directory(from, error);
+      if (is_there && (again || failure.code() != ErrorCode::kBadInput)) throw;
+    }
+  }
+}
+
 std::vector<std::string> copy_all(const InstrumentPaths& instrument, const fs::path& to, bool with_results) {
   copy_database_in_use(instrument.state_dir / kDatabaseFile, to / kDatabaseFile);
   for (const char* name : kStateFiles) copy_durably(instrument.state_dir / name, to / "state" / name);
   copy_durably(instrument.recipe_dir, to / "recipes");
-  copy_durably(instrument.config_file, to / "fvd.json");
+  copy_durably(instrument.config_file, to / kConfigFile);
+  copy_durably(instrument.config_file.parent_path() / kConfigParts, to / kConfigParts);
+  copy_durably(instrument.stage_profile, to / kStageProfile);
+  copy_durably(instrument.token_file, to / kTokenFile);
   std::vector<std::string> missing;
   if (!with_results) return missing;
   // Every row of the copy was written after its folder, and folders of results do not change but by whole files.
   for (const std::string& name : results_in(to / kDatabaseFile)) {
     const fs::path folder = instrument.state_dir / "results" / name;
-    std::error_code error;
-    if (!fs::is_directory(folder, error)) {
-      missing.push_back(name);
-      continue;
-    }
-    copy_durably(folder, to / "results" / name);
+    if (!copy_result(folder, to / "results" / name)) missing.push_back(name);
   }
   return missing;
 }
@@ -56,9 +70,12 @@ std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs
     throw Error(ErrorCode::kBadInput, final_dir.string() + " exists already: give another name, or move it away");
   }
   const fs::path temporary = final_dir.string() + ".tmp";
-  fs::remove_all(temporary, error);  // of one that was cut off
-  if (!fs::create_directories(temporary, error) && error) {
-    throw storage_error(error.value(), "create directory", temporary);
+  fs::create_directories(final_dir.parent_path(), error);
+  if (!fs::create_directory(temporary, error)) {
+    if (error) throw storage_error(error.value(), "create directory", temporary);
+    throw Error(ErrorCode::kBadInput, temporary.string() +
+                                          " exists: another backup is being made, or one was cut off: give another "
+                                          "name, or remove it");
   }
   try {
     std::vector<std::string> missing = copy_all(instrument, temporary, with_results);

@@ -31,6 +31,9 @@ void copy_bytes(const fs::path& from, const fs::path& to) {
     }
     if (!source.eof()) throw Error(ErrorCode::kBadInput, "cannot read all of " + from.string());
   });
+  // A file of tokens stays as readable as it was.
+  fs::permissions(to, fs::status(from).permissions());
+  give_to_owner_of(from, to);
 }
 
 void make_folder(const fs::path& folder) {
@@ -53,7 +56,7 @@ void copy_below(const fs::path& from, const fs::path& to) {
 
 void copy_durably(const fs::path& from, const fs::path& to) {
   try {
-    if (!fs::exists(from)) return;
+    if (from.empty() || !fs::exists(from)) return;
     make_folder(fs::absolute(to).parent_path());
     copy_below(from, to);
     sync_directory(fs::absolute(to).parent_path());

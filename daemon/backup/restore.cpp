@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <memory>
 #include <optional>
 #include <system_error>
 
@@ -37,11 +38,8 @@ Known known_to(const Database& database) {
   return {epoch.step() ? epoch.integer(0) : 0, newest_seqs_in(database)};
 }
 
-/// Of a database that is there and can be read. Throws Error kDatabase where a daemon has it.
-std::optional<Known> known_to_the_replaced(const fs::path& file) {
-  std::error_code error;
-  if (!fs::exists(file, error)) return std::nullopt;
-  const Database database(file);  // refused where a daemon has it
+/// Of a database that can be read.
+std::optional<Known> known_to_the_replaced(const Database& database) {
   try {
     return known_to(database);
   } catch (const Error&) {
@@ -86,7 +84,7 @@ fs::path unused_folder(const fs::path& state) {
 
 void put_back_where_missing(const fs::path& from, const fs::path& to, std::vector<std::string>& kept) {
   std::error_code error;
-  if (!fs::exists(from, error)) return;
+  if (to.empty() || !fs::exists(from, error)) return;
   if (fs::exists(to, error) && !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
     kept.push_back(to.string());
     return;
@@ -120,7 +118,10 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   const fs::path state = fs::absolute(instrument.state_dir);
   const fs::path file = state / kDatabaseFile;
   fs::create_directories(state / "results");
-  const auto replaced = known_to_the_replaced(file);
+  // Held to the end: no daemon starts meanwhile.
+  std::error_code ignored;
+  const auto held = fs::exists(file, ignored) ? std::make_unique<Database>(file) : nullptr;
+  const auto replaced = held ? known_to_the_replaced(*held) : std::nullopt;
   const fs::path incoming = state / "fvd.restored";
   const Known backup = prepare_database(folder / kDatabaseFile, incoming, state / "results");
 
@@ -148,7 +149,10 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   }
   restored.results = add_results(folder / "results", state / "results");
   put_back_where_missing(folder / "recipes", instrument.recipe_dir, restored.kept);
-  put_back_where_missing(folder / "fvd.json", instrument.config_file, restored.kept);
+  put_back_where_missing(folder / kConfigFile, instrument.config_file, restored.kept);
+  put_back_where_missing(folder / kConfigParts, instrument.config_file.parent_path() / kConfigParts, restored.kept);
+  put_back_where_missing(folder / kStageProfile, instrument.stage_profile, restored.kept);
+  put_back_where_missing(folder / kTokenFile, instrument.token_file, restored.kept);
   move(incoming, file);  // last: without it the daemon does not start
   sync_directory(state);
   give_to_owner_of(state, file);

@@ -24,6 +24,10 @@ void notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_s
 
 void notify_ready(const std::string& status) { notify("READY=1\nSTATUS=" + one_line(status)); }
 void notify_status(const std::string& status) { notify("STATUS=" + one_line(status)); }
+void notify_extend_timeout(std::chrono::seconds longest, const std::string& status) {
+  notify("EXTEND_TIMEOUT_USEC=" + std::to_string(std::chrono::microseconds(longest).count()) +
+         "\nSTATUS=" + one_line(status));
+}
 void notify_reloading() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);

@@ -112,6 +112,15 @@ void name_origins(LoadedConfig& loaded, const std::string& main_file) {
   }
 }
 
+/// False where one cannot be read: nothing follows then, as its values are not those that were meant.
+bool read_documents(LoadedConfig& loaded, const std::filesystem::path& file, const std::filesystem::path& parts) {
+  add_file(loaded, file, "");
+  for (const auto& part : part_files(parts, loaded.problems)) {
+    add_file(loaded, part, (kPartFolder / part.filename()).string());
+  }
+  return loaded.problems.empty();
+}
+
 }  // namespace
 
 LoadedConfig parse_config(std::string_view json_text, const std::filesystem::path& base, const Overrides& overrides) {
@@ -123,14 +132,16 @@ LoadedConfig parse_config(std::string_view json_text, const std::filesystem::pat
   return loaded;
 }
 
+LoadedConfig merge_config(const std::filesystem::path& file, const std::filesystem::path& parts,
+                          const std::filesystem::path& base, const Overrides& overrides) {
+  LoadedConfig loaded;
+  if (read_documents(loaded, file, parts)) read_merged(loaded, base, overrides);
+  return loaded;
+}
+
 LoadedConfig load_config(const std::filesystem::path& file, const Overrides& overrides) {
   LoadedConfig loaded;
-  add_file(loaded, file, "");
-  for (const auto& part : part_files(file.parent_path() / kPartFolder, loaded.problems)) {
-    add_file(loaded, part, (kPartFolder / part.filename()).string());
-  }
-  // Nothing follows from a document that could not be read: its values are not those that were meant.
-  if (!loaded.problems.empty()) return loaded;
+  if (!read_documents(loaded, file, file.parent_path() / kPartFolder)) return loaded;
   read_merged(loaded, file.parent_path(), overrides);
   for (Problem& problem : check_config(loaded.config, loaded.problems)) loaded.problems.push_back(std::move(problem));
   name_origins(loaded, file.filename().string());

@@ -36,6 +36,10 @@ struct LoadedConfig {
 /// of reading it; what rests on a value that they are about is not judged. No device is touched.
 [[nodiscard]] Problems check_config(const Config& config, const Problems& read = {});
 
+/// Reads the file and merges the folder `parts` into it as load_config() does, and does the first of the above alone.
+[[nodiscard]] LoadedConfig merge_config(const std::filesystem::path& file, const std::filesystem::path& parts,
+                                        const std::filesystem::path& base, const Overrides& overrides = {});
+
 /// Reads the file and merges into it what lies in the folder conf.d beside it (RFC 7396): every *.json in the order of
 /// the names' bytes, files that begin with a dot left out. Then does both of the above. A file that cannot be read is a
 /// problem, and the only one told then.

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/backup/backup.hpp"
 #include "daemon/backup/restore.hpp"
@@ -18,13 +17,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As the configuration says; one that is not there yet is taken from `instead`.
+/// As the configuration says; what of it is not there yet is taken from `instead`, as a restoration puts it back.
 InstrumentPaths paths_of(const fs::path& config, const fs::path& instead) {
   std::error_code error;
-  const fs::path& source = fs::exists(config, error) || instead.empty() ? config : instead;
-  const LoadedConfig loaded = parse_config(read_text_file(source), fs::absolute(config).parent_path());
+  const fs::path base = fs::absolute(config).parent_path();
+  const fs::path parts = base / "conf.d";
+  const bool has_parts = fs::is_directory(parts, error) && !fs::is_empty(parts, error);
+  const fs::path& source = fs::exists(config, error) || instead.empty() ? config : instead / "fvd.json";
+  const LoadedConfig loaded = merge_config(source, has_parts || instead.empty() ? parts : instead / "conf.d", base);
   throw_if_any(loaded.problems, ErrorCode::kBadConfig, source.string());
-  return {loaded.config.paths.state_dir, loaded.config.paths.recipe_dir, config};
+  const Config& read = loaded.config;
+  return {.state_dir = read.paths.state_dir,
+          .recipe_dir = read.paths.recipe_dir,
+          .config_file = base / config.filename(),
+          .stage_profile = read.stage.profile,
+          .token_file = read.rpc.access.token_file};
 }
 
 int backup(const BackupArguments& arguments, const Terminal& terminal) {
@@ -38,7 +45,7 @@ int backup(const BackupArguments& arguments, const Terminal& terminal) {
 
 int restore(const BackupArguments& arguments, const Terminal& terminal) {
   const fs::path folder = arguments.folder;
-  const Restored restored = restore_backup(folder, paths_of(arguments.config, folder / "fvd.json"));
+  const Restored restored = restore_backup(folder, paths_of(arguments.config, folder));
   terminal.out << "restored; the next epoch is " << restored.epoch + 1 << ", " << restored.results
                << " results were added\n";
   if (!restored.replaced.empty()) terminal.out << "what was there before is in " << restored.replaced.string() << "\n";

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -49,6 +51,7 @@ Found result_in(const fs::path& folder, const JobStatus& interrupted) {
     }
     JobStatus& status = job.status;
     status.state = JobState::kCompleted;
+    status.acquired = false;  // the result does not tell whether standstill was measured; part_release tells of now
     status.error.reset();
     status.error_message.clear();
     if (const auto shortage = shortfall(result)) {
@@ -70,6 +73,25 @@ Found result_in(const fs::path& folder, const JobStatus& interrupted) {
   }
 }
 
+bool ended_by_this_start(const JobStore& store, const std::string& job_id) {
+  const auto& ended = store.interrupted_by_start();
+  return std::find(ended.begin(), ended.end(), job_id) != ended.end();
+}
+
+/// The result of a job that was told as interrupted: what was told stays, and so does what was measured.
+bool set_aside(const fs::path& folder, const fs::path& aside) {
+  std::error_code error;
+  fs::create_directories(aside.parent_path(), error);
+  if (file_calls().rename_to_new(folder, aside) != 0) {
+    spdlog::error("{}: its job was told as interrupted, but it cannot be moved to {}: {}: it stays", folder.string(),
+                  aside.string(), std::strerror(errno));
+    return false;
+  }
+  spdlog::warn("{}: its job was told as interrupted and stays so; the whole result is in {} from now on",
+               folder.string(), aside.string());
+  return true;
+}
+
 /// "J-e3" is an evaluation of job J.
 bool names_an_evaluation(const std::string& name) {
   const auto mark = name.rfind("-e");
@@ -78,17 +100,15 @@ bool names_an_evaluation(const std::string& name) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-int remove_lost_evaluations(JobStore& store, const fs::path& results) {
-  int removed = 0;
+/// They may have been told by a newer database than the one that was put back.
+void name_lost_evaluations(JobStore& store, const fs::path& results) {
   std::error_code error;
   for (fs::directory_iterator entry(results, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (name.starts_with('.') || !names_an_evaluation(name) || store.evaluations().find(name)) continue;
-    spdlog::warn("{}: the daemon stopped before this evaluation was known to anybody: removed", entry->path().string());
-    file_calls().remove_all(entry->path());
-    ++removed;
+    spdlog::warn("{}: the database does not know this evaluation: it stays, and its number is not used again",
+                 entry->path().string());
   }
-  return removed;
 }
 
 }  // namespace
@@ -100,19 +120,24 @@ Reconciled reconcile_results(JobStore& store, const fs::path& results) {
     std::error_code error;
     if (!fs::exists(folder, error)) continue;
     const Found found = result_in(folder, interrupted);
-    if (found.whole && !interrupted.acknowledged) {
+    const bool was_told = interrupted.acknowledged || !ended_by_this_start(store, interrupted.job_id);
+    if (found.whole && !was_told) {
       store.finish(found.whole->status, found.whole->result_dir, found.whole->result_json, found.whole->files_pending);
       spdlog::warn("job {}: the daemon stopped between its result and its row: it is {} with the result in {}",
                    interrupted.job_id, job_state_name(found.whole->status.state), folder.string());
       ++done.adopted;
       continue;
     }
+    if (found.whole) {
+      if (set_aside(folder, results.parent_path() / "set-aside" / interrupted.job_id)) ++done.set_aside;
+      continue;
+    }
     spdlog::warn("job {}: {} is no whole result of it: removed: {}", interrupted.job_id, folder.string(),
-                 found.whole ? "the job was acknowledged as interrupted" : found.problem);
+                 found.problem);
     file_calls().remove_all(folder);
     ++done.removed;
   }
-  done.removed += remove_lost_evaluations(store, results);
+  name_lost_evaluations(store, results);
   return done;
 }
 

@@ -9,14 +9,15 @@
 namespace fvd {
 
 struct Reconciled {
-  int adopted = 0;  ///< jobs that have their result now
-  int removed = 0;  ///< folders that nobody was told of
+  int adopted = 0;    ///< jobs that have their result now
+  int removed = 0;    ///< folders that nobody was told of
+  int set_aside = 0;  ///< whole results of jobs that were told as interrupted
 };
 
-/// A folder whose job has no end becomes that job's result if it is whole, else it is removed; the folder of an
-/// evaluation without a row is removed. Each is logged. Folders of jobs that the database does not know stay. Throws
-/// Error kDatabase, kStorageFull.
-/// context: before anybody is told of jobs.
+/// The folder of a job that this start found running becomes that job's result if it is whole. A job that was told as
+/// interrupted stays so: its whole result is moved to the folder set-aside beside `results`. What is not whole is
+/// removed. Each is logged. Folders of jobs and of evaluations that the database does not know stay. Throws Error
+/// kDatabase, kStorageFull. context: before anybody is told of jobs.
 Reconciled reconcile_results(JobStore& store, const std::filesystem::path& results);
 
 }  // namespace fvd

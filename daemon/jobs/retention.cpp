@@ -1,5 +1,6 @@
 #include "daemon/jobs/retention.hpp"
 
+#include <cerrno>
 #include <chrono>
 #include <exception>
 #include <system_error>
@@ -7,9 +8,12 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/base/error.hpp"
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "daemon/export/file_calls.hpp"
+#include "daemon/export/replace_file.hpp"
+#include "daemon/export/result_json.hpp"
 
 namespace fvd {
 
@@ -42,10 +46,42 @@ std::uint64_t bytes_in(const fs::path& folder) {
   return bytes;
 }
 
-/// Hidden first: whatever happens meanwhile, nobody takes a part for the whole, and the next start clears it.
+/// Renamed to what is hidden first: whatever happens meanwhile, nobody takes a part for the whole, and the next start
+/// clears it.
+void remove_by(const fs::path& folder, const fs::path& hidden) {
+  std::error_code error;
+  if (file_calls().rename(folder, hidden) != 0) error.assign(errno, std::generic_category());
+  file_calls().remove_all(hidden);
+  std::error_code ignored;
+  if (!error && !fs::exists(hidden, ignored)) return;
+  spdlog::error("{} cannot be removed to make room: {}", folder.string(),
+                error ? error.message() : "a part of it stays as " + hidden.string());
+}
+
 void remove_whole(const fs::path& folder) {
-  const fs::path hidden = folder.parent_path() / ("." + folder.filename().string() + ".removed.tmp");
-  if (file_calls().rename(folder, hidden) == 0) file_calls().remove_all(hidden);
+  remove_by(folder, folder.parent_path() / ("." + folder.filename().string() + ".removed.tmp"));
+}
+
+/// The folders of all evaluations, by their jobs.
+std::map<std::string, std::vector<std::string>> evaluations_in(const fs::path& results) {
+  std::map<std::string, std::vector<std::string>> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(results, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const auto mark = name.rfind("-e");
+    if (mark != std::string::npos && !name.starts_with('.')) found[name.substr(0, mark)].push_back(name);
+  }
+  return found;
+}
+
+/// The text of a result whose recorded slices are gone.
+std::string without_slices(const std::string& text) {
+  Result result = read_result_json(text);
+  for (ResultFile& file : result.files) {
+    if (file.name != "slices/") continue;
+    file = {.name = file.name, .state = FileState::kNotMade, .reason = "removed to make room at " + utc_now()};
+  }
+  return result_json_with_files(text, result.files, result.times.follow_ms.value_or(0.0));
 }
 
 }  // namespace
@@ -80,16 +116,22 @@ void Retention::run_once(const std::stop_token& stop) noexcept {
 }
 
 void Retention::finish_removals() {
-  for (const std::string& job_id : store_.results().removed_last()) {
-    std::error_code error;
-    if (fs::exists(results_ / job_id, error)) remove_whole(results_ / job_id);
-  }
+  evaluations_ = evaluations_in(results_);
+  for (const std::string& job_id : store_.results().removed_last()) remove_folders(job_id);
 }
 
 Retention::Size Retention::size_of(const std::string& job_id) {
   const auto known = sizes_.find(job_id);
   if (known != sizes_.end()) return known->second;
   return sizes_[job_id] = {bytes_in(results_ / job_id), bytes_in(results_ / job_id / "slices")};
+}
+
+std::uint64_t Retention::evaluation_bytes(const std::string& job_id) {
+  std::uint64_t bytes = 0;
+  const auto found = evaluations_.find(job_id);
+  if (found == evaluations_.end()) return 0;
+  for (const std::string& name : found->second) bytes += size_of(name).bytes;
+  return bytes;
 }
 
 void Retention::make_room(const std::stop_token& stop) {
@@ -101,7 +143,8 @@ void Retention::make_room(const std::stop_token& stop) {
     // What may still grow is looked at anew.
     if (!removable) sizes_.erase(job.status.job_id);
     const Size size = size_of(job.status.job_id);
-    results.push_back({seconds_since(job.status.ended_utc), size.bytes, size.slices_bytes, removable});
+    const std::uint64_t bytes = size.bytes + evaluation_bytes(job.status.job_id);
+    results.push_back({seconds_since(job.status.ended_utc), bytes, size.slices_bytes, removable});
   }
   std::error_code error;
   const fs::space_info disk = fs::space(results_, error);
@@ -115,14 +158,35 @@ void Retention::make_room(const std::stop_token& stop) {
 }
 
 void Retention::remove_slices(const StoredJob& job) {
-  spdlog::info("job {}: its recorded slices are removed to make room", job.status.job_id);
-  file_calls().remove_all(results_ / job.status.job_id / "slices");
+  const std::string& job_id = job.status.job_id;
+  try {
+    const std::string text = without_slices(store_.find(job_id).result_json);
+    replace_file(results_ / job_id / "result.json", [&text](const ByteSink& sink) { sink(text); });
+    store_.note_files(job_id, text, false);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadInput) throw;  // of the disk: what is not told is not removed
+    spdlog::warn("job {}: that its slices are removed cannot be told in its result: {}", job_id, error.what());
+  }
+  spdlog::info("job {}: its recorded slices are removed to make room", job_id);
+  remove_by(results_ / job_id / "slices", results_ / ("." + job_id + ".slices.removed.tmp"));
 }
 
 void Retention::remove_result(const StoredJob& job) {
   if (!store_.results().mark_removed(job.status.job_id)) return;
   spdlog::info("job {}: its result is removed to make room; what it came to stays known", job.status.job_id);
-  remove_whole(results_ / job.status.job_id);
+  remove_folders(job.status.job_id);
+}
+
+void Retention::remove_folders(const std::string& job_id) {
+  std::error_code error;
+  if (fs::exists(results_ / job_id, error)) remove_whole(results_ / job_id);
+  const auto found = evaluations_.find(job_id);
+  if (found == evaluations_.end()) return;
+  for (const std::string& name : found->second) {
+    remove_whole(results_ / name);
+    sizes_.erase(name);
+  }
+  evaluations_.erase(found);
 }
 
 }  // namespace fvd

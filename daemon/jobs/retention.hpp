@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "daemon/config/config.hpp"
 #include "daemon/store/job_store.hpp"
@@ -17,7 +18,8 @@
 namespace fvd {
 
 /// A result is first told as removed, durably, and then removed: a process that is killed between the two goes on at
-/// the next start. Each removal is logged. context: one thread, beside its own.
+/// the next start. The evaluations of a result count and go with it. Each removal is logged, and each that fails.
+/// context: one thread, beside its own.
 class Retention {
  public:
   /// What they refer to outlives it.
@@ -43,14 +45,18 @@ class Retention {
   void finish_removals();
   void make_room(const std::stop_token& stop);
   [[nodiscard]] Size size_of(const std::string& job_id);
+  [[nodiscard]] std::uint64_t evaluation_bytes(const std::string& job_id);
   void remove_result(const StoredJob& job);
+  /// Of the job's result and of its evaluations.
+  void remove_folders(const std::string& job_id);
   void remove_slices(const StoredJob& job);
 
   JobStore& store_;
   const StoreConfig config_;
   const std::filesystem::path results_;
-  std::map<std::string, Size> sizes_;  // of results that do not change any more
-  std::jthread thread_;                // last: ends before anything it uses
+  std::map<std::string, Size> sizes_;                            // of results that do not change any more
+  std::map<std::string, std::vector<std::string>> evaluations_;  // on the disk, by job
+  std::jthread thread_;                                          // last: ends before anything it uses
 };
 
 }  // namespace fvd

@@ -36,6 +36,17 @@ std::filesystem::path checked_file(const std::filesystem::path& file, const JobS
   return with_folder(file);
 }
 
+/// An older copy was put in the place of the database that the marker tells of.
+bool is_older(const Database& database, const StoreMarker& marker) {
+  if (marker.epoch > scalar(database, "SELECT epoch FROM starts")) return true;
+  if (!marker.file.empty() && marker.file != file_mark(database.file())) return true;  // a copy of the same epoch
+  const NewestSeqs newest = newest_seqs_in(database);
+  return std::any_of(marker.newest_seq.begin(), marker.newest_seq.end(), [&newest](const auto& noted) {
+    const auto known = newest.find(noted.first);
+    return known == newest.end() || known->second < noted.second;
+  });
+}
+
 void remember_in(const Database& database, const std::string& recipe_id) {
   Statement(database, "INSERT OR REPLACE INTO prepared_recipe (one, recipe) VALUES (1, ?)").bind(recipe_id).run();
 }
@@ -77,7 +88,8 @@ struct JobStore::Impl {
   StorageReserve reserve FVD_GUARDED_BY(mutex);
   StoreMarker marker FVD_GUARDED_BY(mutex);
   AuditTable audit{{database, mutex}, {reader, read_mutex}};
-  std::int64_t epoch = 0;       // set before the store is used
+  std::int64_t epoch = 0;  // set before the store is used, as the next one
+  std::vector<std::string> interrupted;
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
   std::atomic<int> results{0};  // of these the completed ones
   mutable Mutex newest_mutex;   // held for a pointer's copy alone
@@ -89,15 +101,18 @@ void JobStore::Impl::count_start() {
   const auto found = read_marker(database.file());
   migrate(database);
   Transaction transaction(database);
-  if (found && found->epoch > scalar(database, "SELECT epoch FROM starts")) {
+  if (found && is_older(database, *found)) {
     spdlog::warn(
-        "database {}: it is older than the one of before, or new: epoch {} goes on from {}; numbers that may "
-        "have been used are not run again",
-        database.file().string(), found->epoch + 1, found->epoch);
-    Statement(database, "UPDATE starts SET epoch = ?").bind(found->epoch).run();
+        "database {}: it is older than the one of before, or another file: its epoch goes on behind {}; numbers that "
+        "may have been used are not run again",
+        database.file().string(), found->epoch);
+    Statement(database, "UPDATE starts SET epoch = max(epoch, ?)").bind(found->epoch).run();
     raise_seq_floors(database, found->newest_seq, found->margin);
   }
   database.execute("UPDATE starts SET epoch = epoch + 1");
+  Statement running(database, "SELECT job_id FROM jobs WHERE state = ?");
+  running.bind(job_state_name(JobState::kProcessing));
+  while (running.step()) interrupted.push_back(running.text(0));
   Statement(database, "UPDATE jobs SET state = ?, error = ?, error_message = ?, ended_utc = ? WHERE state = ?")
       .bind(job_state_name(JobState::kFailed))
       .bind(error_name(ErrorCode::kInterrupted))
@@ -112,6 +127,7 @@ void JobStore::Impl::count_start() {
   results =
       static_cast<int>(scalar(database, "SELECT count(*) FROM jobs WHERE acknowledged = 0 AND state = 'completed'"));
   marker.newest_seq = newest_seqs_in(database);
+  marker.file = file_mark(database.file());
   {
     const MutexLock newest_lock(newest_mutex);
     newest = std::make_shared<const NewestSeqs>(marker.newest_seq);
@@ -364,6 +380,8 @@ ObjectiveTable& JobStore::objectives() noexcept { return impl_->objectives; }
 AuditTable& JobStore::audit() noexcept { return impl_->audit; }
 EvaluationTable& JobStore::evaluations() noexcept { return impl_->evaluations; }
 ResultTable& JobStore::results() noexcept { return impl_->on_disk; }
+
+const std::vector<std::string>& JobStore::interrupted_by_start() const noexcept { return impl_->interrupted; }
 
 const std::filesystem::path& JobStore::file() const noexcept { return impl_->file; }
 

@@ -103,6 +103,9 @@ class JobStore {
   [[nodiscard]] ResultTable& results() noexcept;
   [[nodiscard]] AuditTable& audit() noexcept;
 
+  /// The ids of the jobs that this start found running and ended: nobody was told of their ends yet.
+  [[nodiscard]] const std::vector<std::string>& interrupted_by_start() const noexcept;
+
   [[nodiscard]] const std::filesystem::path& file() const noexcept;
 
   /// Counts the times this database was opened, from 1; an older copy goes on behind the newest.

@@ -1,11 +1,13 @@
 #include "daemon/store/migrations.hpp"
 
 #include <array>
+#include <chrono>
 #include <string>
 
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
+#include "daemon/base/systemd_notify.hpp"
 #include "daemon/store/database_copy.hpp"
 
 namespace fvd {
@@ -192,6 +194,9 @@ ALTER TABLE jobs ADD COLUMN reason_codes TEXT NOT NULL DEFAULT '';
 ALTER TABLE jobs ADD COLUMN removed_utc TEXT NOT NULL DEFAULT '';
 UPDATE jobs SET verdict = coalesce(json_extract(result_json, '$.verdict'), '') WHERE json_valid(result_json);
 UPDATE jobs SET acquired = 0 WHERE error = 'interrupted';
+CREATE INDEX jobs_with_results ON jobs (number, job_id, ended_utc, acknowledged, files_pending, result_dir, removed_utc)
+  WHERE result_dir <> '' AND removed_utc = '';
+CREATE INDEX jobs_with_removed_results ON jobs (removed_utc, job_id) WHERE removed_utc <> '';
 CREATE TABLE seq_floors (
   client TEXT    NOT NULL PRIMARY KEY,
   seq    INTEGER NOT NULL
@@ -252,6 +257,27 @@ void require_own_file(const Database& database, int version) {
   }
 }
 
+/// A copy appears whole or not at all; no start was counted since it was made where the epoch is the same.
+bool is_copied(const Database& database, const std::filesystem::path& copy) {
+  std::error_code error;
+  if (!std::filesystem::exists(copy, error)) return false;
+  try {
+    const char* const epoch = "SELECT epoch FROM starts";
+    const Database earlier(copy);
+    return schema_version(earlier) == schema_version(database) && scalar(earlier, epoch) == scalar(database, epoch);
+  } catch (const Error&) {
+    return false;  // it is made anew
+  }
+}
+
+/// Far more than copying or rewriting a database of its size takes.
+std::chrono::seconds longest_step(const Database& database) {
+  constexpr std::uintmax_t kSlowest_bytes_per_s = 2'000'000;
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(database.file(), error);
+  return std::chrono::seconds(90 + (error ? 0 : static_cast<std::int64_t>(bytes / kSlowest_bytes_per_s)));
+}
+
 }  // namespace
 
 std::span<const MigrationStep> migration_steps() { return kSteps; }
@@ -265,12 +291,14 @@ void migrate(Database& database, int version) {
   require_own_file(database, found);
   if (found > 0 && found < version) {
     const std::string copy = database.file().string() + ".v" + std::to_string(found);
-    copy_database(database, copy);
+    notify_extend_timeout(longest_step(database), "copying the database before it is brought up to date");
+    if (!is_copied(database, copy)) copy_database(database, copy);
     spdlog::info("database {}: a copy of version {} is kept as {}", database.file().string(), found, copy);
   }
   database.use_write_ahead_log();
   for (int from = found; from < version; ++from) {
     const MigrationStep& step = kSteps.at(static_cast<std::size_t>(from));
+    notify_extend_timeout(longest_step(database), "bringing the database up to date: " + std::string(step.what));
     Transaction transaction(database);
     step.run(database);
     database.execute(("PRAGMA user_version = " + std::to_string(from + 1)).c_str());

@@ -1,9 +1,13 @@
 #include "daemon/store/store_marker.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <string>
 #include <system_error>
 
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
@@ -25,6 +29,19 @@ bool has_results(const fs::path& folder) {
 
 }  // namespace
 
+std::string file_mark(const fs::path& file) {
+  struct statx info {};
+  if (::statx(AT_FDCWD, file.c_str(), 0, STATX_INO | STATX_BTIME, &info) != 0) {
+    throw Error(ErrorCode::kDatabase, "cannot look at " + file.string() + ": " + std::strerror(errno));
+  }
+  std::string mark = std::to_string(info.stx_ino);
+  // Inodes of deleted files are given again at once; some file systems do not know when one was made.
+  if ((info.stx_mask & STATX_BTIME) != 0) {
+    mark += "." + std::to_string(info.stx_btime.tv_sec) + "." + std::to_string(info.stx_btime.tv_nsec);
+  }
+  return mark;
+}
+
 fs::path marker_file(const fs::path& database) { return fs::path(database).replace_extension(".epoch"); }
 
 std::optional<StoreMarker> read_marker(const fs::path& database) {
@@ -37,6 +54,7 @@ std::optional<StoreMarker> read_marker(const fs::path& database) {
     marker.epoch = json.at("epoch").get<std::int64_t>();
     marker.newest_seq = json.at("newest_seq").get<NewestSeqs>();
     marker.margin = json.at("margin").get<std::int64_t>();
+    marker.file = json.value("file", std::string());
     return marker;
   } catch (const std::exception& problem) {
     throw Error(ErrorCode::kDatabase, file.string() + " cannot be read: " + problem.what() +
@@ -47,7 +65,7 @@ std::optional<StoreMarker> read_marker(const fs::path& database) {
 
 void write_marker(const fs::path& database, const StoreMarker& marker) {
   const nlohmann::ordered_json json{
-      {"epoch", marker.epoch}, {"newest_seq", marker.newest_seq}, {"margin", marker.margin}};
+      {"epoch", marker.epoch}, {"newest_seq", marker.newest_seq}, {"margin", marker.margin}, {"file", marker.file}};
   replace_file(marker_file(database), [text = json.dump() + "\n"](const ByteSink& sink) { sink(text); });
 }
 

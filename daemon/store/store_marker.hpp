@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "daemon/store/sequence_numbers.hpp"
 
@@ -15,7 +16,12 @@ struct StoreMarker {
   std::int64_t epoch = 0;          ///< of the database; one of a lower epoch is an older copy
   NewestSeqs newest_seq;           ///< of each client
   std::int64_t margin = kSeqJump;  ///< so far behind may newest_seq be
+  std::string file;                ///< which file the database was, see file_mark(); empty = not known
 };
+
+/// Tells a file from a copy of it: its inode and when that was made. Not the device: its number may be another one
+/// after a reboot. Throws Error kDatabase.
+[[nodiscard]] std::string file_mark(const std::filesystem::path& file);
 
 /// "fvd.epoch" for "fvd.sqlite".
 [[nodiscard]] std::filesystem::path marker_file(const std::filesystem::path& database);

@@ -199,10 +199,13 @@ class Life:
         self.holds["removed"] = True
 
     def purge(self):
+        self.machine.shell("rm -rf /var/lib/fvd/results/* && mkdir -p /var/lib/fvd/calibration && "
+                           "echo '{}' > /var/lib/fvd/calibration/calibration.json")
         said = self.dpkg("-P", "fvd")
         assert self.machine.try_run("test", "-e", "/etc/fvd/fvd.json")[0] != 0
         assert "results stay in /var/lib/fvd" in said, said
-        self.machine.shell("test -n \"$(ls /var/lib/fvd/results)\"")
+        for kept in ("calibration/calibration.json", "fvd.sqlite"):
+            self.machine.run("test", "-e", f"/var/lib/fvd/{kept}")
         assert self.machine.try_run("systemctl", "cat", "fvd")[0] != 0
         self.holds["purged"] = True
 

@@ -2,12 +2,18 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <thread>
+#include <utility>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 #include "daemon/backup/restore.hpp"
+#include "daemon/base/unique_fd.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/store/job_store.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
@@ -92,6 +98,55 @@ TEST_F(AnInstrument, LeavesNoHalfBackup) {
   FVD_EXPECT_ERROR(kDatabase, (void)make_backup(paths_, backup_, false));
   EXPECT_FALSE(fs::exists(backup_));
   EXPECT_FALSE(fs::exists(folder_ / "backup.tmp"));
+}
+
+/// Does something once, when a file is made below a folder.
+class OnFirstFile : public FileCalls {
+ public:
+  OnFirstFile(fs::path below, std::function<void()> action) : below_(std::move(below)), action_(std::move(action)) {}
+  int create(const fs::path& path) override {
+    if (path.string().starts_with(below_.string())) {
+      if (const auto action = std::exchange(action_, nullptr)) action();
+    }
+    return FileCalls::create(path);
+  }
+
+ private:
+  const fs::path below_;
+  std::function<void()> action_;
+};
+
+TEST_F(AnInstrument, IsBackedUpThoughAResultIsRemovedMeanwhile) {
+  const std::string first = measure(1);
+  const std::string second = measure(2);
+  OnFirstFile removal(folder_ / "backup.tmp" / "results", [&] {
+    fs::rename(paths_.state_dir / "results" / first, paths_.state_dir / "results" / ".gone");
+  });
+  const ReplacedFileCalls replaced(removal);
+  EXPECT_EQ(make_backup(paths_, backup_, true), std::vector{first});
+  EXPECT_TRUE(fs::exists(backup_ / "results" / second / "slices" / "z.txt"));
+  EXPECT_FALSE(fs::exists(backup_ / "results" / first));
+}
+
+TEST_F(AnInstrument, RemovesNoFolderThatAnotherBackupMayBeFilling) {
+  fs::create_directory(folder_ / "backup.tmp");
+  test::write_text(folder_ / "backup.tmp" / "mine", "x");
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)make_backup(paths_, backup_, false), HasSubstr("backup.tmp"));
+  EXPECT_TRUE(fs::exists(folder_ / "backup.tmp" / "mine"));
+}
+
+TEST_F(AnInstrument, IsHeldUntilItIsRestored) {
+  measure(1);
+  (void)make_backup(paths_, backup_, false);
+  store_.reset();
+  bool held = false;
+  OnFirstFile look(paths_.state_dir / "stage_history", [&] {
+    const UniqueFd old(::open((paths_.state_dir / "replaced-1" / "fvd.sqlite").c_str(), O_RDONLY | O_CLOEXEC));
+    held = old.valid() && ::flock(old.get(), LOCK_EX | LOCK_NB) != 0;
+  });
+  const ReplacedFileCalls replaced(look);
+  (void)restore_backup(backup_, paths_);
+  EXPECT_TRUE(held);
 }
 
 TEST_F(AnInstrument, IsRestoredAndNoNumberRunsTwice) {

@@ -43,6 +43,36 @@ TEST_F(BackupCommands, CopyAndPutBack) {
   EXPECT_EQ(JobStore(folder_ / "state" / "fvd.sqlite").find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
 }
 
+TEST_F(BackupCommands, FollowTheFilesOfConfD) {
+  const fs::path profile = folder_ / "drive.json";
+  const fs::path tokens = folder_ / "tokens";
+  test::write_text(config_, "{}");
+  fs::create_directories(folder_ / "conf.d");
+  test::write_text(folder_ / "conf.d" / "10-station.json",
+                   R"({"paths": {"state_dir": ")" + (folder_ / "elsewhere").string() +
+                       R"(", "recipe_dir": "recipes"}, "stage": {"profile": "drive.json"},
+                       "rpc": {"token_file": "tokens"}})");
+  test::write_text(profile, "{}");
+  test::write_text(tokens, "kiosk operate 00");
+  fs::permissions(tokens, fs::perms::owner_read | fs::perms::owner_write);
+  (void)JobStore(folder_ / "elsewhere" / "fvd.sqlite").accept({1, "part", "chapter"});
+  const auto made = run_command({"backup", backup_, "--config", config_});
+  ASSERT_EQ(made.code, ctl::kExitOk) << made.err;
+  fs::remove_all(folder_ / "elsewhere");
+  fs::remove_all(folder_ / "conf.d");
+  fs::remove(profile);
+  fs::remove(tokens);
+
+  const auto restored = run_command({"restore", backup_, "--config", config_});
+
+  ASSERT_EQ(restored.code, ctl::kExitOk) << restored.err;
+  EXPECT_EQ(JobStore(folder_ / "elsewhere" / "fvd.sqlite").find(ClientSeq{1}).status.request.seq, 1);
+  EXPECT_TRUE(fs::exists(folder_ / "conf.d" / "10-station.json"));
+  EXPECT_TRUE(fs::exists(profile));
+  EXPECT_EQ(test::read_text(tokens), "kiosk operate 00");
+  EXPECT_EQ(fs::status(tokens).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(BackupCommands, SayWhatIsWrong) {
   EXPECT_EQ(run_command({"backup"}).code, ctl::kExitUsage);
   const auto none = run_command({"backup", backup_, "--config", config_});

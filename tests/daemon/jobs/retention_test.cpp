@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/export/result_json.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -73,6 +74,46 @@ TEST_F(ARetention, RemovesAcknowledgedResultsThatAreOldAndSaysSo) {
   for (const auto& entry : fs::directory_iterator(results_)) {
     EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
   }
+}
+
+TEST_F(ARetention, CountsEvaluationsAndRemovesThemWithTheirJob) {
+  const std::string old = add(1, true, kLongAgo);
+  const std::string waiting = add(2, false, kLongAgo);
+  for (const std::string& id : {old, waiting}) fs::create_directories(results_ / (id + "-e1"));
+  test::write_text(results_ / (old + "-e1") / "result.json", "");
+  fs::resize_file(results_ / (old + "-e1") / "result.json", std::uintmax_t{2} << 30U);
+  Retention retention(store_, {.keep_gib = 1}, results_);
+  retention.run_once();
+  EXPECT_FALSE(fs::exists(results_ / old)) << "with its evaluation it is above the limit";
+  EXPECT_FALSE(fs::exists(results_ / (old + "-e1")));
+  EXPECT_TRUE(fs::exists(results_ / (waiting + "-e1")));
+}
+
+TEST_F(ARetention, TellsThatSlicesAreGone) {
+  JobStatus job = store_.accept({1, "part", "chapter"});
+  job.state = JobState::kCompleted;
+  job.ended_utc = kLongAgo;
+  Result result;
+  result.job.id = job.job_id;
+  result.files = {{.name = "slices/", .files = 2}, {.name = "height.tiff", .size_bytes = 1}};
+  const fs::path folder = results_ / job.job_id;
+  fs::create_directories(folder / "slices");
+  const std::string before = result_json_text(result);
+  test::write_text(folder / "result.json", before);
+  test::write_text(folder / "slices" / "a.pgm", "");
+  fs::resize_file(folder / "slices" / "a.pgm", std::uintmax_t{2} << 30U);
+  store_.finish(job, folder.string(), before);
+  (void)store_.acknowledge(job.job_id);
+  Retention retention(store_, {.keep_gib = 1}, results_);
+  retention.run_once();
+  EXPECT_FALSE(fs::exists(folder / "slices"));
+  const std::string now = store_.find(job.job_id).result_json;
+  EXPECT_EQ(test::read_text(folder / "result.json"), now);
+  const std::vector<ResultFile> files = read_result_json(now).files;
+  EXPECT_EQ(files.at(0).state, FileState::kNotMade);
+  EXPECT_NE(files.at(0).reason, "");
+  EXPECT_EQ(files.at(1), result.files.at(1));
+  EXPECT_EQ(std::distance(fs::directory_iterator(results_), {}), 1);
 }
 
 TEST_F(ARetention, GoesOnWithARemovalThatWasCutOff) {

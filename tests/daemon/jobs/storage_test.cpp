@@ -179,6 +179,7 @@ TEST_F(AKillBetweenFolderAndRow, LeavesTheJobItsWholeResult) {
   EXPECT_EQ(now.status.state, JobState::kCompleted);
   EXPECT_EQ(now.status.error, std::nullopt);
   EXPECT_EQ(now.status.slices_planned, 3);
+  EXPECT_FALSE(now.status.acquired) << "nobody knows whether standstill was measured";
   EXPECT_EQ(now.result_json, test::read_text(fs::path(now.result_dir) / "result.json"));
   EXPECT_TRUE(now.files_pending) << "the files that follow are still to be made";
   EXPECT_EQ(store_->unacknowledged_results(), 1);
@@ -195,17 +196,28 @@ TEST_F(AKillBetweenFolderAndRow, LeavesNothingOfAFolderThatIsNotWhole) {
 
 TEST_F(AKillBetweenFolderAndRow, ChangesNothingThatWasToldAndAcknowledged) {
   (void)store_->acknowledge(ClientSeq{1});
-  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1);
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").set_aside, 1);
   EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
 }
 
-TEST_F(AKillBetweenFolderAndRow, LeavesFoldersOfJobsThatNobodyKnowsAndRemovesEvaluationsWithoutARow) {
+TEST_F(AKillBetweenFolderAndRow, ChangesNothingThatAStartBeforeTold) {
+  store_.reset();
+  store_ = std::make_unique<JobStore>(folder_ / "fvd.sqlite");
+  const Reconciled done = reconcile_results(*store_, folder_ / "results");
+  EXPECT_EQ(done.adopted, 0);
+  EXPECT_EQ(done.set_aside, 1);
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
+  EXPECT_TRUE(fs::is_empty(folder_ / "results"));
+  EXPECT_TRUE(fs::exists(folder_ / "set-aside" / job_.job_id / "result.json")) << "nothing measured is lost";
+}
+
+TEST_F(AKillBetweenFolderAndRow, LeavesFoldersOfJobsAndEvaluationsThatTheDatabaseDoesNotKnow) {
   const fs::path results = folder_ / "results";
   fs::create_directory(results / "20260101T000000Z-00001-000001");
   fs::create_directory(results / (job_.job_id + "-e1"));
   (void)reconcile_results(*store_, results);
   EXPECT_TRUE(fs::exists(results / "20260101T000000Z-00001-000001")) << "a database that was put back may lack its row";
-  EXPECT_FALSE(fs::exists(results / (job_.job_id + "-e1")));
+  EXPECT_TRUE(fs::exists(results / (job_.job_id + "-e1"))) << "and an evaluation's, which was told";
 }
 
 }  // namespace

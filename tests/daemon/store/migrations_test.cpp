@@ -12,6 +12,7 @@
 #include "tests/daemon/store/broken_disk.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
+#include "tests/support/service_manager.hpp"
 
 namespace fvd {
 namespace {
@@ -169,6 +170,49 @@ TEST_F(AFileOfVersion1, StaysWholeWhenAStepCannotRun) {
   FVD_EXPECT_ERROR_SAYING(kDatabase, migrate(database), HasSubstr("jobs_2"));
   EXPECT_EQ(schema_version(database), 1);
   EXPECT_EQ(rows_of(database), rows);
+}
+
+TEST_F(AFileOfVersion1, IsNotCopiedTwiceWhereAMigrationWasCutOff) {
+  const std::filesystem::path copy = file_.string() + ".v1";
+  const std::filesystem::path before = folder_.path() / "before.sqlite";
+  std::filesystem::copy_file(file_, before);
+  const auto migrate_anew = [&] {
+    std::filesystem::copy_file(before, file_, std::filesystem::copy_options::overwrite_existing);
+    for (const char* log : {"-wal", "-shm"}) std::filesystem::remove(file_.string() + log);
+    Database database(file_);
+    migrate(database);
+    return std::filesystem::last_write_time(copy);
+  };
+  const auto made = migrate_anew();
+  EXPECT_EQ(migrate_anew(), made);
+  Database(before).execute("UPDATE starts SET epoch = epoch + 1");
+  EXPECT_NE(migrate_anew(), made) << "the older fvd ran since";
+}
+
+TEST_F(AFileOfVersion1, IsAnsweredInRetentionByIndexesAlone) {
+  Database database(file_);
+  migrate(database);
+  const auto plan = [&database](const char* sql) {
+    Statement rows(database, sql);
+    return rows.step() ? rows.text(3) : "";
+  };
+  EXPECT_THAT(plan("EXPLAIN QUERY PLAN SELECT job_id, ended_utc, acknowledged, files_pending FROM jobs "
+                   "WHERE result_dir <> '' AND removed_utc = '' ORDER BY number"),
+              HasSubstr("COVERING INDEX jobs_with_results"));
+  EXPECT_THAT(plan("EXPLAIN QUERY PLAN SELECT job_id FROM jobs WHERE removed_utc <> '' "
+                   "ORDER BY removed_utc DESC LIMIT 100"),
+              HasSubstr("COVERING INDEX jobs_with_removed_results"));
+}
+
+using AnUpgrade = test::AServiceManager;
+
+TEST_F(AnUpgrade, AsksSystemdForMoreTime) {
+  const test::ScratchDir folder;
+  std::filesystem::copy_file(FVD_TEST_DATA "/fvd_0.1.0.sqlite", folder / "fvd.sqlite");
+  Database database(folder / "fvd.sqlite");
+  migrate(database, 2);
+  EXPECT_THAT(heard(), AllOf(HasSubstr("EXTEND_TIMEOUT_USEC=90000000\n"), HasSubstr("STATUS=copying")));
+  EXPECT_THAT(heard(), AllOf(HasSubstr("EXTEND_TIMEOUT_USEC="), HasSubstr("STATUS=bringing")));
 }
 
 TEST(AFileOfTheFuture, IsRefusedAndLeftAlone) {

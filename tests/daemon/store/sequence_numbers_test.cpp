@@ -113,6 +113,31 @@ TEST_F(SequenceNumbers, AreNeverUsedAgainAfterAnOlderDatabaseWasPutBack) {
   FVD_EXPECT_ERROR(kSeqStale, (void)store_->accept({9, "part", "chapter"}));
 }
 
+TEST_F(SequenceNumbers, AreNeverUsedAgainAfterACopyOfTheSameEpochWasPutBack) {
+  end(7);
+  const fs::path copy = folder_.path() / "copy.sqlite";
+  copy_database_in_use(file_, copy);
+  end(8);
+  store_.reset();
+  fs::rename(copy, file_);
+  open();
+  FVD_EXPECT_ERROR_SAYING(kSeqStale, (void)store_->accept({8, "part", "chapter"}), HasSubstr("restored"));
+  EXPECT_NO_THROW(end(newest() + 1));
+  const std::int64_t used = newest();
+  open();
+  EXPECT_EQ(newest(), used) << "once";
+}
+
+TEST_F(SequenceNumbers, AreNeverUsedAgainWhereTheMarkerKnowsNewerOnes) {
+  end(7);
+  store_.reset();
+  StoreMarker marker = read_marker(file_).value();
+  marker.newest_seq["plc"] = 9;
+  write_marker(file_, marker);
+  open();
+  FVD_EXPECT_ERROR(kSeqStale, (void)store_->accept({9, "part", "chapter"}));
+}
+
 TEST_F(SequenceNumbers, OfADatabaseThatIsGoneAreNeverUsedAgain) {
   end(7);
   const std::int64_t epoch = store_->epoch();
