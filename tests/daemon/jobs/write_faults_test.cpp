@@ -119,10 +119,10 @@ TEST_P(EveryWriteFault, LeavesAResultWholeWhoseOtherFilesFollow) {
 
 TEST_P(EveryWriteFault, LeavesTheOldMarkerOrTheNewOne) {
   const fs::path database = folder_ / "fvd.sqlite";
-  write_marker(database, {.epoch = 1, .newest_seq = {}});
+  write_marker(database, {.epoch = 1, .newest_seq = {}, .file = {}});
   each(
       [&] {
-        write_marker(database, {.epoch = 2, .newest_seq = {{"plc", 7}}});
+        write_marker(database, {.epoch = 2, .newest_seq = {{"plc", 7}}, .file = {}});
       },
       [&](bool failed) {
         const std::int64_t epoch = read_marker(database).value().epoch;
