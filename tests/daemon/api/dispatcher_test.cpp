@@ -133,6 +133,7 @@ TEST_F(ADispatcher, LeavesToHandleWhatMayBlock) {
   for (const auto& [method, params] : params_of.items()) {
     const json request{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}};
     EXPECT_FALSE(dispatcher_.try_handle(request.dump(), caller_).has_value()) << method;
+    if (method == "job.abort") continue;  // urgent ones are refused in a batch, at once
     const json ping{{"jsonrpc", "2.0"}, {"id", 2}, {"method", "system.ping"}};
     EXPECT_FALSE(dispatcher_.try_handle(json{ping, request}.dump(), caller_).has_value()) << method << " in a batch";
   }
