@@ -160,9 +160,9 @@ TEST_F(AGuardedRpcServer, MovesNothingThatStoodBehindAMotionWhenAStopCame) {
   };
   serve();
   LineClient client(server_->port());
-  client.send(call("job.start", {{"seq", 5}, {"part_id", "p"}}) + "\n" + call("stage.move", {{"z_um", 1}}, 2) + "\n" +
-              call("stage.stop", json::object(), 3) + "\n");
+  client.send(call("job.start", {{"seq", 5}, {"part_id", "p"}}) + "\n" + call("stage.move", {{"z_um", 1}}, 2) + "\n");
   begun.get_future().wait();
+  client.send(call("stage.stop", json::object(), 3) + "\n");
   auto line = client.line();
   ASSERT_TRUE(line);
   EXPECT_EQ(json::parse(*line)["id"], 3);
