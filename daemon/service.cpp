@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "core/base/exception_text.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "daemon/app.hpp"
 #include "daemon/base/exit_code.hpp"
@@ -31,16 +32,6 @@ namespace {
 constexpr std::chrono::milliseconds kPortRetryPeriod{200};
 /// Less than the service manager allows for a start (TimeoutStartSec=); it starts the program again then.
 constexpr std::chrono::seconds kPortPatience{60};
-
-std::string text_of(const std::exception_ptr& failure) {
-  try {
-    std::rethrow_exception(failure);
-  } catch (const std::exception& error) {
-    return error.what();
-  } catch (...) {
-    return "of an unknown kind";
-  }
-}
 
 /// The signals that the main thread waits for; no other thread sees them.
 class ServiceSignals {
@@ -120,7 +111,7 @@ int serve(const Options& options, Config config) {
   const ServiceSignals signals;
   static std::atomic<bool> thread_failed = false;
   set_thread_failure_handler([](std::string_view name, const std::exception_ptr& failure) {
-    spdlog::critical("thread {} ended by an exception, the program stops: {}", name, text_of(failure));
+    spdlog::critical("thread {} ended by an exception, the program stops: {}", name, exception_text(failure));
     thread_failed = true;
     ::kill(::getpid(), SIGTERM);
   });

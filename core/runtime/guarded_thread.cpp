@@ -6,6 +6,7 @@
 
 #include <pthread.h>
 
+#include "core/base/exception_text.hpp"
 #include "core/base/mutex.hpp"
 
 namespace fvd {
@@ -34,13 +35,7 @@ class ProcessHandler {
 };
 
 [[noreturn]] void abort_program(const std::string& name, const std::exception_ptr& failure) {
-  try {
-    std::rethrow_exception(failure);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "thread %s ended by an exception: %s\n", name.c_str(), error.what());
-  } catch (...) {
-    std::fprintf(stderr, "thread %s ended by an unknown exception\n", name.c_str());
-  }
+  std::fprintf(stderr, "thread %s ended by an exception: %s\n", name.c_str(), exception_text(failure).c_str());
   std::abort();
 }
 

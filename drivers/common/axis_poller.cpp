@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
+#include "core/base/exception_text.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/thread_ticks.hpp"
 
@@ -35,16 +36,6 @@ constexpr int kReadings = 5;
 /// A poll that takes longer hangs: this multiple of the longest time between two samples of a line that is alive.
 constexpr int kHangFactor = 6;
 
-std::string text_of(const std::exception_ptr& failure) {
-  try {
-    std::rethrow_exception(failure);
-  } catch (const std::exception& error) {
-    return error.what();
-  } catch (...) {
-    return "unknown exception";
-  }
-}
-
 }  // namespace
 
 AxisPoller::AxisPoller(AxisPort& port, double max_speed_um_per_s, Micrometers min, Micrometers max)
@@ -60,7 +51,7 @@ AxisPoller::AxisPoller(AxisPort& port, double max_speed_um_per_s, Micrometers mi
   thread_ = start_thread(
       "fvd-stage", [this](const std::stop_token& stop) { run(stop); },
       [this](std::string_view name, const std::exception_ptr& failure) {
-        const std::string why = text_of(failure);
+        const std::string why = exception_text(failure);
         spdlog::error("thread {} ended by an exception: {}", name, why);
         if (lose("sampling ended by an exception: " + why)) stop_lost_axis();
       });

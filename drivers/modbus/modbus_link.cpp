@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
+#include "core/base/exception_text.hpp"
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "drivers/modbus/modbus_queue.hpp"
@@ -63,13 +64,7 @@ struct ModbusLink::Impl {
 
   /// The thread has ended by an exception: everybody who waits is told.
   void give_up(std::string_view name, const std::exception_ptr& failure) {
-    std::string why = "unknown exception";
-    try {
-      std::rethrow_exception(failure);
-    } catch (const std::exception& error) {
-      why = error.what();
-    } catch (...) {
-    }
+    const std::string why = exception_text(failure);
     spdlog::error("thread {} ended by an exception: {}", name, why);
     queue.close("the link has failed: " + why);
   }

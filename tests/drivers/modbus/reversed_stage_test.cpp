@@ -42,16 +42,21 @@ TEST_P(AReversedDrive, GoesWhereZSays) {
 INSTANTIATE_TEST_SUITE_P(Of, AReversedDrive, testing::ValuesIn(test::kDriveCases),
                          [](const auto& on) { return testing::PrintToString(on.param); });
 
+StageConfig reversed_controller(int port, Micrometers min) {
+  StageConfig config;
+  config.driver = "gcs";
+  config.port = port;
+  config.min = min;
+  config.max = Micrometers{500.0};
+  config.reversed = true;
+  return config;
+}
+
 TEST(AReversedController, GoesWhereZSays) {
   sim::AxisModel axis(built_the_other_way_round());
   sim::GcsController controller(axis);
   sim::GcsServer server(controller, sim::GcsServerOptions{});
-  StageConfig config;
-  config.driver = "gcs";
-  config.port = server.port();
-  config.min = Micrometers{-500.0};
-  config.max = Micrometers{500.0};
-  config.reversed = true;
+  const StageConfig config = reversed_controller(server.port(), Micrometers{-500.0});
   const auto stage = open_gcs_stage(config);
   stage->home({});
   expect_z_to_be_true(*stage, axis);
@@ -61,12 +66,7 @@ TEST(AReversedController, ChecksTheLimitsOfZAgainstItsOwnTurnedRound) {
   sim::AxisModel axis(test::good_axis());
   sim::GcsController controller(axis);
   sim::GcsServer server(controller, sim::GcsServerOptions{});
-  StageConfig config;
-  config.driver = "gcs";
-  config.port = server.port();
-  config.min = Micrometers{-1e6};
-  config.max = Micrometers{500.0};
-  config.reversed = true;
+  const StageConfig config = reversed_controller(server.port(), Micrometers{-1e6});
   test::expect_error(ErrorCode::kStageLimit, {"narrow /stage/min_um"}, [&] { (void)open_gcs_stage(config); });
 }
 
