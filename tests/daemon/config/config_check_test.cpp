@@ -6,22 +6,18 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config/config_file.hpp"
+#include "tests/daemon/config/problem_matcher.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
 namespace {
 
-using ::testing::AllOf;
+using test::problem;
 using ::testing::Contains;
 using ::testing::ElementsAre;
-using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-auto problem(const std::string& pointer, const std::string& says = "") {
-  return AllOf(Field("pointer", &Problem::pointer, pointer), Field("message", &Problem::message, HasSubstr(says)));
-}
 
 /// A configuration to which check_config has nothing to say.
 class AUsableConfig : public ::testing::Test {
