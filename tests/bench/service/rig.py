@@ -5,6 +5,7 @@ Times are CLOCK_MONOTONIC in seconds, which fvd-sim writes into its motion log, 
 
 import json
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -145,12 +146,14 @@ class Rig:
         (self.folder / "recipes").mkdir(parents=True, exist_ok=True)
         for name, document in (recipes or {"part": RECIPE}).items():
             (self.folder / "recipes" / f"{name}.json").write_text(json.dumps(document))
+        # In memory: the stage's line waits for each of its lines, and must not for a busy disk.
+        self.memory = pathlib.Path(tempfile.mkdtemp(prefix="fvd-motions-", dir="/dev/shm"))
         self.settings = {}
         self.environment = []
         self.daemon = None
         self.simulator = self.run(
             [self.build / "sim/fvd-sim", "run", "--camera-address", "auto", "--stage-port", "0",
-             "--ready-file", self.folder / "sim.json", "--motion-log", self.folder / "motion.txt"], "sim.log")
+             "--ready-file", self.folder / "sim.json", "--motion-log", self.memory / "motion.txt"], "sim.log")
         self.plant = self.await_file(self.folder / "sim.json", self.simulator)
         self.port = 0
 
@@ -167,9 +170,11 @@ class Rig:
                     program.kill()
                     program.wait()
         if kind is not None:
-            print(f"see {self.folder}", file=sys.stderr)
+            print(f"see {self.folder} and {self.memory}", file=sys.stderr)
         elif self.own_folder:
             shutil.rmtree(self.folder)
+        if kind is None:
+            shutil.rmtree(self.memory)
 
     def run(self, command, log):
         with open(self.folder / log, "ab") as out:
@@ -192,27 +197,34 @@ class Rig:
     def state(self):
         return self.folder / "state"
 
-    def command(self):
+    def configure(self):
+        """Writes fvd.json: that of the simulation with what is special here."""
+        text = (SOURCE / "config/fvd-sim.json").read_text()
+        config = json.loads(re.sub(r"//[^\n]*", "", text))
+        config.pop("$schema")
         settings = {
             "camera.address": self.plant["camera_address"],
             "stage.port": self.plant["stage_port"],
+            "stage.profile": str(SOURCE / "config/drives/oriental-az.json"),
             "rpc.port": 0,
             "rpc.loopback_role": "administer",
-            "paths.state_dir": self.state,
-            "paths.runtime_dir": self.folder / "run",
-            "paths.recipe_dir": self.folder / "recipes",
+            "paths.state_dir": str(self.state),
+            "paths.runtime_dir": str(self.folder / "run"),
+            "paths.recipe_dir": str(self.folder / "recipes"),
             **self.settings,
         }
-        words = ["env", *self.environment, self.build / "daemon/fvd", "--config", SOURCE / "config/fvd-sim.json"]
         for key, value in settings.items():
-            words += ["--set", f"{key}={value if isinstance(value, (str, pathlib.Path)) else json.dumps(value)}"]
-        return words
+            group, name = key.split(".")
+            config.setdefault(group, {})[name] = value
+        (self.folder / "fvd.json").write_text(json.dumps(config, indent=2))
 
     def spawn(self):
         """Starts fvd and waits for nothing; the moment of it."""
         (self.folder / "run/rpc.json").unlink(missing_ok=True)
+        self.configure()
         begun = time.monotonic()
-        self.daemon = self.run(self.command(), "fvd.log")
+        self.daemon = self.run(["env", *self.environment, self.build / "daemon/fvd", "--config", self.folder / "fvd.json"],
+                               "fvd.log")
         return begun
 
     def await_port(self):
@@ -241,7 +253,7 @@ class Rig:
                               capture_output=True, text=True)
 
     def motions(self):
-        return Motions(self.folder / "motion.txt")
+        return Motions(self.memory / "motion.txt")
 
 
 class Motions:
