@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """SIGKILL of the daemon, and a client that remembers what it was told.
 
-kills.py BUILD random|acquisition|end|start [KILLS] [SEED]
+kills.py BUILD random|acquisition|end|start|all [KILLS] [SEED]
   random       at any moment of a job
   acquisition  between two slices
   end          between the part's release and the acknowledgement: files, rename, row, reply
   start        while the daemon starts, after a kill in a job
+  all          these side by side, and kill_rename_to_row.sh, which kills between rename and row by injection
 The stage's motions are counted by fvd-sim: every job's slices stand at heights of their own, so that a command tells its
 job. Prints a line for each violation and, last, one JSON object.
 """
@@ -16,6 +17,7 @@ import json
 import pathlib
 import random
 import re
+import subprocess
 import sys
 import time
 
@@ -228,9 +230,36 @@ def repeated(motions, last_seq):
     return sum(times - 1 for times in begun.values()), len(begun)
 
 
+def all_of(build, kills):
+    """The sum of all kinds; none may be missing."""
+    here = pathlib.Path(__file__).resolve()
+    commands = {mode: [sys.executable, here, build, mode, str(kills)] for mode in ("random", "acquisition", "end", "start")}
+    commands["rename_to_row"] = ["bash", here.parent / "kill_rename_to_row.sh", build, str(kills)]
+    running = {mode: subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for mode, command in commands.items()}
+    total, failed = {"kills": 0}, False
+    for mode, program in running.items():
+        text, _ = program.communicate()
+        print(text, end="")
+        if program.returncode != 0 or not text.strip():
+            print(f"kills {mode}: failed with {program.returncode}", file=sys.stderr)
+            failed = True
+            continue
+        figures = json.loads(text.rstrip("\n").rsplit("\n", 1)[-1])
+        if not figures.get(f"kills_{mode}"):
+            print(f"kills {mode}: not one", file=sys.stderr)
+            failed = True
+        for key, value in figures.items():
+            total[key] = total.get(key, 0) + value
+        total["kills"] += figures.get(f"kills_{mode}", 0)
+    print(json.dumps(total))
+    sys.exit(failed)
+
+
 def main():
     build, mode = sys.argv[1:3]
     kills = int(sys.argv[3]) if len(sys.argv) > 3 else 60
+    if mode == "all":
+        all_of(build, kills)
     pick = random.Random(int(sys.argv[4]) if len(sys.argv) > 4 else sum(mode.encode()))
     jobs = {f"part{seq:04}": recipe(start_um=start_of(seq), step_um=STEP_UM, slices=SLICES)
             for seq in range(1, min(JOBS_AT_MOST, 2 * kills + 10))}
