@@ -44,6 +44,7 @@ struct Arguments {
   double packet_loss = 0.0;
   std::optional<std::uint64_t> seed;
   std::filesystem::path ready_file;
+  std::filesystem::path motion_log;
   std::filesystem::path folder;
   bool json = false;
   SliceFileOptions slices;
@@ -145,7 +146,8 @@ int run(const Arguments& arguments) {
                .line_timing = line_timing_of(arguments),
                .faults = arguments.faults.empty() ? std::vector<FaultStep>{} : load_fault_steps(arguments.faults),
                .camera_faults = arguments.camera_faults.empty() ? std::vector<CameraFaultStep>{}
-                                                                : load_camera_fault_steps(arguments.camera_faults)});
+                                                                : load_camera_fault_steps(arguments.camera_faults),
+               .motion_log = arguments.motion_log});
   plant.camera().set_packet_loss(arguments.packet_loss);
   std::cout << "camera " << plant.camera_address() << ":3956 (GigE Vision), " << plant.world().sensor_width() << " x "
             << plant.world().sensor_height() << " pixels; stage " << stage_of(plant, arguments) << ", drive "
@@ -231,6 +233,8 @@ int main_of(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   running->add_option("--packet-loss", arguments.packet_loss, "fraction of stream packets that are lost")
       ->check(CLI::Range(0.0, 0.9));
+  running->add_option("--motion-log", arguments.motion_log,
+                      "file of the stage's commands and true motions, a line each with CLOCK_MONOTONIC in ns");
   running->add_option("--ready-file", arguments.ready_file, "written once both serve: addresses and pid as JSON");
   auto* truth = app.add_subcommand("truth", "write the world's true heights");
   add_world(truth);

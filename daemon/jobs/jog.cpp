@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::chrono::seconds kFailureIsNews{1};
 constexpr std::chrono::milliseconds kLetGo{500};  // no repeat for so long: whoever asks again means to
+constexpr double kLongestBraking_s = 0.04;
 
 /// Inside the limits by one step, for a target is rounded to whole steps.
 Micrometers target_of(const JogRequest& request, const Devices& devices) {
@@ -31,6 +32,14 @@ Micrometers target_of(const JogRequest& request, const Devices& devices) {
   throw Error(ErrorCode::kStageLimit, message.str());
 }
 
+/// Nobody watches a jog's end but a person with a hand on the part: it is no faster than the axis can halt from at
+/// once.
+double speed_of(const JogRequest& request, const StageInfo& stage) {
+  const double asked = request.speed_um_per_s;
+  const double braked = stage.acceleration_um_per_s2 * kLongestBraking_s;
+  return braked > 0.0 && asked <= stage.speed_um_per_s ? std::min(asked, braked) : asked;  // or the axis refuses it
+}
+
 void jog(const Devices& devices, JogHold& hold, const std::stop_token& stop) {
   const Micrometers target = target_of(hold.request(), devices);
   std::stop_source ends;
@@ -40,7 +49,7 @@ void jog(const Devices& devices, JogHold& hold, const std::stop_token& stop) {
     ends.request_stop();
   });
   try {
-    (void)devices.stage.sweep_to(target, hold.request().speed_um_per_s, ends.get_token());
+    (void)devices.stage.sweep_to(target, speed_of(hold.request(), devices.stage.info()), ends.get_token());
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kAborted || stop.stop_requested()) throw;
   }

@@ -46,7 +46,7 @@ class AxisController final : public Axis {
 
   [[nodiscard]] StageInfo info() const override { return stage_info(traits_, settings_); }
 
-  [[nodiscard]] StageStatus status() override { return status_of(poller_.sample_after(HostClock::now(), {})); }
+  [[nodiscard]] StageStatus status() override { return status_of(poller_.sample_now({})); }
 
   [[nodiscard]] std::optional<StageStatus> last_seen() const override {
     const AxisSample sample = poller_.latest();

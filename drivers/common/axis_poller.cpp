@@ -62,6 +62,10 @@ void AxisPoller::run(const std::stop_token& stop) {
   while (!stop.stop_requested() && connected()) {
     ticks.tick(HostClock::now());
     {
+      const MutexLock lock(mutex_);
+      asked_ = false;
+    }
+    {
       const MutexLock polling(polling_);
       poll_once();
       read_temperatures();
@@ -73,7 +77,7 @@ void AxisPoller::run(const std::stop_token& stop) {
     const HostTime fast_until = fast_until_;
     wake_.wait_until(lock, stop, next, [&] {
       mutex_.assert_held();
-      return fast_until_ != fast_until && next - now > kFastPeriod;
+      return asked_ || (fast_until_ != fast_until && next - now > kFastPeriod);
     });
   }
   if (stop.stop_requested()) lose("the driver is being closed");
@@ -223,6 +227,15 @@ bool AxisPoller::connected() const noexcept {
 void AxisPoller::pause(const std::function<void()>& action) {
   const MutexLock polling(polling_);
   action();
+}
+
+AxisSample AxisPoller::sample_now(std::stop_token stop) {
+  const HostTime now = HostClock::now();
+  {
+    const MutexLock lock(mutex_);
+    asked_ = true;  // a poll that has begun already does not count: another one follows it at once
+  }
+  return sample_after(now, std::move(stop));
 }
 
 AxisSample AxisPoller::sample_after(HostTime after, std::stop_token stop) {

@@ -35,6 +35,9 @@ class AxisPoller {
   [[nodiscard]] AxisSample sample_after(HostTime after, std::stop_token stop);
   [[nodiscard]] AxisSample sample_after(HostTime after, std::stop_token stop, HostTime deadline);
 
+  /// One that is begun now, without the pause between two samples. Throws as sample_after().
+  [[nodiscard]] AxisSample sample_now(std::stop_token stop);
+
   /// The latest sample, whatever its age. Throws nothing.
   [[nodiscard]] AxisSample latest() const;
   [[nodiscard]] PositionMean mean(HostTime from, HostTime to) const;
@@ -78,6 +81,7 @@ class AxisPoller {
   Condition wake_;
   PositionLog log_ FVD_GUARDED_BY(mutex_);
   HostTime fast_until_ FVD_GUARDED_BY(mutex_){};
+  bool asked_ FVD_GUARDED_BY(mutex_) = false;  ///< by sample_now()
   bool connected_ FVD_GUARDED_BY(mutex_) = true;
   std::string loss_ FVD_GUARDED_BY(mutex_);
   std::vector<StageTemperature> temperatures_ FVD_GUARDED_BY(mutex_);

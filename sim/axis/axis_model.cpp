@@ -137,6 +137,10 @@ struct AxisModel::Impl {
     while (moves.size() > 4) moves.pop_front();
   }
 
+  void tell(HostTime at, const std::string& command) FVD_REQUIRES(mutex) {
+    if (watch) watch(at, command);
+  }
+
   double draw_rest_error() FVD_REQUIRES(mutex) { return p.settle_noise_um * normal(random); }
 
   const AxisParameters p;
@@ -147,6 +151,7 @@ struct AxisModel::Impl {
   std::normal_distribution<double> normal FVD_GUARDED_BY(mutex);
   mutable std::normal_distribution<double> encoder_normal FVD_GUARDED_BY(mutex);
   std::deque<Move> moves FVD_GUARDED_BY(mutex);
+  std::function<void(HostTime, const std::string&)> watch FVD_GUARDED_BY(mutex);
 };
 
 AxisModel::AxisModel(const AxisParameters& parameters) : impl_(std::make_unique<Impl>(parameters)) {}
@@ -154,10 +159,16 @@ AxisModel::~AxisModel() = default;
 
 const AxisParameters& AxisModel::parameters() const noexcept { return impl_->p; }
 
+void AxisModel::watch_commands(std::function<void(HostTime, const std::string&)> watch) {
+  const MutexLock lock(impl_->mutex);
+  impl_->watch = std::move(watch);
+}
+
 void AxisModel::move_to(HostTime now, std::int32_t target_steps, double speed, double acceleration,
                         double deceleration) {
   const MutexLock lock(impl_->mutex);
   const double per_um = impl_->p.steps_per_um;
+  impl_->tell(now, "move " + std::to_string(target_steps / per_um));
   auto move = impl_->successor(now);
   move.limits = {speed / per_um, acceleration / per_um, deceleration / per_um};
   move.profile = MotionProfile::to(impl_->state(move.start), move.origin + target_steps / per_um, move.limits);
@@ -168,6 +179,7 @@ void AxisModel::move_to(HostTime now, std::int32_t target_steps, double speed, d
 
 void AxisModel::stop(HostTime now) {
   const MutexLock lock(impl_->mutex);
+  impl_->tell(now, "stop");
   auto move = impl_->successor(now);
   const double deceleration = move.limits.deceleration > 0 ? move.limits.deceleration : 1e4;
   move.profile = MotionProfile::brake(impl_->state(move.start), deceleration);
@@ -177,6 +189,7 @@ void AxisModel::stop(HostTime now) {
 
 void AxisModel::home(HostTime now) {
   const MutexLock lock(impl_->mutex);
+  impl_->tell(now, "home");
   auto move = impl_->successor(now);
   // The drive's own homing speed, whatever moves were commanded before.
   move.limits = {2000.0, 20000.0, 20000.0};

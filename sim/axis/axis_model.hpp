@@ -3,7 +3,9 @@
 /// The physics of one Z axis: where the stage truly is at any moment, and what its encoder says.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "core/base/clock.hpp"
 
@@ -56,6 +58,10 @@ class AxisModel {
   void home(HostTime now);
   /// The drive loses its reference; the true position stays.
   void power_cycle(HostTime now);
+
+  /// Calls `watch` at every command with its time and words: "move <target um>", "stop", "home". Empty: nobody is
+  /// called. The call must not come back to the axis.
+  void watch_commands(std::function<void(HostTime, const std::string&)> watch);
 
   [[nodiscard]] bool moving(HostTime now) const;
   [[nodiscard]] bool in_position(HostTime now) const;

@@ -5,6 +5,7 @@ namespace fvd::sim {
 Plant::Plant(const PlantOptions& options)
     : options_(options),
       axis_(options.axis),
+      motion_log_(options.motion_log.empty() ? nullptr : std::make_unique<MotionLog>(axis_, options.motion_log)),
       world_(options.world, axis_),
       drive_(options.gcs ? nullptr : make_drive(options.drive, axis_)),
       gcs_controller_(options.gcs ? std::make_unique<GcsController>(axis_) : nullptr),

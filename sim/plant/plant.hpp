@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/axis/axis_model.hpp"
+#include "sim/axis/motion_log.hpp"
 #include "sim/camera/gige_camera_server.hpp"
 #include "sim/camera/line_trigger.hpp"
 #include "sim/drives/drive_kinds.hpp"
@@ -38,6 +39,7 @@ struct PlantOptions {
   LineTiming line_timing{};           ///< timing of that line, Modbus RTU only
   std::vector<FaultStep> faults{};    ///< faults of the stage's line and drive, Modbus only
   std::vector<CameraFaultStep> camera_faults{};
+  std::filesystem::path motion_log{};  ///< if given, the stage's commands and motions are written here
 };
 
 /// Camera and drive can be taken away and brought back at the same address: unplugged cables in tests.
@@ -66,6 +68,7 @@ class Plant {
  private:
   PlantOptions options_;
   AxisModel axis_;
+  std::unique_ptr<MotionLog> motion_log_;
   SimWorld world_;
   std::unique_ptr<SimDrive> drive_;                // or
   std::unique_ptr<GcsController> gcs_controller_;  // this

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <stdexcept>
 #include <thread>
 
 #include "tests/support/line_client.hpp"
@@ -11,15 +12,18 @@ namespace fvd::bench {
 
 namespace {
 
-std::vector<double> one_client(int port, std::chrono::nanoseconds period, std::chrono::seconds duration) {
+std::vector<double> one_client(int port, std::chrono::nanoseconds period, const PingLoad& load) {
   LineClient client(port);
   std::vector<double> times_ms;
+  std::size_t next = 0;
   const auto begin = std::chrono::steady_clock::now();
-  for (auto due = begin; due < begin + duration; due += period) {
+  for (auto due = begin; due < begin + load.duration; due += period) {
     std::this_thread::sleep_until(due);
     // A server that has fallen behind that far is not asked any more; what it owes counts as long as it is owed.
-    if (std::chrono::steady_clock::now() < begin + 2 * duration) {
-      (void)client.ask(R"({"jsonrpc":"2.0","id":1,"method":"system.ping"})");
+    if (std::chrono::steady_clock::now() < begin + 2 * load.duration) {
+      const std::string& request = load.requests[next++ % load.requests.size()];
+      const std::string answer = client.ask(request);
+      if (answer.find("\"result\"") == std::string::npos) throw std::runtime_error(request + ": " + answer);
     }
     times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - due).count());
   }
@@ -32,7 +36,7 @@ std::vector<double> ping_times_ms(int port, const PingLoad& load) {
   const auto period = std::chrono::nanoseconds(std::chrono::seconds(1)) * load.clients / load.calls_per_s;
   std::vector<std::future<std::vector<double>>> running;
   for (int i = 0; i < load.clients; ++i) {
-    running.push_back(std::async(std::launch::async, one_client, port, period, load.duration));
+    running.push_back(std::async(std::launch::async, one_client, port, period, load));
   }
   std::vector<double> all;
   for (auto& client : running) {

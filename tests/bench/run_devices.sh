@@ -37,18 +37,5 @@ for part in "${parts[@]}"; do
   # shellcheck disable=SC2046  # the list is meant to be split
   python3 "$FVD_ROOT/tests/bench/promised.py" "$work/$part.txt" $(promises "$part") || status=1
 done
-python3 - "$work"/*.txt <<'PY'
-import json
-import sys
-
-merged = {}
-for name in sys.argv[1:]:
-    with open(name, encoding="utf-8") as file:
-        part = json.loads(file.read().rstrip("\n").rsplit("\n", 1)[-1])
-    twice = merged.keys() & part.keys()
-    if twice:
-        sys.exit(f"run_devices.sh: {name}: another part has these keys, too: {', '.join(sorted(twice))}")
-    merged.update(part)
-print(json.dumps(merged))
-PY
+python3 "$FVD_ROOT/tests/bench/merged.py" "$work"/*.txt
 exit $status

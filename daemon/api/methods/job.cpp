@@ -77,11 +77,11 @@ const std::string& checked_part_id(const std::string& part_id) {
   return part_id;
 }
 
-/// The job of the key if it runs: then the snapshot says what there is to say.
-std::optional<JobStatus> running_job(const MachineView& machine, const JobKey& key) {
+/// The job of the key if it runs or was the latest: then the snapshot says what there is to say.
+std::optional<JobStatus> latest_job(const MachineView& machine, const JobKey& key) {
   const auto snapshot = machine.snapshot();
   const auto& job = snapshot->job;
-  if (!job || job->state != JobState::kProcessing || !names(key, *job)) return std::nullopt;
+  if (!job || !names(key, *job)) return std::nullopt;
   return job;
 }
 
@@ -97,8 +97,8 @@ Answer start_job(JobService& jobs, const Call& call, const StartParams& params) 
 
 Answer wait_for_job(const Services& services, const Call& call, const WaitParams& params) {
   const JobKey key = params.job.key(params.client);
-  const auto running = running_job(services.machine, key);
-  const JobStatus job = running ? *running : services.jobs.job(key);
+  const auto latest = latest_job(services.machine, key);
+  const JobStatus job = latest ? *latest : services.jobs.job(key);
   // In a batch a wait is out of place: there it answers at once.
   if (!call.may_wait) return job_status_json(job);
   return Deferred{JobWait{job.job_id, params.until == "acquired"}, std::chrono::milliseconds(params.timeout_ms)};
@@ -130,7 +130,7 @@ void add_job_methods(MethodTable& methods, const Services& services) {
                 .errors = {kUnknownJob}},
       .peek = with<OneJobParams>(
           [&machine = services.machine](const Call&, const OneJobParams& params) -> std::optional<Answer> {
-            const auto job = running_job(machine, params.key());
+            const auto job = latest_job(machine, params.key());
             return job ? std::optional<Answer>(job_status_json(*job)) : std::nullopt;
           }),
       .run = with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) {

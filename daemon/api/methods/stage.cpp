@@ -70,7 +70,8 @@ struct JogParams {
   void describe(Fields& fields) {
     fields.choice("direction", direction, {"up", "down"}, "up = greater z");
     fields.require("direction");
-    fields.number("speed_um_per_s", speed_um_per_s, positive(1e6), "at most stage.speed_um_per_s");
+    fields.number("speed_um_per_s", speed_um_per_s, positive(1e6),
+                  "at most stage.speed_um_per_s; slower where the axis would need over 40 ms to halt");
     fields.require("speed_um_per_s");
     fields.integer64("until_ms", until_ms, {10, kLongestJog_ms},
                      "so long after this request came the axis halts, unless the request is repeated before");

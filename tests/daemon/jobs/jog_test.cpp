@@ -19,8 +19,9 @@ using std::chrono::milliseconds;
 class SweepingAxis final : public sim::FakeAxis {
  public:
   using FakeAxis::FakeAxis;
-  MoveRecord sweep_to(Micrometers target, double /*speed_um_per_s*/, std::stop_token stop) override {
+  MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override {
     targets_um.push_back(target.value);
+    speed = speed_um_per_s;
     began.set_value();
     Mutex mutex;
     Condition never;
@@ -32,6 +33,7 @@ class SweepingAxis final : public sim::FakeAxis {
   }
   std::promise<void> began;
   HostTime ended{};
+  double speed = 0.0;  ///< um/s, of the last sweep
 };
 
 class AJog : public testing::Test {
@@ -69,6 +71,22 @@ TEST_F(AJog, EndsByItself) {
   EXPECT_EQ(axis_.targets_um, std::vector<double>{499.99}) << "the upper limit, by one step inside";
   EXPECT_FALSE(hold_->extend(request())) << "it is over: a new one has to begin";
   spdlog::info("a jog ended {} us after its time", (axis_.ended - asked.until) / std::chrono::microseconds(1));
+}
+
+TEST_F(AJog, IsNoFasterThanItCanBeHaltedFromSoon) {
+  axis_.description.speed_um_per_s = 1000.0;
+  axis_.description.acceleration_um_per_s2 = 2000.0;
+  begin(request(milliseconds(20)));
+  end();
+  EXPECT_DOUBLE_EQ(axis_.speed, 80.0) << "40 ms at that acceleration";
+}
+
+TEST_F(AJog, OfASpeedThatTheAxisHasNotIsLeftToTheAxisToRefuse) {
+  axis_.description.speed_um_per_s = 50.0;
+  axis_.description.acceleration_um_per_s2 = 2000.0;
+  begin(request(milliseconds(20)));
+  end();
+  EXPECT_DOUBLE_EQ(axis_.speed, 100.0);
 }
 
 TEST_F(AJog, GoesOnWhileItIsRepeated) {

@@ -7,6 +7,8 @@
 #include <future>
 #include <stdexcept>
 
+#include <spdlog/spdlog.h>
+
 #include "drivers/common/axis_stopper.hpp"
 #include "gtest/gtest.h"
 #include "tests/support/expect_error.hpp"
@@ -84,6 +86,21 @@ TEST(AxisPoller, BelievesAJumpThatASecondReadingConfirms) {
   AxisPoller poller(port, 1000.0, kMin, kMax);
   EXPECT_DOUBLE_EQ(poller.sample_after(HostClock::now(), {}).position.value, 5000.1);
   EXPECT_EQ(poller.implausible(), 1U);
+}
+
+TEST(AxisPoller, TakesASampleAtOnceForWhoAsks) {
+  ScriptedPort port;
+  AxisPoller poller(port, 1000.0, kMin, kMax);
+  const HostTime from = HostClock::now();
+  for (int i = 0; i < 200; ++i) {
+    const HostTime asked = HostClock::now();
+    EXPECT_GT(poller.sample_now({}).begun, asked);
+  }
+  spdlog::info("a sample is there after {} us", (HostClock::now() - from) / std::chrono::microseconds(200));
+  port.mode = ScriptedPort::Mode::kSilent;
+  expect_error(ErrorCode::kStageDisconnected, {"the fake", "no answer"}, [&] {
+    for (;;) (void)poller.sample_now({});
+  });
 }
 
 TEST(AxisPoller, BelievesAFirstPositionFarOutsideTheLimitsOnlyIfASecondReadingAgrees) {

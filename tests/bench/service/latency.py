@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""How soon the stage does what a client asks: a trigger, a stop without control, the end of a jog.
+
+latency.py BUILD trigger|stop|jog [ROUNDS]
+Prints a line of details and, last, one JSON object.
+"""
+
+import json
+import random
+import sys
+import time
+
+from rig import Client, Rig, percentile, recipe, wait_for
+
+
+def trigger(build, rounds):
+    """From the line given to the system to the first command at the stage; the job's row is made durable in between."""
+    times_ms = []
+    with Rig(build) as rig:
+        client = rig.start()
+        motions = rig.motions()
+        for seq in range(1, rounds + 1):
+            sent = client.send("job.start", seq=seq, part_id="part", recipe="part")
+            client.receive()
+            first = motions.await_line("move" if seq > 1 else "home", sent)
+            times_ms.append(1000 * (first - sent))
+            if client.ask("job.wait", seq=seq)["state"] != "completed":
+                sys.exit(f"a job does not complete: see {rig.folder}")
+            client.ask("result.ack", seq=seq)
+    times_ms = times_ms[1:]  # the first one homes
+    print(f"trigger: median {percentile(times_ms, 0.5):.2f}, p90 {percentile(times_ms, 0.9):.2f}, "
+          f"longest {max(times_ms):.2f} ms of {len(times_ms)}")
+    return {"trigger_p99_ms": round(percentile(times_ms, 0.99), 2), "triggers": len(times_ms)}
+
+
+def stop(build, rounds):
+    """From the line of a client without control to the stop at the stage, while another has control and scans."""
+    to_stage_ms, to_still_ms, to_reply_ms = [], [], []
+    pick = random.Random(1)
+    scan = recipe(mode="continuous", start_um=-200, step_um=2, slices=201, speed_um_per_s=200, allowed_lost_slices=190)
+    with Rig(build, {"long": scan}) as rig:
+        owner = rig.start()
+        motions = rig.motions()
+        stranger = Client(rig.port)
+        owner.ask("stage.home")
+        for seq in range(1, rounds + 1):
+            owner.ask("control.acquire", owner="line", lease_s=600)
+            begun = owner.send("job.start", seq=seq, part_id="part", recipe="long")
+            owner.receive()
+            motions.await_line("moving", begun)
+            time.sleep(pick.uniform(0.05, 1.0))  # into the travel to the first slice, or the scan
+            wait_for(motions.moving, 20, 0.0005, "a motion")
+            sent = stranger.send("stage.stop")
+            stranger.receive()
+            to_reply_ms.append(1000 * (time.monotonic() - sent))
+            to_stage_ms.append(1000 * (motions.await_line("stop", sent) - sent))
+            to_still_ms.append(1000 * (motions.await_line("still", sent) - sent))
+            owner.ask("job.wait", seq=seq)
+            wait_for(lambda: owner.ask("system.state")["ready"], what="ready")
+        stranger.close()
+    print(f"stop: at the stage median {percentile(to_stage_ms, 0.5):.1f}, p99 {percentile(to_stage_ms, 0.99):.1f} ms; "
+          f"reply p99 {percentile(to_reply_ms, 0.99):.1f} ms; standstill p99 {percentile(to_still_ms, 0.99):.1f}, "
+          f"longest {max(to_still_ms):.1f} ms of {rounds}")
+    return {"stop_without_lease_ms": round(percentile(to_still_ms, 0.99), 1), "stops": rounds}
+
+
+def jog(build, rounds):
+    """From the last repeat to the true standstill, at the stage's highest speed."""
+    overruns_ms = []
+    with Rig(build) as rig:
+        client = rig.start()
+        motions = rig.motions()
+        client.ask("stage.home")
+        for i in range(rounds):
+            client.ask("stage.move", z_um=-450 if i % 2 == 0 else 450)
+            direction = "up" if i % 2 == 0 else "down"
+            for _ in range(4):  # 100 ms apart, as a page repeats it while a key is held
+                last = client.send("stage.jog", direction=direction, speed_um_per_s=1000)
+                client.receive()
+                motions.await_line("moving", last - 0.5)
+                time.sleep(max(0.0, last + 0.1 - time.monotonic()))
+            # The last one was sent 100 ms ago.
+            still = motions.await_line("still", last)
+            overruns_ms.append(1000 * (still - last))
+            wait_for(lambda: client.ask("system.state")["ready"], what="ready")
+    print(f"jog: overrun median {percentile(overruns_ms, 0.5):.1f} ms of {rounds}")
+    return {"jog_overrun_ms": round(max(overruns_ms), 1), "jogs": rounds}
+
+
+def main():
+    build, phase = sys.argv[1:3]
+    rounds = int(sys.argv[3]) if len(sys.argv) > 3 else {"trigger": 400, "stop": 100, "jog": 40}[phase]
+    print(json.dumps({"trigger": trigger, "stop": stop, "jog": jog}[phase](build, rounds)))
+
+
+main()

@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""Clients that poll while the machine scans: 100,000 results that nobody acknowledged, a disk that takes 500 ms to sync,
+and viewers that never read.
+
+poll.py BUILD [SECONDS] [RESULTS] [CALLS_PER_S]
+The last line is one JSON object.
+"""
+
+import json
+import sqlite3
+import subprocess
+import sys
+import threading
+
+from rig import Client, Rig, recipe
+
+SYNC_MS = 500
+JOBS = 2
+SCAN = recipe(start_um=-100, step_um=1, slices=200)
+
+
+def fill(file, results):
+    """As if the one result that is there had been made so often and never acknowledged."""
+    with sqlite3.connect(file) as database:
+        database.execute("PRAGMA synchronous=OFF")
+        columns = [row[1] for row in database.execute("PRAGMA table_info(jobs)")]
+        values = {"number": "i", "job_id": "'bench-' || i", "seq": "i", "acknowledged": "0",
+                  "result_dir": "result_dir || '-' || i"}
+        chosen = ", ".join(values.get(column, column) for column in columns)
+        database.execute(f"WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < {results}) "
+                         f"INSERT INTO jobs ({', '.join(columns)}) SELECT {chosen} FROM n, jobs WHERE jobs.seq = 1")
+        database.commit()
+        database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+
+class Acknowledger(threading.Thread):
+    """Acknowledges old results, one after the other: each is a commit beside the scan."""
+
+    def __init__(self, port):
+        super().__init__()
+        self.client, self.done, self.is_over = Client(port), 0, False
+
+    def __enter__(self):
+        self.start()
+        return self
+
+    def __exit__(self, *_):
+        self.is_over = True
+        self.join()
+
+    def run(self):
+        while not self.is_over:
+            self.client.ask("result.ack", seq=self.done + 2)
+            self.done += 1
+
+
+def late_in(result):
+    frames, slices = result["frames"], result["slices"]
+    return (sum(frames[key] for key in ("incomplete", "missing", "stale", "underrun"))
+            + slices["planned"] - slices["measured"] + slices["retaken"])
+
+
+def main():
+    build = sys.argv[1]
+    seconds, results, rate = (int(sys.argv[i]) if len(sys.argv) > i else standard
+                              for i, standard in ((2, 15), (3, 100_000), (4, 2000)))
+    with Rig(build, {"part": SCAN}) as rig:
+        rig.settings["rpc.max_connections"] = 64
+        client = rig.start()
+        client.ask("job.start", seq=1, part_id="part", recipe="part")
+        client.ask("job.wait", seq=1)
+        rig.stop()
+        fill(rig.state / "fvd.sqlite", results)
+        rig.environment = [f"LD_PRELOAD={rig.build / 'tests/bench/libbench_slow_sync.so'}", f"FVD_SLOW_SYNC_MS={SYNC_MS}"]
+        client = rig.start()
+        waiting = client.ask("system.state")["results_waiting"]
+        if waiting != results:
+            sys.exit(f"{waiting} results wait, not {results}: see {rig.folder}")
+        figures, late = [], 0
+        with Acknowledger(rig.port) as acknowledger:
+            for seq in range(results + 1, results + 1 + JOBS):
+                client.ask("job.start", seq=seq, part_id="part", recipe="part")
+                load = subprocess.run([str(word) for word in (rig.build / "tests/bench/service/poll_load", rig.port, seq,
+                                                              seconds, rate)], stdout=subprocess.PIPE, text=True, check=True)
+                figures.append(json.loads(load.stdout))
+                ended = client.ask("job.wait", seq=seq)
+                if ended["state"] != "completed":
+                    sys.exit(f"a job is {ended['state']}, {ended['error_message']}: see {rig.folder}")
+                result = client.ask("result.get", seq=seq, format="full")
+                late += late_in(result)
+                print(f"poll: {figures[-1]}, scan {result['times']['scan_ms']:.0f} ms")
+        rig.stop()
+    print(f"poll: {acknowledger.done} acknowledgements meanwhile")
+    print(json.dumps({"poll_p99_ms": round(max(told["p99_ms"] for told in figures), 2), "late_slices": late,
+                      "poll_calls": sum(told["calls"] for told in figures), "poll_jobs": JOBS}))
+
+
+main()

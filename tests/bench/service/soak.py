@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Many jobs one after the other, each acknowledged: memory, file descriptors, and the state folder under retention.
+
+soak.py BUILD [JOBS] [FROM]
+FROM: the job from which on slopes are told; memory and caches fill before. The last line is one JSON object.
+"""
+
+import json
+import os
+import sys
+
+from rig import Client, Rig, recipe
+
+BLOCK = 50  # jobs; of each block the least number of descriptors counts, for files come and go behind a result
+KEEP_GIB = 1  # the least that can be configured: results of 2,000 jobs take twice as much
+# Retention looks once a minute, and the database is not counted by it.
+SLACK_GIB = 0.25
+PART = recipe(slices=5)
+PART["acquire"]["camera"].update(width_px=256, height_px=192)
+PART["keep"] = {"slices": True}
+
+
+def kib(pid):
+    with open(f"/proc/{pid}/status", encoding="ascii") as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
+
+
+def descriptors(pid):
+    return len(os.listdir(f"/proc/{pid}/fd"))
+
+
+def gib(folder):
+    """What is removed meanwhile does not count."""
+    total = 0
+    for path, _, names in os.walk(folder):
+        for name in names:
+            try:
+                total += os.stat(os.path.join(path, name)).st_size
+            except FileNotFoundError:
+                pass
+    return total / 2**30
+
+
+def slope(points):
+    """By least squares."""
+    mean_x = sum(x for x, _ in points) / len(points)
+    mean_y = sum(y for _, y in points) / len(points)
+    over = sum((x - mean_x) * (y - mean_y) for x, y in points)
+    return over / sum((x - mean_x) ** 2 for x, _ in points)
+
+
+def measure(rig, seq):
+    """As a PLC that connects anew for each part."""
+    client = Client(rig.port)
+    client.ask("job.start", seq=seq, part_id=f"part {seq}", recipe="part")
+    ended = client.ask("job.wait", seq=seq)
+    if ended["state"] != "completed":
+        sys.exit(f"job {seq} is {ended['state']}, {ended['error_message']}: see {rig.folder}")
+    client.ask("result.get", seq=seq, format="full")
+    client.ask("result.ack", seq=seq)
+    client.close()
+
+
+def main():
+    build = sys.argv[1]
+    jobs = int(sys.argv[2]) if len(sys.argv) > 2 else 2000
+    first = int(sys.argv[3]) if len(sys.argv) > 3 else jobs // 4
+    memory, files, sizes = [], [], []
+    with Rig(build, {"part": PART}) as rig:
+        rig.settings["store.keep_gib"] = KEEP_GIB
+        rig.start().close()
+        pid = rig.daemon.pid
+        for seq in range(1, jobs + 1):
+            measure(rig, seq)
+            memory.append((seq, kib(pid)))
+            files.append((seq, descriptors(pid)))
+            if seq % BLOCK == 0:
+                sizes.append(gib(rig.state))
+                print(f"soak: {seq} jobs, {memory[-1][1]} KiB, {files[-1][1]} descriptors, {sizes[-1]:.3f} GiB", flush=True)
+        kept = len(list((rig.state / "results").iterdir()))
+        rig.stop()
+    blocks = [min(files[i:i + BLOCK], key=lambda point: point[1]) for i in range(first, jobs - BLOCK + 1, BLOCK)]
+    if len(blocks) < 2:
+        sys.exit(f"{jobs} jobs are too few for a slope from job {first} on")
+    was_needed = kept < jobs
+    print(f"soak: {kept} results of {jobs} are kept, {max(sizes):.3f} GiB at most"
+          + ("" if was_needed else ": retention had nothing to do"))
+    print(json.dumps({"soak_jobs": jobs, "rss_slope_kib_per_job": round(slope(memory[first:]), 3),
+                      "fd_slope_per_job": round(slope(blocks), 4), "state_gib_most": round(max(sizes), 3),
+                      "state_gib_bounded": was_needed and max(sizes) <= KEEP_GIB + SLACK_GIB}))
+
+
+main()
