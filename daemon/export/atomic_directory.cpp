@@ -105,8 +105,8 @@ std::size_t remove_abandoned_directories(const fs::path& parent) {
     const std::string name = entry->path().filename().string();
     std::error_code ignored;
     if (!name.starts_with(".") || !name.ends_with(kTemporarySuffix) || !entry->is_directory(ignored)) continue;
-    const std::uintmax_t gone = fs::remove_all(entry->path(), ignored);
-    if (gone > 0 && gone != static_cast<std::uintmax_t>(-1)) ++removed;
+    file_calls().remove_all(entry->path());
+    if (!fs::exists(entry->path(), ignored)) ++removed;
   }
   return removed;
 }
