@@ -81,7 +81,12 @@ std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs
     std::vector<std::string> missing = copy_all(instrument, temporary, with_results);
     sync_directory(temporary);
     if (file_calls().rename_to_new(temporary, final_dir) != 0) throw storage_error(errno, "rename to", final_dir);
-    sync_directory(final_dir.parent_path());
+    try {
+      sync_directory(final_dir.parent_path());
+    } catch (...) {
+      if (file_calls().rename(final_dir, temporary) != 0) file_calls().remove_all(final_dir);
+      throw;
+    }
     return missing;
   } catch (...) {
     file_calls().remove_all(temporary);

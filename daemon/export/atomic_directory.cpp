@@ -91,8 +91,8 @@ void AtomicDirectory::commit() {
   try {
     sync_directory(final_dir_.parent_path());
   } catch (...) {
-    file_calls().remove_all(final_dir_);
-    temporary_.clear();
+    // Under its hidden name again first: a part of it must not be seen.
+    if (file_calls().rename(final_dir_, temporary_) != 0) file_calls().remove_all(final_dir_);
     throw;
   }
   temporary_.clear();

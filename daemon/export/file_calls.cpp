@@ -92,8 +92,8 @@ bool make_directories(const std::filesystem::path& folder) {
   if (folder.has_parent_path() && folder.parent_path() != folder) (void)make_directories(folder.parent_path());
   if (!folder.has_filename()) return false;  // a trailing slash
   if (file_calls().make_directory(folder) == 0) return true;
-  const int reason = errno;
-  if (reason == EEXIST && std::filesystem::is_directory(folder, error)) return false;  // made meanwhile
+  const int reason = errno == EEXIST ? ENOTDIR : errno;
+  if (std::filesystem::is_directory(folder, error)) return false;  // made meanwhile
   throw storage_error(reason, "create directory", folder);
 }
 

@@ -165,6 +165,7 @@ std::string write_setup(const SetupDraft& draft, const fs::path& named, bool rep
   fs::path recipe;
   if (draft.trial) left_over.files.push_back(recipe = write_recipe(draft, loaded.config.paths.recipe_dir));
   const fs::path made = file.string() + ".new-" + std::to_string(::getpid());
+  remove_file(made);  // of a try that could not clear up
   write_new_file(made, text);
   left_over.files.push_back(made);
   fs::path kept;
