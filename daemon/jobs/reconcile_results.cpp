@@ -84,7 +84,8 @@ bool set_aside(const fs::path& folder, const fs::path& aside) {
     (void)make_directories(aside.parent_path());
     if (file_calls().rename_to_new(folder, aside) != 0) throw storage_error(errno, "rename it to", aside);
   } catch (const Error& failure) {
-    spdlog::error("{}: its job was told without a result, and it stays where it is: {}", folder.string(), failure.what());
+    spdlog::error("{}: its job was told without a result, and it stays where it is: {}", folder.string(),
+                  failure.what());
     return false;
   }
   spdlog::warn("{}: its job was told without a result and stays so; the whole result is in {} from now on",

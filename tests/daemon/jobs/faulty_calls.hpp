@@ -20,6 +20,14 @@ class FaultyCalls final : public FileCalls {
   /// The call after `good` others fails with that errno.
   FaultyCalls(int good, int reason, FaultLasts lasts) : good_(good), reason_(reason), lasts_(lasts) {}
 
+  /// Counts anew from here on. Calls that run go on.
+  void arm(int good, int reason) {
+    const std::lock_guard lock(mutex_);
+    calls_ = 0;
+    mended_ = false;
+    good_ = good;
+    reason_ = reason;
+  }
   void mend() {
     const std::lock_guard lock(mutex_);
     mended_ = true;
@@ -37,9 +45,11 @@ class FaultyCalls final : public FileCalls {
   int sync(int fd) override { return fails() ? -1 : FileCalls::sync(fd); }
   int close(int fd) override {
     const bool failed = fails();
+    const int reason = errno;
     const int closed = FileCalls::close(fd);
-    if (failed) errno = reason_;
-    return failed ? -1 : closed;
+    if (!failed) return closed;
+    errno = reason;
+    return -1;
   }
   int make_directory(const std::filesystem::path& path) override {
     return fails() ? -1 : FileCalls::make_directory(path);
@@ -77,8 +87,8 @@ class FaultyCalls final : public FileCalls {
   mutable std::mutex mutex_;
   int calls_ = 0;
   bool mended_ = false;
-  const int good_;
-  const int reason_;
+  int good_;
+  int reason_;
   const FaultLasts lasts_;
 };
 

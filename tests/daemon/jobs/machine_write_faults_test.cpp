@@ -1,13 +1,16 @@
 /// A whole job on the engine, each call that writes failing: what clients are told, and that it goes on afterwards.
 
+#include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <iostream>
 #include <map>
+#include <system_error>
 
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
 
-#include "daemon/export/result_json.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/jobs/device_commands.hpp"
 #include "gtest/gtest.h"
 #include "tests/daemon/jobs/engine_bench.hpp"
@@ -30,11 +33,13 @@ class AMachineOnABadDisk : public test::AnEngine {
   /// The number of the job, or nothing where it was refused with a reason of the disk.
   std::optional<std::int64_t> start_refusably() {
     const std::int64_t seq = ++seq_;
+    const int moves = bench_.moves;
     try {
       (void)jobs().start({seq, "a", "part"});
       return seq;
     } catch (const Error& error) {
       if (!is_of_the_disk(error.code())) wrong("job " + std::to_string(seq) + " was refused: " + error.what());
+      if (bench_.moves != moves) wrong("a job that was refused moved the stage");
       return std::nullopt;
     }
   }
@@ -52,6 +57,7 @@ class AMachineOnABadDisk : public test::AnEngine {
   }
   /// After the disk was mended.
   void look_at_the_machine() {
+    const int moves = bench_.moves;
     if (!await([](const MachineStatus& now) { return now.signals.ready; }))
       return wrong("it is not ready again: " + machine().snapshot()->error_message);
     for (const auto& [seq, state] : told_) {
@@ -61,6 +67,7 @@ class AMachineOnABadDisk : public test::AnEngine {
         wrong("job " + std::to_string(seq) + " has no result");
     }
     told_.clear();
+    if (bench_.moves != moves) wrong("the stage moved again");
   }
   /// Every folder that can be seen is the result of a job that has one.
   void look_at_the_folders() {
@@ -79,7 +86,8 @@ class AMachineOnABadDisk : public test::AnEngine {
     ADD_FAILURE() << where_ << ": " << what;
   }
   void tell() const {
-    std::cout << "{\"write_faults\": " << faults_ << ", \"write_fault_violations\": " << violations_ << "}" << std::endl;
+    std::cout << "{\"write_faults\": " << faults_ << ", \"write_fault_violations\": " << violations_ << "}"
+              << std::endl;
   }
 
   const spdlog::level::level_enum level_;
@@ -91,6 +99,9 @@ class AMachineOnABadDisk : public test::AnEngine {
 };
 
 TEST_F(AMachineOnABadDisk, TellsEveryFaultOfAFileAndGoesOn) {
+  test::FaultyCalls calls(0, ENOSPC, test::FaultLasts::kUntilMended);
+  calls.mend();
+  const ReplacedFileCalls replaced(calls);
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
   int turn = 0;
@@ -98,23 +109,22 @@ TEST_F(AMachineOnABadDisk, TellsEveryFaultOfAFileAndGoesOn) {
   for (int call = 0; reached && violations_ < 20; call += all() ? 1 : 5) {
     const int reason = std::array{ENOSPC, EIO, EROFS}.at(static_cast<std::size_t>(turn++ % 3));
     where_ = "call " + std::to_string(call) + ", " + std::generic_category().message(reason);
-    {
-      test::FaultyCalls calls(call, reason, test::FaultLasts::kUntilMended);
-      const test::ReplacedCallsOfRunningThreads replaced(calls);
-      if (const auto seq = start_refusably()) look_at_the_end(*seq);
-      (void)await([](const MachineStatus&) { return true; });
-      reached = calls.has_failed();
-      calls.mend();
-      look_at_the_machine();
-    }
+    calls.arm(call, reason);
+    if (const auto seq = start_refusably()) look_at_the_end(*seq);
+    reached = calls.has_failed();
+    calls.mend();
+    look_at_the_machine();
     faults_ += reached ? 1 : 0;
   }
   look_at_the_folders();
   tell();
+  engine_->finish();  // before the calls go
   EXPECT_GT(faults_, 10);
 }
 
 TEST_F(AMachineOnABadDisk, TellsEveryFaultOfTheDatabaseAndGoesOn) {
+  test::BrokenDisk disk(EIO);
+  disk.mend();
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));
   int turn = 0;
@@ -122,7 +132,7 @@ TEST_F(AMachineOnABadDisk, TellsEveryFaultOfTheDatabaseAndGoesOn) {
   for (int write = 0; reached && violations_ < 20; write += all() ? 1 : 3) {
     const int reason = std::array{ENOSPC, EIO, EROFS}.at(static_cast<std::size_t>(turn++ % 3));
     where_ = "write " + std::to_string(write) + ", " + std::generic_category().message(reason);
-    test::BrokenDisk disk(reason, write);
+    disk.break_again(reason, write);
     if (const auto seq = start_refusably()) look_at_the_end(*seq);
     reached = disk.has_failed();
     disk.mend();
@@ -131,6 +141,7 @@ TEST_F(AMachineOnABadDisk, TellsEveryFaultOfTheDatabaseAndGoesOn) {
   }
   look_at_the_folders();
   tell();
+  engine_->finish();
   EXPECT_GT(faults_, 3);
 }
 
@@ -142,14 +153,15 @@ TEST_F(AMachineOnABadDisk, TellsEveryFaultOfASnap) {
   for (int call = 0; reached && violations_ < 20; ++call) {
     where_ = "call " + std::to_string(call);
     test::FaultyCalls calls(call, EIO, test::FaultLasts::kOnce);
+    std::optional<ErrorCode> error;
     {
       const ReplacedFileCalls replaced(calls);
       const auto task = tasks().submit(snap_work({}), TaskMotion::kNone);
       if (!await_answer(*task)) return wrong("no answer");
-      reached = calls.has_failed();
-      const bool failed = task->outcome()->error.has_value();
-      if (failed != reached) wrong(reached ? "the fault is not told" : "it failed without a fault");
+      error = task->outcome()->error;
     }
+    reached = calls.has_failed();
+    if (error.has_value() != reached) wrong(reached ? "the fault is not told" : "it failed without a fault");
     faults_ += reached ? 1 : 0;
     if (reached && fs::exists(snaps) && !fs::is_empty(snaps)) wrong("a part of a picture is left");
     fs::remove_all(snaps);

@@ -1,4 +1,5 @@
-/// Every other place that writes: recipes, constants, studies, backups, the setup, what clients on the machine look for.
+/// Every other place that writes: recipes, constants, studies, backups, the setup, what clients on the machine look
+/// for.
 
 #include "daemon/backup/backup.hpp"
 #include "daemon/backup/restore.hpp"
@@ -42,7 +43,8 @@ class ARecipe final : public WriteSite {
 
  private:
   [[nodiscard]] RecipeBook make() {
-    return {{folder_ / "shipped", folder_ / "edited"}, {Micrometers{-10}, Micrometers{100}, Micrometers{5}, 1000.0},
+    return {{folder_ / "shipped", folder_ / "edited"},
+            {Micrometers{-10}, Micrometers{100}, Micrometers{5}, 1000.0},
             store_.recipe_versions()};
   }
   const fs::path folder_;
@@ -138,9 +140,10 @@ class ABackup final : public WriteSite {
   std::string wrong(bool done) override {
     if (fs::exists(to_.string() + ".tmp")) return "a part is left";
     if (!done) return fs::exists(to_) ? "a backup is there that was refused" : "";
-    for (const fs::path& file : {to_ / "fvd.sqlite", to_ / "fvd.json", to_ / "conf.d" / "10.json", to_ / "recipes" / "part.json",
-                                 to_ / "state" / "calibration" / "calibration.json", to_ / "stage_profile.json",
-                                 to_ / "tokens", to_ / "results" / instrument_.result.filename() / "result.json"}) {
+    for (const fs::path& file :
+         {to_ / "fvd.sqlite", to_ / "fvd.json", to_ / "conf.d" / "10.json", to_ / "recipes" / "part.json",
+          to_ / "state" / "calibration" / "calibration.json", to_ / "stage_profile.json", to_ / "tokens",
+          to_ / "results" / instrument_.result.filename() / "result.json"}) {
       if (!fs::exists(file)) return file.string() + " is missing";
     }
     return {};
@@ -254,14 +257,14 @@ class AStack final : public WriteSite {
   const fs::path file_;
 };
 
-INSTANTIATE_TEST_SUITE_P(
-    OfOthers, AWriteSite,
-    testing::Values(test::write_site<ARecipe>("Recipe"), test::write_site<SomeConstants>("Constants"),
-                    test::write_site<AStudy>("Study"), test::write_site<ABackup>("Backup", 3),
-                    test::write_site<ARestoration>("Restoration", 3), test::write_site<APortFile>("PortFile"),
-                    test::write_site<ASocket>("Socket"), test::write_site<ASetup>("Setup"),
-                    test::write_site<AStack>("Stack")),
-    [](const auto& of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(OfOthers, AWriteSite,
+                         testing::Values(test::write_site<ARecipe>("Recipe"),
+                                         test::write_site<SomeConstants>("Constants"),
+                                         test::write_site<AStudy>("Study"), test::write_site<ABackup>("Backup", 3),
+                                         test::write_site<ARestoration>("Restoration", 3),
+                                         test::write_site<APortFile>("PortFile"), test::write_site<ASocket>("Socket"),
+                                         test::write_site<ASetup>("Setup"), test::write_site<AStack>("Stack")),
+                         [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace
 }  // namespace fvd

@@ -24,7 +24,8 @@ std::string lacks(const fs::path& folder) {
   for (const ResultFile& file : read_result_json(test::read_text(folder / "result.json")).files) {
     if (file.state != FileState::kWritten) continue;
     std::error_code error;
-    if (file.files ? !fs::is_directory(folder / file.name) : fs::file_size(folder / file.name, error) != file.size_bytes)
+    if (file.files ? !fs::is_directory(folder / file.name)
+                   : fs::file_size(folder / file.name, error) != file.size_bytes)
       return file.name + " is not whole";
   }
   return {};
@@ -186,7 +187,8 @@ class ARetention final : public WriteSite {
   std::string wrong(bool done) override {
     const StoredJob old = store_.find(old_);
     if (old.status.removed_utc.empty() && !fs::exists(results_ / old_)) return "a result went before it was told";
-    if (fs::exists(results_ / old_) && !fs::exists(results_ / old_ / "result.json")) return "a part of a result is left";
+    if (fs::exists(results_ / old_) && !fs::exists(results_ / old_ / "result.json"))
+      return "a part of a result is left";
     const std::string told = store_.find(with_slices_).result_json;
     const fs::path slices = results_ / with_slices_ / "slices";
     const bool gone = read_result_json(told).files.at(0).state == FileState::kNotMade;
@@ -259,17 +261,14 @@ class AReconciliation final : public WriteSite {
 
 TEST_P(AWriteSite, EndsEveryFaultWithoutHalves) { test::EveryWriteFault(GetParam()).run(); }
 
-INSTANTIATE_TEST_SUITE_P(OfJobs, AWriteSite,
-                         testing::Values(test::write_site<AResult>("Result"),
-                                         test::write_site<FilesThatFollow>("FilesThatFollow", 8),
-                                         test::write_site<AMarker>("Marker"),
-                                         test::write_site<AnAcceptance>("Acceptance", 2),
-                                         test::write_site<ANewStore>("NewStore"),
-                                         test::write_site<AnOldDatabase>("OldDatabase"),
-                                         test::write_site<AStageHistory>("StageHistory"),
-                                         test::write_site<ARetention>("Retention"),
-                                         test::write_site<AReconciliation>("Reconciliation")),
-                         [](const auto& of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    OfJobs, AWriteSite,
+    testing::Values(test::write_site<AResult>("Result"), test::write_site<FilesThatFollow>("FilesThatFollow", 8),
+                    test::write_site<AMarker>("Marker"), test::write_site<AnAcceptance>("Acceptance", 2),
+                    test::write_site<ANewStore>("NewStore"), test::write_site<AnOldDatabase>("OldDatabase"),
+                    test::write_site<AStageHistory>("StageHistory"), test::write_site<ARetention>("Retention"),
+                    test::write_site<AReconciliation>("Reconciliation")),
+    [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace
 }  // namespace fvd

@@ -61,7 +61,8 @@ class EveryWriteFault {
       }
     }
     EXPECT_GT(faults_, 0) << "nothing goes through FileCalls here";
-    std::cout << "{\"write_faults\": " << faults_ << ", \"write_fault_violations\": " << violations_ << "}" << std::endl;
+    std::cout << "{\"write_faults\": " << faults_ << ", \"write_fault_violations\": " << violations_ << "}"
+              << std::endl;
   }
 
  private:
