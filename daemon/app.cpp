@@ -1,9 +1,11 @@
 #include "daemon/app.hpp"
 
 #include <chrono>
+#include <string>
 
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/jobs/reconcile_results.hpp"
 
 namespace fvd {
@@ -11,11 +13,10 @@ namespace fvd {
 namespace {
 
 std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
-  std::error_code error;
-  std::filesystem::create_directories(paths.state_dir / "results", error);
-  if (error) {
-    throw Error(ErrorCode::kStorageWrite, "cannot make " + (paths.state_dir / "results").string() + ": " +
-                                              error.message() + "; see /paths/state_dir");
+  try {
+    (void)make_directories(paths.state_dir / "results");
+  } catch (const Error& failure) {
+    throw Error(failure.code(), std::string(failure.what()) + "; see /paths/state_dir");
   }
   return paths.state_dir;
 }

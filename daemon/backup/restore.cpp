@@ -10,6 +10,7 @@
 #include "daemon/backup/copied_files.hpp"
 #include "daemon/backup/state_files.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 #include "daemon/store/database_copy.hpp"
 #include "daemon/store/migrations.hpp"
@@ -50,8 +51,7 @@ std::optional<Known> known_to_the_replaced(const Database& database) {
 /// The backup's database as this version reads it, with the results where they are here.
 Known prepare_database(const fs::path& from, const fs::path& copy, const fs::path& results) {
   for (const char* log : {"-wal", "-shm"}) {  // of a restoration that was cut off
-    std::error_code ignored;
-    fs::remove(copy.string() + log, ignored);
+    remove_file(copy.string() + log);
   }
   copy_database(Database(from), copy);
   Database database(copy);
@@ -69,9 +69,8 @@ Known prepare_database(const fs::path& from, const fs::path& copy, const fs::pat
 void move(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::exists(from, error)) return;
-  fs::create_directories(to.parent_path(), error);
-  fs::rename(from, to, error);
-  if (error) throw storage_error(error.value(), "move aside", from);
+  (void)make_directories(to.parent_path());
+  if (file_calls().rename(from, to) != 0) throw storage_error(errno, "move aside", from);
 }
 
 fs::path unused_folder(const fs::path& state) {
@@ -89,7 +88,7 @@ void put_back_where_missing(const fs::path& from, const fs::path& to, std::vecto
     kept.push_back(to.string());
     return;
   }
-  fs::remove(to, error);
+  // An empty folder is filled as it is; it is there, so that nothing else has to give way.
   copy_durably(from, to);
 }
 
@@ -101,9 +100,9 @@ int add_results(const fs::path& from, const fs::path& to) {
     std::error_code ignored;
     if (fs::exists(folder, ignored)) continue;
     const fs::path hidden = to / ("." + entry->path().filename().string() + ".restored.tmp");
-    fs::remove_all(hidden, ignored);
+    file_calls().remove_all(hidden);
     copy_durably(entry->path(), hidden);
-    fs::rename(hidden, folder);
+    if (file_calls().rename(hidden, folder) != 0) throw storage_error(errno, "rename the copy to", folder);
     ++added;
   }
   return added;
@@ -117,7 +116,7 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   }
   const fs::path state = fs::absolute(instrument.state_dir);
   const fs::path file = state / kDatabaseFile;
-  fs::create_directories(state / "results");
+  (void)make_directories(state / "results");
   // Held to the end: no daemon starts meanwhile.
   std::error_code ignored;
   const auto held = fs::exists(file, ignored) ? std::make_unique<Database>(file) : nullptr;

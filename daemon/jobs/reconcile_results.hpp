@@ -11,7 +11,7 @@ namespace fvd {
 struct Reconciled {
   int adopted = 0;    ///< jobs that have their result now
   int removed = 0;    ///< folders that nobody was told of
-  int set_aside = 0;  ///< whole results of jobs that were told as interrupted
+  int set_aside = 0;  ///< whole results of jobs that were told without one
 };
 
 /// The folder of a job that this start found running becomes that job's result if it is whole. A job that was told as

@@ -211,6 +211,17 @@ TEST_F(AKillBetweenFolderAndRow, ChangesNothingThatAStartBeforeTold) {
   EXPECT_TRUE(fs::exists(folder_ / "set-aside" / job_.job_id / "result.json")) << "nothing measured is lost";
 }
 
+TEST_F(AKillBetweenFolderAndRow, ChangesNothingOfAJobThatWasToldAsFailed) {
+  JobStatus failed = store_->accept({2, "part", "chapter"});
+  fs::rename(folder_ / "results" / job_.job_id, folder_ / "results" / failed.job_id);  // it could not be taken back
+  failed.state = JobState::kFailed;
+  failed.error = ErrorCode::kStorageWrite;
+  store_->finish(failed, "", "");
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1) << "the result of another job";
+  EXPECT_EQ(store_->find(ClientSeq{2}).status.error, ErrorCode::kStorageWrite);
+  EXPECT_TRUE(fs::is_empty(folder_ / "results"));
+}
+
 TEST_F(AKillBetweenFolderAndRow, LeavesFoldersOfJobsAndEvaluationsThatTheDatabaseDoesNotKnow) {
   const fs::path results = folder_ / "results";
   fs::create_directory(results / "20260101T000000Z-00001-000001");
