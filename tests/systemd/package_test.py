@@ -164,7 +164,8 @@ class Life:
 
     def take_port(self):
         self.machine.run("systemctl", "stop", "fvd")
-        self.configure("/etc/fvd/conf.d/60-late.json", '{"rpc": {"address": "192.0.2.7"}}')
+        rpc = {"address": "192.0.2.7", "allow": [{"address": "192.0.2.0/24", "role": "operate"}]}
+        self.configure("/etc/fvd/conf.d/60-late.json", json.dumps({"rpc": rpc}))
         self.machine.run("systemctl", "start", "--no-block", "fvd")
         self.wait("it waits", lambda: "no network card has this address" in self.show("StatusText"))
         pid = self.show("MainPID")
@@ -200,10 +201,10 @@ class Life:
 
     def purge(self):
         self.machine.shell("rm -rf /var/lib/fvd/results/* && mkdir -p /var/lib/fvd/calibration && "
-                           "echo '{}' > /var/lib/fvd/calibration/calibration.json")
+                           "echo '{\"format\": 1, \"versions\": []}' > /var/lib/fvd/calibration/calibration.json")
         said = self.dpkg("-P", "fvd")
         assert self.machine.try_run("test", "-e", "/etc/fvd/fvd.json")[0] != 0
-        assert "results stay in /var/lib/fvd" in said, said
+        assert "stay in /var/lib/fvd" in said, said
         for kept in ("calibration/calibration.json", "fvd.sqlite"):
             self.machine.run("test", "-e", f"/var/lib/fvd/{kept}")
         assert self.machine.try_run("systemctl", "cat", "fvd")[0] != 0
