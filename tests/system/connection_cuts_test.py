@@ -172,7 +172,7 @@ def main(fvd, fvd_sim, wanted="12"):
     spec = importlib.util.spec_from_file_location("line_loop", SOURCE / "daemon/api/examples/line_loop.py")
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
-    example.POLL_S, example.RETRY_S = 0.02, 0.01
+    example.POLL_S, example.RETRY_S = 0.1, 0.01
     with instrument(fvd, fvd_sim) as port:
         direct = example.Line("127.0.0.1", port)
         wait_for(lambda: direct.ask("system.state")["ready"], "the daemon is ready")
