@@ -28,7 +28,9 @@ struct MethodDescription {
   /// Overtakes what the same connection asked for before, if peek answers it: nothing holds a stop back.
   bool is_urgent = false;
   bool is_audited = false;  ///< who asked for it is written down
-  bool needs_id = false;    ///< refused as a notification: somebody has to know what became of it
+  /// Every reply has a form of at most kCompactReply_bytes, and every error reply has: a PLC polls it.
+  bool is_brief = false;
+  bool needs_id = false;  ///< refused as a notification: somebody has to know what became of it
 };
 
 /// context: peek and run on any thread.

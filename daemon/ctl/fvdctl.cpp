@@ -288,7 +288,7 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   sub->add_option("job", a.job, job_help);
   sub->add_option(
          "--format", a.format,
-         "compact: at most 512 bytes, 440 with an evaluation; full: at most 2560 bytes, and the warnings; complete: "
+         "compact: at most 440 bytes; full: at most 1400 bytes, and the warnings; complete: "
          "result.json")
       ->check(CLI::IsMember({"compact", "full", "complete"}))
       ->capture_default_str();

@@ -216,10 +216,15 @@ void RpcServer::Impl::shut_down(std::chrono::steady_clock::time_point deadline) 
   ErrorCodeOf ignored;
   acceptor.close(ignored);
   local_acceptor.close(ignored);
-  resume_all();
+  const auto all = sessions;  // a copy, as in resume_all()
+  for (const auto& session : all) session->end_waits();
   const bool all_is_said =
       std::all_of(sessions.begin(), sessions.end(), [](const auto& session) { return session->is_answered(); });
-  if (all_is_said || std::chrono::steady_clock::now() >= deadline) return context.stop();
+  if (all_is_said) return context.stop();
+  if (std::chrono::steady_clock::now() >= deadline) {
+    for (const auto& session : all) session->give_up();
+    return context.stop();
+  }
   shutdown_timer.expires_after(kShutdownPollPeriod);
   shutdown_timer.async_wait([this, deadline](ErrorCodeOf) { shut_down(deadline); });
 }

@@ -16,6 +16,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "daemon/api/dispatcher.hpp"
+#include "daemon/transport/line_mistakes.hpp"
 #include "daemon/transport/worker.hpp"
 
 namespace fvd {
@@ -44,6 +45,10 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   void start();
   /// Tells the client a reason, a whole reply, and closes after it.
   void refuse(std::string reason);
+  /// The daemon ends: what waits is answered, with an error where nothing else is to be said.
+  void end_waits();
+  /// Answers what waits for the worker too, which does not come back in time.
+  void give_up();
   /// Checks the waiting request again: a job changed, or the waiting time is over.
   void resume(bool timed_out);
   /// True if every request was answered and every reply was sent.
@@ -61,10 +66,11 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
 
   struct Line {
     std::string text;
+    LineEnd end = LineEnd::kBreak;
     HostTime received;  ///< when its end came, however long it waits then
   };
 
-  /// Restarts the idle timeout; an unfinished line does not restart it.
+  /// Restarts the idle timeout; an unfinished line does not restart it, an empty one does.
   void watch_idle();
   void read();
   /// Cuts what has come into lines.
@@ -79,7 +85,9 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   void work(std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result));
   /// Handles the whole lines at hand, in order; stops at a request that cannot be answered at once.
   void process();
-  /// Answers urgent requests that stand behind an open one.
+  /// A whole text whose end does not come gets a line that says so.
+  void watch_line_end();
+  /// Answers requests that stand behind an open one and may overtake it.
   void overtake();
   void take(Handled handled);
   void take_and_go_on(Handled handled);
@@ -98,11 +106,12 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   boost::asio::steady_timer idle_;
   boost::asio::steady_timer wait_;
+  boost::asio::steady_timer line_end_;
   std::array<char, 4096> chunk_{};
   std::string input_;           // the beginning of a line whose end has not come
   std::deque<Line> lines_;      // that wait for their turn; none is blank
   std::size_t line_bytes_ = 0;  // of lines_
-  std::size_t looked_at_ = 0;   // so many of lines_ hold no urgent request
+  std::size_t looked_at_ = 0;   // so many of lines_ hold no request that may overtake
   std::deque<std::string> unsent_;
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;
@@ -110,6 +119,7 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   bool timed_out_ = false;    // of waiting_
   bool check_again_ = false;  // a check was asked for during a check
   bool half_closed_ = false;
+  bool ending_ = false;       // the daemon ends: nothing waits any more
   bool is_accepted_ = false;  // it has made a valid request
   bool refused_ = false;
   int parse_errors_in_a_row_ = 0;
