@@ -128,16 +128,26 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
 }
 
 std::optional<Handled> Dispatcher::try_urgent(std::string_view line, const Caller& caller) const {
+  const MethodDescription* method = method_of(line);
+  if (method == nullptr || !method->is_urgent) return std::nullopt;
+  // Who may not yet may log in with a line before it: then it keeps its turn.
+  if (!may_call(caller, *method)) return std::nullopt;
+  return handle_line(line, caller, false);
+}
+
+bool Dispatcher::is_log_in(std::string_view line) const {
+  const MethodDescription* method = method_of(line);
+  return method != nullptr && method->is_log_in;
+}
+
+const MethodDescription* Dispatcher::method_of(std::string_view line) const {
   Problems ignored;  // told when its turn comes
   const auto document = parse_strict_json(line, ignored, JsonComments::kRefused);
-  if (!document || !document->is_object()) return std::nullopt;
+  if (!document || !document->is_object()) return nullptr;
   const auto name = document->find("method");
-  if (name == document->end() || !name->is_string()) return std::nullopt;
+  if (name == document->end() || !name->is_string()) return nullptr;
   const auto method = methods_.find(name->get<std::string>());
-  if (method == methods_.end() || !method->second.about.is_urgent) return std::nullopt;
-  // Who may not yet may log in with a line before it: then it keeps its turn.
-  if (!may_call(caller, method->second.about)) return std::nullopt;
-  return handle_line(line, caller, false);
+  return method == methods_.end() ? nullptr : &method->second.about;
 }
 
 Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& caller, bool may_block) const {

@@ -48,6 +48,9 @@ class Dispatcher {
   /// The same for a line with a single urgent request that may overtake others.
   [[nodiscard]] std::optional<Handled> try_urgent(std::string_view line, const Caller& caller) const;
 
+  /// True for a line with a single request that only says who the caller is: nobody waits behind slow calls for that.
+  [[nodiscard]] bool is_log_in(std::string_view line) const;
+
   /// Every method with its description.
   [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
 
@@ -85,6 +88,8 @@ class Dispatcher {
     bool would_block = false;  ///< nothing was executed: handle() has to take the line
   };
 
+  /// Of a line with a single request; null for any other.
+  [[nodiscard]] const MethodDescription* method_of(std::string_view line) const;
   [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;
   [[nodiscard]] Outcome handle_request(const Json& request, const Caller& caller, Mode mode) const;
   [[nodiscard]] Outcome handle_batch(const Json& batch, const Caller& caller, bool may_block) const;
