@@ -57,6 +57,9 @@ bool ends(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
 std::optional<std::string> why_no_ports(const Config& config) {
   if (auto reason = why_no_port(config.rpc.address, config.rpc.port)) return reason;
+  if (config.http.port) {
+    if (auto reason = why_no_port(config.http.address, *config.http.port)) return reason;
+  }
   return config.metrics.port ? why_no_port(config.metrics.address, *config.metrics.port) : std::nullopt;
 }
 
@@ -118,6 +121,7 @@ int serve(const Options& options, Config config) {
   if (!await_ports(config, signals)) return exit_code::kOk;
   App app(config, options.new_database);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
+  if (const auto port = app.http_port()) spdlog::info("HTTP on {}:{}", config.http.address, *port);
   if (const auto port = app.metrics_port()) spdlog::info("metrics on {}:{}", config.metrics.address, *port);
   const std::string status = "listening on port " + std::to_string(app.rpc_port());
   notify_ready(status);

@@ -130,17 +130,27 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
 }
 
 std::optional<Handled> Dispatcher::try_overtake(std::string_view line, const Caller& caller, Behind behind) const {
+  const Method* method = method_of(line);
+  if (method == nullptr || !method->peek) return std::nullopt;
+  if (behind == Behind::kWork && !method->about.is_urgent) return std::nullopt;
+  // Who may not yet may log in with a line before it: then it keeps its turn.
+  if (!may_call(caller, method->about)) return std::nullopt;
+  return handle_line(line, caller, false);
+}
+
+bool Dispatcher::is_log_in(std::string_view line) const {
+  const Method* method = method_of(line);
+  return method != nullptr && method->about.is_log_in;
+}
+
+const Method* Dispatcher::method_of(std::string_view line) const {
   Problems ignored;  // told when its turn comes
   const auto document = parse_strict_json(line, ignored, JsonComments::kRefused);
-  if (!document || !document->is_object()) return std::nullopt;
+  if (!document || !document->is_object()) return nullptr;
   const auto name = document->find("method");
-  if (name == document->end() || !name->is_string()) return std::nullopt;
+  if (name == document->end() || !name->is_string()) return nullptr;
   const auto method = methods_.find(name->get<std::string>());
-  if (method == methods_.end() || !method->second.peek) return std::nullopt;
-  if (behind == Behind::kWork && !method->second.about.is_urgent) return std::nullopt;
-  // Who may not yet may log in with a line before it: then it keeps its turn.
-  if (!may_call(caller, method->second.about)) return std::nullopt;
-  return handle_line(line, caller, false);
+  return method == methods_.end() ? nullptr : &method->second;
 }
 
 Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& caller, bool may_block) const {

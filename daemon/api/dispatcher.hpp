@@ -51,6 +51,9 @@ class Dispatcher {
   /// try_handle() answers while the open one waits for a job or the devices.
   [[nodiscard]] std::optional<Handled> try_overtake(std::string_view line, const Caller& caller, Behind behind) const;
 
+  /// True for a line with a single request that only says who the caller is: nobody waits behind slow calls for that.
+  [[nodiscard]] bool is_log_in(std::string_view line) const;
+
   /// Every method with its description.
   [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
 
@@ -93,6 +96,8 @@ class Dispatcher {
     bool would_block = false;  ///< nothing was executed: handle() has to take the line
   };
 
+  /// Of a line with a single request; null for any other.
+  [[nodiscard]] const Method* method_of(std::string_view line) const;
   [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;
   [[nodiscard]] Outcome handle_request(const Json& request, const Caller& caller, Mode mode) const;
   [[nodiscard]] Outcome handle_batch(const Json& batch, const Caller& caller, bool may_block) const;

@@ -26,9 +26,9 @@ constexpr std::chrono::seconds kRefusalGrace{1};            // for a refused cli
 }  // namespace
 
 template <typename Result>
-void RpcSession::work(std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result)) {
+void RpcSession::work(Worker& worker, std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result)) {
   at_work_ = true;
-  host_.worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
+  worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
     Result result = what(self->host_.dispatcher);
     asio::io_context& context = self->host_.context;
     // The session is moved back: its destructor must run on the network thread.
@@ -47,7 +47,8 @@ RpcSession::RpcSession(const RpcSessionHost& host, Socket socket, Caller caller)
       wait_(host.context),
       line_end_(host.context) {}
 
-void RpcSession::start() {
+void RpcSession::start(bool must_log_in) {
+  must_log_in_ = must_log_in;
   tune(socket_.native_handle());
   watch_idle();
   read();
@@ -154,14 +155,18 @@ void RpcSession::process() {
     if (line.text.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
     if (begins_foreign_protocol(line.text)) return refuse_with(Dispatcher::foreign_protocol());
     if (const auto mistake = mistake_in(line.text, line.end)) return refuse_with(Dispatcher::mistaken(*mistake));
+    if (must_log_in_ && !host_.dispatcher.is_log_in(line.text)) return refuse_with(Dispatcher::too_many_connections());
     watch_idle();
     caller_.received = line.received;
     if (auto handled = host_.dispatcher.try_handle(line.text, caller_)) {
       take(std::move(*handled));
     } else {
-      work<Handled>([text = line.text,
-                     caller = caller_](const Dispatcher& dispatcher) { return dispatcher.handle(text, caller); },
-                    &RpcSession::take_and_go_on);
+      work<Handled>(
+          host_.dispatcher.is_log_in(line.text) ? host_.logins : host_.worker,
+          [text = line.text, caller = caller_](const Dispatcher& dispatcher) {
+            return dispatcher.handle(text, caller);
+          },
+          &RpcSession::take_and_go_on);
     }
   }
   if (refused_) return;
@@ -208,7 +213,13 @@ void RpcSession::overtake() {
 }
 
 void RpcSession::take(Handled handled) {
-  if (handled.log_in) caller_.who = *std::move(handled.log_in);
+  const bool has_logged_in = handled.log_in.has_value();
+  if (has_logged_in) caller_.who = *std::move(handled.log_in);
+  if (must_log_in_) {
+    if (!has_logged_in && handled.reply) send(std::move(*handled.reply));
+    if (!has_logged_in || !host_.has_room(caller_.who)) return refuse_with(Dispatcher::too_many_connections());
+    must_log_in_ = false;
+  }
   is_accepted_ = is_accepted_ || handled.is_accepted;
   watch_idle();
   parse_errors_in_a_row_ = handled.is_parse_error ? parse_errors_in_a_row_ + 1 : 0;
@@ -246,9 +257,12 @@ void RpcSession::check_wait(bool timed_out) {
     return;
   }
   check_again_ = false;
-  work<std::optional<std::string>>([waiting = *waiting_, late = timed_out_](
-                                       const Dispatcher& dispatcher) { return dispatcher.resume(waiting, late); },
-                                   &RpcSession::end_wait);
+  work<std::optional<std::string>>(
+      host_.worker,
+      [waiting = *waiting_, late = timed_out_](const Dispatcher& dispatcher) {
+        return dispatcher.resume(waiting, late);
+      },
+      &RpcSession::end_wait);
 }
 
 void RpcSession::end_wait(std::optional<std::string> reply) {

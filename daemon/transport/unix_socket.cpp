@@ -18,6 +18,7 @@ namespace fvd {
 namespace {
 
 constexpr mode_t kEverybody = 0666;
+constexpr char kBeingMade = '~';  // behind the name
 constexpr std::size_t kGroupsAtFirst = 64;
 
 [[noreturn]] void refuse(ErrorCode code, const std::filesystem::path& file, const std::string& why) {
@@ -28,8 +29,9 @@ sockaddr_un address_of(const std::filesystem::path& file) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string text = file.string();
-  if (text.empty() || text.size() >= sizeof address.sun_path) {
-    refuse(ErrorCode::kBadConfig, file, "a socket's path has 1 to 107 characters");
+  if (text.empty() || text.size() > kLongestSocketPath) {
+    refuse(ErrorCode::kBadConfig, file,
+           "a socket's path has 1 to " + std::to_string(kLongestSocketPath) + " characters");
   }
   std::memcpy(address.sun_path, text.c_str(), text.size() + 1);
   return address;
@@ -64,15 +66,19 @@ UnixSocket::UnixSocket(std::filesystem::path file) : file_(std::move(file)) {
   }
   clear_the_way(file_, address);
   listener_ = new_socket(file_);
-  if (::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    refuse(errno == EADDRINUSE ? ErrorCode::kNotReady : ErrorCode::kStorageWrite, file_, std::strerror(errno));
-  }
+  // Under its own name it is there when it listens and everybody may connect, not before.
+  const std::string made = file_.string() + kBeingMade;
+  sockaddr_un made_address = address;
+  std::memcpy(made_address.sun_path, made.c_str(), made.size() + 1);
+  file_calls().unlink(made);  // what a killed daemon left
   struct stat status {};
-  if (file_calls().set_mode(file_, kEverybody) != 0 || ::lstat(file_.c_str(), &status) != 0 ||
-      ::listen(listener_.get(), SOMAXCONN) != 0) {
-    const std::string why = std::strerror(errno);
-    file_calls().unlink(file_);
-    refuse(ErrorCode::kStorageWrite, file_, why);
+  if (::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&made_address), sizeof made_address) != 0 ||
+      file_calls().set_mode(made, kEverybody) != 0 || ::lstat(made.c_str(), &status) != 0 ||
+      ::listen(listener_.get(), SOMAXCONN) != 0 ||
+      file_calls().rename_to_new(made, file_) != 0) {
+    const int failure = errno;
+    file_calls().unlink(made);
+    refuse(failure == EEXIST ? ErrorCode::kNotReady : ErrorCode::kStorageWrite, file_, std::strerror(failure));
   }
   device_ = status.st_dev;
   inode_ = status.st_ino;

@@ -249,20 +249,24 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   std::optional<CameraSettings> previewed;
   bool refuse_tasks = false;
 
-  void on_change(std::function<void()> listener) override {
+  void on_change(std::function<void()> listener, const void* whose) override {
     const std::lock_guard lock(mutex_);
-    listener_ = std::move(listener);
+    if (listener) {
+      listeners_[whose] = std::move(listener);
+    } else {
+      listeners_.erase(whose);
+    }
   }
 
   /// Changes a job and tells the listener, as the machine's thread would.
   void change(const ClientSeq& number, const std::function<void(JobStatus&)>& how) {
-    std::function<void()> listener;
+    std::map<const void*, std::function<void()>> listeners;
     {
       const std::lock_guard lock(mutex_);
       how(jobs_.at({number.client, number.seq}));
-      listener = listener_;
+      listeners = listeners_;
     }
-    if (listener) listener();
+    for (const auto& [whose, listener] : listeners) listener();
   }
 
   /// In a test that has start() block.
@@ -292,7 +296,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   mutable std::mutex mutex_;
   using Key = std::pair<std::string, std::int64_t>;
   std::map<Key, JobStatus> jobs_;
-  std::function<void()> listener_;
+  std::map<const void*, std::function<void()>> listeners_;
 };
 
 }  // namespace fvd
