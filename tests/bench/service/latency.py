@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How soon the stage does what a client asks: a trigger, a stop without control, the end of a jog.
 
-latency.py BUILD trigger|stop|jog [ROUNDS]
+latency.py BUILD trigger|stop|jog|all [ROUNDS]
 Prints a line of details and, last, one JSON object.
 """
 
@@ -89,8 +89,11 @@ def jog(build, rounds):
 
 def main():
     build, phase = sys.argv[1:3]
-    rounds = int(sys.argv[3]) if len(sys.argv) > 3 else {"trigger": 400, "stop": 100, "jog": 40}[phase]
-    print(json.dumps({"trigger": trigger, "stop": stop, "jog": jog}[phase](build, rounds)))
+    figures = {}
+    for name, measured, rounds in (("trigger", trigger, 400), ("stop", stop, 100), ("jog", jog, 40)):
+        if phase in (name, "all"):
+            figures |= measured(build, int(sys.argv[3]) if len(sys.argv) > 3 else rounds)
+    print(json.dumps(figures))
 
 
 main()

@@ -2,7 +2,7 @@
 """Clients that poll while the machine scans: 100,000 results that nobody acknowledged, a disk that takes 500 ms to sync,
 and viewers that never read.
 
-poll.py BUILD [SECONDS] [RESULTS] [CALLS_PER_S]
+poll.py BUILD [SECONDS] [RESULTS] [CALLS_PER_S] [SLICES] [JOBS]
 The last line is one JSON object.
 """
 
@@ -15,8 +15,6 @@ import threading
 from rig import Client, Rig, recipe
 
 SYNC_MS = 500
-JOBS = 2
-SCAN = recipe(start_um=-100, step_um=1, slices=200)
 
 
 def fill(file, results):
@@ -62,9 +60,10 @@ def late_in(result):
 
 def main():
     build = sys.argv[1]
-    seconds, results, rate = (int(sys.argv[i]) if len(sys.argv) > i else standard
-                              for i, standard in ((2, 15), (3, 100_000), (4, 2000)))
-    with Rig(build, {"part": SCAN}) as rig:
+    standards = (15, 100_000, 2000, 200, 2)
+    seconds, results, rate, slices, jobs = (int(sys.argv[i]) if len(sys.argv) > i else standard
+                                            for i, standard in enumerate(standards, 2))
+    with Rig(build, {"part": recipe(start_um=-100, step_um=1, slices=slices)}) as rig:
         rig.settings["rpc.max_connections"] = 64
         client = rig.start()
         client.ask("job.start", seq=1, part_id="part", recipe="part")
@@ -78,7 +77,7 @@ def main():
             sys.exit(f"{waiting} results wait, not {results}: see {rig.folder}")
         figures, late = [], 0
         with Acknowledger(rig.port) as acknowledger:
-            for seq in range(results + 1, results + 1 + JOBS):
+            for seq in range(results + 1, results + 1 + jobs):
                 client.ask("job.start", seq=seq, part_id="part", recipe="part")
                 load = subprocess.run([str(word) for word in (rig.build / "tests/bench/service/poll_load", rig.port, seq,
                                                               seconds, rate)], stdout=subprocess.PIPE, text=True, check=True)
@@ -92,7 +91,7 @@ def main():
         rig.stop()
     print(f"poll: {acknowledger.done} acknowledgements meanwhile")
     print(json.dumps({"poll_p99_ms": round(max(told["p99_ms"] for told in figures), 2), "late_slices": late,
-                      "poll_calls": sum(told["calls"] for told in figures), "poll_jobs": JOBS}))
+                      "poll_calls": sum(told["calls"] for told in figures), "poll_jobs": jobs}))
 
 
 main()

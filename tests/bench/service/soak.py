@@ -74,13 +74,14 @@ def main():
             measure(rig, seq)
             memory.append((seq, kib(pid)))
             files.append((seq, descriptors(pid)))
-            if seq % BLOCK == 0:
+            if seq % BLOCK == 0 or seq == jobs:
                 sizes.append(gib(rig.state))
                 print(f"soak: {seq} jobs, {memory[-1][1]} KiB, {files[-1][1]} descriptors, {sizes[-1]:.3f} GiB", flush=True)
         kept = len(list((rig.state / "results").iterdir()))
         rig.stop()
-    blocks = [min(files[i:i + BLOCK], key=lambda point: point[1]) for i in range(first, jobs - BLOCK + 1, BLOCK)]
-    if len(blocks) < 2:
+    block = min(BLOCK, (jobs - first) // 2)
+    blocks = [min(files[i:i + block], key=lambda point: point[1]) for i in range(first, jobs - block + 1, block)]
+    if len(blocks) < 2 or block < 1:
         sys.exit(f"{jobs} jobs are too few for a slope from job {first} on")
     was_needed = kept < jobs
     print(f"soak: {kept} results of {jobs} are kept, {max(sizes):.3f} GiB at most"
