@@ -34,10 +34,11 @@ constexpr std::array<Time, 8> kTimes{{
     {"reply_ms", 1000, "for a reply; then a new connection and the same request"},
     {"wait_extra_ms", 1000, "for the reply to job.wait, beyond its timeout_ms; other requests are answered meanwhile"},
     {"retry_ms", 500, "pause before the next attempt to connect"},
-    {"poll_ms", 100, "pause between two polls; 50 is well, 10 is allowed"},
+    {"poll_ms", 100, "pause between two polls; 50 to 200 are usual"},
     {"heartbeat_ms", 1000, "after so much silence system.ping, or an empty line, which has no answer"},
     {"heartbeats_missed", 3, "so many replies missed: the daemon or the network is gone"},
-    {"reply_bytes", static_cast<int>(kCompactReply_bytes), "of the longest compact reply and of every error reply"},
+    {"reply_bytes", static_cast<int>(kCompactReply_bytes),
+     "of the longest compact reply, and of the errors of methods that a line polls"},
 }};
 
 }  // namespace

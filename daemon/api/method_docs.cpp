@@ -172,13 +172,15 @@ void write_params(const MethodTable& methods, std::ostream& out) {
   }
 }
 
-void write_errors(std::ostream& out) {
-  struct Row {
-    std::string name;
-    bool retry;
-    std::string_view meaning;
-  };
-  std::map<int, Row> errors;
+struct ErrorRow {
+  std::string name;
+  bool retry = false;
+  std::string_view meaning;
+};
+
+/// Every error that a call may meet, but JSON-RPC's own.
+std::map<int, ErrorRow> all_errors() {
+  std::map<int, ErrorRow> errors;
   for (const AccessCode code : {AccessCode::kNotAllowed, AccessCode::kNoControl}) {
     const RpcError wire = rpc_error(code);
     errors[wire.code] = {std::string(error_name(code)), wire.retry, error_meaning(code)};
@@ -188,8 +190,25 @@ void write_errors(std::ostream& out) {
     const RpcError wire = rpc_error(code);
     errors[wire.code] = {std::string(error_name(code)), wire.retry, error_meaning(code)};
   }
+  return errors;
+}
+
+ordered_json all_errors_json() {
+  ordered_json list = ordered_json::array();
+  for (const int code :
+       {json_rpc::kParseError, json_rpc::kInvalidRequest, json_rpc::kMethodNotFound, json_rpc::kInvalidParams}) {
+    list.push_back(
+        {{"code", code}, {"name", json_rpc::name_of(code)}, {"retry", false}, {"meaning", "of JSON-RPC 2.0"}});
+  }
+  for (const auto& [code, error] : all_errors()) {
+    list.push_back({{"code", code}, {"name", error.name}, {"retry", error.retry}, {"meaning", error.meaning}});
+  }
+  return list;
+}
+
+void write_errors(std::ostream& out) {
   out << "| code | error | may succeed later | meaning, what to do |\n|---|---|---|---|\n";
-  for (const auto& [code, error] : errors) {
+  for (const auto& [code, error] : all_errors()) {
     out << "| " << code << " | " << error.name << " | " << (error.retry ? "yes" : "") << " | " << error.meaning
         << " |\n";
   }
@@ -219,6 +238,7 @@ ordered_json openrpc_document(const MethodTable& methods) {
   return {{"openrpc", "1.2.6"},
           {"info", {{"title", "fvd"}, {"version", kVersion}}},
           {"methods", described},
+          {"x-errors", all_errors_json()},
           {"x-line", line_contract_json()}};
 }
 

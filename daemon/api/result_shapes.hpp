@@ -14,7 +14,8 @@ namespace fvd {
 
 /// The result of a job as its form asks, within its length:
 ///   compact  the main values; with an evaluation its verdict and values in their place. Of what does not fit,
-///            measurements give way first, from the last one on, then client, job_id, the counts of frames, heights, age_s
+///            measurements give way first, from the last one on, then client, job_id, the counts of frames, heights,
+///            age_s
 ///   full     result.json without what is long, and where the files are. focus, steps, times, slices, frames give way
 ///   in
 ///            this order, then the last of the warnings

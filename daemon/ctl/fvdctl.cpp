@@ -286,10 +286,9 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
 
   sub = command("result", "print the result of a job", [&] { return result(a, terminal); });
   sub->add_option("job", a.job, job_help);
-  sub->add_option(
-         "--format", a.format,
-         "compact: at most 440 bytes; full: at most 1400 bytes, and the warnings; complete: "
-         "result.json")
+  sub->add_option("--format", a.format,
+                  "compact: at most 440 bytes; full: at most 1400 bytes, and the warnings; complete: "
+                  "result.json")
       ->check(CLI::IsMember({"compact", "full", "complete"}))
       ->capture_default_str();
 

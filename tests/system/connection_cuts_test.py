@@ -4,7 +4,8 @@
   connection_cuts_test.py FVD FVD_SIM [CUTS]     CUTS: so many, evenly over the loop (12); 0 = after every byte
 
 A part is measured for each cut: after k bytes of a direction, counted from the beginning of the part's loop, both sides of the
-connection are reset; every fourth time it falls silent instead. Last line: {"cuts", "repeated_motions", "lost"}.
+connection are reset; every fourth time it falls silent instead. At the end the daemon itself is killed in the middle of a part.
+Last line: {"cuts", "repeated_motions", "lost"}.
 """
 
 import contextlib
@@ -26,7 +27,7 @@ RECIPE = {
     "format": 2,
     "description": "Small and short: what is tested is the conversation",
     "acquire": {
-        "scan": {"start_um": -7, "step_um": 10, "slices": 5},
+        "scan": {"start_um": -7, "step_um": 10},
         "camera": {"pixel_format": "Mono8", "exposure_us": 1000, "width_px": 96, "height_px": 64},
     },
     "reconstruct": {
@@ -105,17 +106,19 @@ class CuttingProxy:
 
 @contextlib.contextmanager
 def instrument(fvd, fvd_sim):
-    """The port of a daemon that is ready."""
+    """(port, restart) of a daemon; restart() kills it and starts it anew on the same port."""
     with tempfile.TemporaryDirectory(prefix="fvd-cuts-") as name, contextlib.ExitStack() as programs:
         folder = pathlib.Path(name)
         (folder / "recipes").mkdir()
-        (folder / "recipes" / "part.json").write_text(json.dumps(RECIPE))
+        for name, slices in (("part", 5), ("long", 30)):  # long enough for a kill in its middle
+            RECIPE["acquire"]["scan"]["slices"] = slices
+            (folder / "recipes" / f"{name}.json").write_text(json.dumps(RECIPE))
 
         def start(log, *command):
             output = programs.enter_context(open(folder / log, "wb"))
             program = subprocess.Popen(command, stdout=output, stderr=output)
             programs.callback(program.wait)
-            programs.callback(program.terminate)
+            programs.callback(program.terminate)  # does nothing to one that has ended
             return program
 
         def document(file, program):
@@ -139,9 +142,22 @@ def instrument(fvd, fvd_sim):
             "paths.runtime_dir": folder,
             "paths.recipe_dir": folder / "recipes",
         }
-        program = start("rpc.log", fvd, "--config", str(SOURCE / "config/fvd-sim.json"),
-                        *(text for key, value in settings.items() for text in ("--set", f"{key}={value}")))
-        yield document(folder / "rpc.json", program)["port"]
+
+        def start_daemon():
+            program = start("rpc.log", fvd, "--config", str(SOURCE / "config/fvd-sim.json"),
+                            *(text for key, value in settings.items() for text in ("--set", f"{key}={value}")))
+            settings["rpc.port"] = document(folder / "rpc.json", program)["port"]
+            return program
+
+        def restart():
+            nonlocal program
+            program.kill()
+            program.wait()
+            (folder / "rpc.json").unlink()
+            program = start_daemon()
+
+        program = start_daemon()
+        yield settings["rpc.port"], restart
 
 
 def measure_parts(example, proxy, cuts):
@@ -168,12 +184,35 @@ def measure_parts(example, proxy, cuts):
     return [json.loads(line) for line in printed.getvalue().splitlines()], came
 
 
+def measure_over_a_kill(example, port, restart):
+    """The result of a part in the middle of whose scan the daemon is killed."""
+    direct = example.Line("127.0.0.1", port)
+    direct.ask("recipe.prepare", id="long")
+    newest = direct.ask("system.state")["newest_seq"]
+    results = []
+
+    def measure():
+        line = example.Line("127.0.0.1", port)
+        results.append(line.measure("killed", newest + 1))
+        line.ask("result.ack", seq=results[0]["seq"])
+
+    thread = threading.Thread(target=measure)
+    thread.start()
+    wait_for(lambda: direct.ask("job.latest")["seq"] > newest, "the job has begun")
+    restart()
+    thread.join(START_TIMEOUT_S)
+    assert results, "the part was not measured again"
+    assert results[0]["state"] == "completed" and results[0]["part_id"] == "killed", results
+    assert results[0]["seq"] == newest + 2, f"its first number is spent: {results}"
+    return results[0]
+
+
 def main(fvd, fvd_sim, wanted="12"):
     spec = importlib.util.spec_from_file_location("line_loop", SOURCE / "daemon/api/examples/line_loop.py")
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
     example.POLL_S, example.RETRY_S = 0.1, 0.01
-    with instrument(fvd, fvd_sim) as port:
+    with instrument(fvd, fvd_sim) as (port, restart):
         direct = example.Line("127.0.0.1", port)
         wait_for(lambda: direct.ask("system.state")["ready"], "the daemon is ready")
         direct.ask("recipe.prepare", id="part")
@@ -188,6 +227,7 @@ def main(fvd, fvd_sim, wanted="12"):
         more, came = measure_parts(example, proxy, [(*point, index % 4 == 3) for index, point in enumerate(chosen)])
         scans = direct.ask("stage.accuracy")["scans"]
         state = direct.ask("system.state")
+        measure_over_a_kill(example, port, restart)
     # The loop's numbers go on over both calls; a result that is there twice, or not at all, breaks the row.
     seqs = [result["seq"] for result in results + more]
     parts = [result["part_id"] for result in more]

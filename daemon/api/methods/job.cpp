@@ -142,16 +142,18 @@ void add_job_methods(MethodTable& methods, const Services& services) {
       .run = with<JobStatusParams>([&jobs = services.jobs](const Call& call, const JobStatusParams& params) {
         return job_status_reply(jobs.job(params.key()), params.form.form(), call.envelope_bytes);
       })};
-  methods["job.wait"] = {.about = {.summary = "Answers when the job is acquired or done",
-                                   .role = Role::kView,
-                                   .params = described<WaitParams>(),
-                                   .result = describe_job_status,
-                                   .errors = {kUnknownJob},
-                                   .may_wait = true,
-                                   .is_brief = true},
-                         .run = with<WaitParams>([services](const Call& call, const WaitParams& params) {
-                           return wait_for_job(services, call, params);
-                         })};
+  methods["job.wait"] = {
+      .about = {.summary =
+                    "Answers when the job is acquired or done; until then its connection holds up what needs the disk, "
+                    "and answers everything else",
+                .role = Role::kView,
+                .params = described<WaitParams>(),
+                .result = describe_job_status,
+                .errors = {kUnknownJob},
+                .may_wait = true,
+                .is_brief = true},
+      .run = with<WaitParams>(
+          [services](const Call& call, const WaitParams& params) { return wait_for_job(services, call, params); })};
   methods["job.abort"] = {
       .about = {.summary = "Ends a job; no effect on one that has ended",
                 .role = Role::kOperate,

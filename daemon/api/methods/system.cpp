@@ -84,8 +84,7 @@ void add_system_methods(MethodTable& methods, const Services& services, std::chr
       .about = {.summary = "Who answers",
                 .role = Role::kView,
                 .params = described<NoParams>(),
-                .result = describe_info,
-                .is_brief = true},
+                .result = describe_info},
       .peek = [&machine = services.machine](const Call&) { return info_of(*machine.snapshot()); }};
   methods["system.state"] = {
       .about = {.summary = "The machine's state, flat and cheap to poll",

@@ -164,7 +164,6 @@ class ReplySizes : public ADispatcher {
     const json client{{"client", std::string(32, 'C')}};
     const json start{{"seq", kGreatest}, {"part_id", "p"}, {"client", std::string(32, 'C')}};
     checked(id, "system.ping", {{"t", std::string(62, 't')}}, kCompactReply_bytes);
-    checked(id, "system.info", json::object(), kCompactReply_bytes);
     checked(id, "job.start", start, kCompactReply_bytes);
     checked(id, "job.latest", client, kCompactReply_bytes);
     checked(id, "result.next", json::object(), kCompactReply_bytes);

@@ -133,6 +133,7 @@ TEST_F(ADispatcher, DescribesUnitsRangesErrorsAndTheOrderOfALine) {
   const json document = result_of("rpc.discover");
   EXPECT_GE(document["x-line"]["order"].size(), 5U);
   EXPECT_EQ(document["x-line"]["times"]["reply_ms"]["value"], 1000);
+  EXPECT_GT(document["x-errors"].size(), static_cast<std::size_t>(kLastErrorCode));
   const auto method = [&](const std::string& name) {
     for (const json& one : document["methods"]) {
       if (one["name"] == name) return one;

@@ -135,6 +135,31 @@ TEST_F(AtItsSocket, SaysAtTheEndWhatBecameOfAWait) {
   }
 }
 
+TEST_F(AtItsSocket, SaysAtTheEndThatItStopsWhereTheDiskIsStuck) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  serve();
+  LineClient client(server_->port());
+  LineClient starter(server_->port());
+  // The snapshot tells nothing of this job: only the worker could.
+  client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
+  service_.before_start = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  client.send(kWait + "\n");
+  ASSERT_FALSE(client.line(milliseconds(100)).has_value());
+  starter.send(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[6,"p"]})"
+               "\n");
+  begun.get_future().wait();
+  auto ended = std::async(std::launch::async, [this] { server_.reset(); });
+  const auto line = client.line();
+  released.set_value();
+  ended.wait();
+  ASSERT_TRUE(line.has_value());
+  EXPECT_EQ(json::parse(*line)["error"]["code"], 1013) << *line;
+}
+
 TEST_F(AtItsSocket, KeepsAConnectionThatSendsEmptyLines) {
   serve(2);
   LineClient client(server_->port());
