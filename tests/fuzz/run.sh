@@ -20,8 +20,9 @@ fvd_locked cmake --build "$FVD_BUILD" --target fuzzers
 
 failed=0
 cd "$FVD_BUILD"
-for format in x3p x3p_main gsf sdf tiff csv; do
-  mkdir -p "corpus/$format"
+for format in x3p x3p_main gsf sdf tiff csv http; do
+  mkdir -p "corpus/$format" "seeds/$format"
+  [ ! -d "$FVD_ROOT/tests/fuzz/corpus/$format" ] || cp "$FVD_ROOT/tests/fuzz/corpus/$format"/* "seeds/$format/"
   log=fuzz_$format.log
   # 4 GiB of address space are mapped for a surface before its bytes are read: only what is touched counts.
   if ! "tests/fuzz/fuzz_$format" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=128 -max_len=65536 \
