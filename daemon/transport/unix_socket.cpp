@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "core/base/error.hpp"
-#include "daemon/export/file_calls.hpp"
 
 namespace fvd {
 
@@ -50,28 +49,25 @@ void clear_the_way(const std::filesystem::path& file, const sockaddr_un& address
   // A backlog that is full says EAGAIN: somebody listens.
   const bool connected = ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   if (connected || errno != ECONNREFUSED) refuse(ErrorCode::kNotReady, file, "another program listens there");
-  if (file_calls().unlink(file) != 0) refuse(ErrorCode::kStorageWrite, file, std::strerror(errno));
+  if (::unlink(file.c_str()) != 0) refuse(ErrorCode::kStorageWrite, file, std::strerror(errno));
 }
 
 }  // namespace
 
 UnixSocket::UnixSocket(std::filesystem::path file) : file_(std::move(file)) {
   const sockaddr_un address = address_of(file_);
-  try {
-    (void)make_directories(file_.parent_path());
-  } catch (const Error& failure) {
-    refuse(failure.code(), file_, failure.what());
-  }
+  std::error_code ignored;
+  std::filesystem::create_directories(file_.parent_path(), ignored);
   clear_the_way(file_, address);
   listener_ = new_socket(file_);
   if (::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     refuse(errno == EADDRINUSE ? ErrorCode::kNotReady : ErrorCode::kStorageWrite, file_, std::strerror(errno));
   }
   struct stat status {};
-  if (file_calls().set_mode(file_, kEverybody) != 0 || ::lstat(file_.c_str(), &status) != 0 ||
+  if (::chmod(file_.c_str(), kEverybody) != 0 || ::lstat(file_.c_str(), &status) != 0 ||
       ::listen(listener_.get(), SOMAXCONN) != 0) {
     const std::string why = std::strerror(errno);
-    file_calls().unlink(file_);
+    ::unlink(file_.c_str());
     refuse(ErrorCode::kStorageWrite, file_, why);
   }
   device_ = status.st_dev;
@@ -81,7 +77,7 @@ UnixSocket::UnixSocket(std::filesystem::path file) : file_(std::move(file)) {
 UnixSocket::~UnixSocket() {
   struct stat status {};
   if (::lstat(file_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_) {
-    file_calls().unlink(file_);
+    ::unlink(file_.c_str());
   }
 }
 
