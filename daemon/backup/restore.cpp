@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <system_error>
 
 #include "core/base/error.hpp"
@@ -73,12 +75,40 @@ void move(const fs::path& from, const fs::path& to) {
   if (file_calls().rename(from, to) != 0) throw storage_error(errno, "move aside", from);
 }
 
-fs::path unused_folder(const fs::path& state) {
-  for (int number = 1;; ++number) {
-    const fs::path folder = state / ("replaced-" + std::to_string(number));
-    std::error_code error;
-    if (!fs::exists(folder, error)) return folder;
+constexpr const char* kReplaced = "replaced-";
+
+/// What restorations have replaced, by number.
+std::map<int, fs::path> replaced_in(const fs::path& state) {
+  const std::string prefix = kReplaced;
+  std::map<int, fs::path> replaced;
+  std::error_code error;
+  for (fs::directory_iterator entry(state, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const std::string digits = name.starts_with(prefix) ? name.substr(prefix.size()) : "";
+    const bool is_number =
+        !digits.empty() && digits.size() < 9 && digits.find_first_not_of("0123456789") == digits.npos;
+    if (is_number) replaced.emplace(std::stoi(digits), entry->path());
   }
+  return replaced;
+}
+
+/// Its number is higher than that of any other.
+fs::path unused_folder(const fs::path& state) {
+  const auto replaced = replaced_in(state);
+  return state / (kReplaced + std::to_string(replaced.empty() ? 1 : replaced.rbegin()->first + 1));
+}
+
+/// Of what restorations have replaced all but the two newest; told. What cannot be removed stays.
+std::vector<fs::path> drop_oldest_replaced(const fs::path& state) {
+  constexpr std::size_t kKept = 2;
+  std::map<int, fs::path> replaced = replaced_in(state);
+  std::error_code error;
+  std::vector<fs::path> dropped;
+  for (auto oldest = replaced.begin(); replaced.size() > kKept; oldest = replaced.erase(oldest)) {
+    file_calls().remove_all(oldest->second);
+    if (!fs::exists(oldest->second, error)) dropped.push_back(oldest->second);
+  }
+  return dropped;
 }
 
 void put_back_where_missing(const fs::path& from, const fs::path& to, std::vector<std::string>& kept) {
@@ -158,6 +188,7 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   give_to_owner_of(state, marker_file(file));
   give_to_owner_of(state, state / "results");
   if (std::error_code error; fs::exists(aside, error)) restored.replaced = aside;
+  restored.dropped = drop_oldest_replaced(state);
   return restored;
 }
 

@@ -1,17 +1,18 @@
 #include "daemon/transport/unix_socket.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <utility>
 
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include "core/base/error.hpp"
-#include "daemon/export/file_calls.hpp"
 
 namespace fvd {
 
@@ -52,32 +53,29 @@ void clear_the_way(const std::filesystem::path& file, const sockaddr_un& address
   // A backlog that is full says EAGAIN: somebody listens.
   const bool connected = ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   if (connected || errno != ECONNREFUSED) refuse(ErrorCode::kNotReady, file, "another program listens there");
-  if (file_calls().unlink(file) != 0) refuse(ErrorCode::kStorageWrite, file, std::strerror(errno));
+  if (::unlink(file.c_str()) != 0) refuse(ErrorCode::kStorageWrite, file, std::strerror(errno));
 }
 
 }  // namespace
 
 UnixSocket::UnixSocket(std::filesystem::path file) : file_(std::move(file)) {
   const sockaddr_un address = address_of(file_);
-  try {
-    (void)make_directories(file_.parent_path());
-  } catch (const Error& failure) {
-    refuse(failure.code(), file_, failure.what());
-  }
+  std::error_code ignored;
+  std::filesystem::create_directories(file_.parent_path(), ignored);
   clear_the_way(file_, address);
   listener_ = new_socket(file_);
   // Under its own name it is there when it listens and everybody may connect, not before.
   const std::string made = file_.string() + kBeingMade;
   sockaddr_un made_address = address;
   std::memcpy(made_address.sun_path, made.c_str(), made.size() + 1);
-  file_calls().unlink(made);  // what a killed daemon left
+  ::unlink(made.c_str());
   struct stat status {};
   if (::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&made_address), sizeof made_address) != 0 ||
-      file_calls().set_mode(made, kEverybody) != 0 || ::lstat(made.c_str(), &status) != 0 ||
+      ::chmod(made.c_str(), kEverybody) != 0 || ::lstat(made.c_str(), &status) != 0 ||
       ::listen(listener_.get(), SOMAXCONN) != 0 ||
-      file_calls().rename_to_new(made, file_) != 0) {
+      ::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, file_.c_str(), RENAME_NOREPLACE) != 0) {
     const int failure = errno;
-    file_calls().unlink(made);
+    ::unlink(made.c_str());
     refuse(failure == EEXIST ? ErrorCode::kNotReady : ErrorCode::kStorageWrite, file_, std::strerror(failure));
   }
   device_ = status.st_dev;
@@ -87,7 +85,7 @@ UnixSocket::UnixSocket(std::filesystem::path file) : file_(std::move(file)) {
 UnixSocket::~UnixSocket() {
   struct stat status {};
   if (::lstat(file_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_) {
-    file_calls().unlink(file_);
+    ::unlink(file_.c_str());
   }
 }
 

@@ -11,7 +11,6 @@
 #include "daemon/store/job_store.hpp"
 #include "daemon/study/study_book.hpp"
 #include "daemon/transport/port_file.hpp"
-#include "daemon/transport/unix_socket.hpp"
 #include "tests/daemon/jobs/write_site.hpp"
 
 namespace fvd {
@@ -196,16 +195,6 @@ class APortFile final : public WriteSite {
     const bool whole = fs::exists(file_) && test::read_text(file_).ends_with("}\n");
     return whole || (!done && !fs::exists(file_)) ? "" : "the file is not whole";
   }
-
- private:
-  const fs::path file_;
-};
-
-class ASocket final : public WriteSite {
- public:
-  explicit ASocket(const fs::path& folder) : file_(folder / "run" / "rpc.sock") {}
-  void work() override { const UnixSocket socket(file_); }
-  std::string wrong(bool /*done*/) override { return {}; }  // what is left of one is replaced by the next
 
  private:
   const fs::path file_;
