@@ -9,7 +9,7 @@ import json
 import os
 import sys
 
-from rig import Client, Rig, recipe
+from rig import Client, Rig, recipe, wait_for
 
 BLOCK = 50  # jobs; of each block the least number of descriptors counts, for files come and go behind a result
 KEEP_GIB = 1  # the least that can be configured: results of 2,000 jobs take twice as much
@@ -52,6 +52,7 @@ def slope(points):
 def measure(rig, seq):
     """As a PLC that connects anew for each part."""
     client = Client(rig.port)
+    wait_for(lambda: client.ask("system.state")["ready"], what=f"ready, see {rig.folder}")
     client.ask("job.start", seq=seq, part_id=f"part {seq}", recipe="part")
     ended = client.ask("job.wait", seq=seq)
     if ended["state"] != "completed":
