@@ -37,7 +37,8 @@ run_fuzzer() {
     *) options+=(-rss_limit_mb=1024 -malloc_limit_mb=128) ;;
   esac
   mkdir -p "corpus/$name"
-  if ! "tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -max_len=65536 "${options[@]}" \
+  # The longest input may take a minute: on a busy machine a second of work takes long.
+  if ! "tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=60 -max_len=65536 "${options[@]}" \
       -artifact_prefix="finding_${name}_" "${folders[@]}" >"$log" 2>&1; then
     grep -E 'ERROR|SUMMARY|runtime error|Test unit written' "$log" | head -n 20 >&2 || true
     fvd_say "fuzz_$name: a finding; the whole log is in $FVD_BUILD/$log"
