@@ -92,7 +92,7 @@ TEST(ADamagedDescriptionByImageJ, IsRefused) {
   }
 }
 
-std::string ome(const std::string& sizes, const std::string& content) {
+std::string plain_ome(const std::string& sizes, const std::string& content) {
   return "<OME><Image><Pixels DimensionOrder=\"XYZCT\" " + sizes + ">" + content + "</Pixels></Image></OME>";
 }
 
@@ -103,14 +103,14 @@ std::string repeated(int times, const std::string& text) {
 }
 
 TEST(ADamagedDescriptionInOme, IsRefusedWhereItsElementsTellOfTooManyPages) {
-  const auto told = read_ome_description(ome("SizeZ=\"1000000\"", repeated(2000, "<TiffData/>")), "a.tif", 1);
+  const auto told = read_ome_description(plain_ome("SizeZ=\"1000000\"", repeated(2000, "<TiffData/>")), "a.tif", 1);
   ASSERT_TRUE(told);
   EXPECT_THAT(told->problem, HasSubstr("more than a million pages"));
 }
 
 TEST(ADamagedDescriptionInOme, MayHaveChannelsOfAnySize) {
   const auto told = read_ome_description(
-      ome("SizeC=\"2\"", repeated(3, "<Channel SamplesPerPixel=\"2147483647\"/>") + "<TiffData/>"), "a.tif", 1);
+      plain_ome("SizeC=\"2\"", repeated(3, "<Channel SamplesPerPixel=\"2147483647\"/>") + "<TiffData/>"), "a.tif", 1);
   ASSERT_TRUE(told);
   EXPECT_EQ(told->channels, 2);
 }
@@ -118,7 +118,7 @@ TEST(ADamagedDescriptionInOme, MayHaveChannelsOfAnySize) {
 TEST(ADamagedDescriptionInOme, HasNoPositionThatIsNoNumber) {
   const std::string plane = "<Plane TheZ=\"0\" TheC=\"0\" TheT=\"0\" PositionZUnit=\"m\" PositionZ=\"";
   for (const std::string position : {"inf", "nan", "1e308"}) {
-    const auto told = read_ome_description(ome("", "<TiffData/>" + plane + position + "\"/>"), "a.tif", 1);
+    const auto told = read_ome_description(plain_ome("", "<TiffData/>" + plane + position + "\"/>"), "a.tif", 1);
     ASSERT_TRUE(told);
     ASSERT_EQ(told->pages.size(), 1U);
     EXPECT_FALSE(told->pages[0].z_um) << position;
@@ -129,7 +129,7 @@ TEST(ADamagedDescriptionInOme, HasNoPositionThatIsNoNumber) {
 TEST(ADamagedDescriptionInOme, MayHaveAMillionPagesAndManyPlanes) {
   const std::string planes =
       repeated(20'000, "<Plane TheZ=\"7\" TheC=\"0\" TheT=\"0\" PositionZUnit=\"um\" PositionZ=\"3\"/>");
-  const auto told = read_ome_description(ome("SizeZ=\"1000000\"", "<TiffData/>" + planes), "a.tif", 1);
+  const auto told = read_ome_description(plain_ome("SizeZ=\"1000000\"", "<TiffData/>" + planes), "a.tif", 1);
   ASSERT_TRUE(told);
   ASSERT_EQ(told->pages.size(), 1'000'000U);
   EXPECT_EQ(told->pages[7].z_um, 3.0);
