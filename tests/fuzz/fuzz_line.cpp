@@ -35,16 +35,18 @@ class Connection {
       : host_{context_,
               dispatcher,
               worker,
+              worker,
               std::chrono::minutes(5),
               std::chrono::minutes(5),
-              [this](const std::shared_ptr<RpcSession>&) { closed_ = true; }} {
+              [this](const std::shared_ptr<RpcSession>&) { closed_ = true; },
+              [](const Identity&) { return true; }} {
     std::array<int, 2> ends{};
     require(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) == 0);
     own_ = ends[0];
     const boost::asio::generic::stream_protocol protocol(AF_UNIX, 0);
     session_ = std::make_shared<RpcSession>(host_, RpcSession::Socket(context_, protocol, ends[1]),
                                             Caller{.who = {"fuzz", Role::kAdminister}});
-    session_->start();
+    session_->start(false);
   }
   ~Connection() {
     if (!closed_) session_->close();
