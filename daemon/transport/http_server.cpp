@@ -67,7 +67,7 @@ struct HttpServer::Impl {
         logins("fvd-http-login") {
     listen(config.address, *config.port);
     accept();
-    services.machine.on_change([this] { asio::post(context, [this] { resume_all(); }); }, this);
+    services.machine.on_change([this] { asio::post(context, [this] { resume_all(false); }); }, this);
     thread = start_thread("fvd-http", [this](const std::stop_token&) { run(); });
   }
 
@@ -135,10 +135,10 @@ struct HttpServer::Impl {
     return true;
   }
 
-  void resume_all() {
+  void resume_all(bool timed_out) {
     // A copy: a session may close, and so leave the set, while it is resumed.
     const auto all = sessions;
-    for (const auto& session : all) session->resume(false);
+    for (const auto& session : all) session->resume(timed_out);
   }
 
   void run() {
@@ -150,7 +150,7 @@ struct HttpServer::Impl {
   void shut_down(std::chrono::steady_clock::time_point deadline) {
     ErrorCodeOf ignored;
     acceptor.close(ignored);
-    resume_all();
+    resume_all(true);  // who waits is told how far it is by now
     const bool is_quiet =
         std::none_of(sessions.begin(), sessions.end(), [](const auto& session) { return session->is_busy(); });
     if (is_quiet || std::chrono::steady_clock::now() >= deadline) return context.stop();

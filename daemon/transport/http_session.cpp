@@ -129,9 +129,9 @@ void HttpSession::read_head() {
 void HttpSession::take_head(ErrorCodeOf error) {
   if (error) return refuse_unread(error);
   head_ = head_of(parser_->get());
-  if (auto refusal = host_.gate.refusal_of(head_, own_address_)) {
+  if (const auto refusal = host_.gate.refusal_of(head_, own_address_)) {
     spdlog::warn("HTTP from {} was refused: {}", caller_.peer, refusal->error);
-    return refuse(*std::move(refusal));
+    return refuse(*refusal);
   }
   const Route* route = route_of(head_.path);
   if (route == nullptr) return refuse({404, "not_found", "there is POST /api/jsonrpc"});
@@ -222,7 +222,7 @@ void HttpSession::answer() {
 
 void HttpSession::take(Handled handled) {
   if (handled.waiting) return begin_wait(*std::move(handled.waiting));
-  send_reply(handled.reply);
+  send_reply(std::move(handled.reply));
 }
 
 void HttpSession::begin_wait(WaitingRequest waiting) {
@@ -271,13 +271,13 @@ void HttpSession::end_wait(std::optional<std::string> reply) {
   }
   waiting_.reset();
   wait_.cancel();
-  send_reply(reply);
+  send_reply(std::move(reply));
 }
 
-void HttpSession::send_reply(const std::optional<std::string>& reply) {
+void HttpSession::send_reply(std::optional<std::string> reply) {
   Response response;
   response.result(reply ? http::status::ok : http::status::no_content);
-  if (reply) response.body() = *reply + "\n";
+  if (reply) response.body() = *std::move(reply) + "\n";
   response.keep_alive(parser_->get().keep_alive());
   send(std::move(response));
 }
@@ -301,7 +301,7 @@ void HttpSession::refuse_unread(ErrorCodeOf error) {
   refuse({400, "bad_request", "this is no HTTP/1.1: " + error.message() + "; see POST /api/jsonrpc"});
 }
 
-void HttpSession::refuse(HttpRefusal refusal) {
+void HttpSession::refuse(const HttpRefusal& refusal) {
   Response response;
   response.result(static_cast<unsigned>(refusal.status));
   if (refusal.status == 401) response.set(http::field::www_authenticate, "Bearer");

@@ -47,7 +47,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void start();
   /// Answers with 503 and closes: there are too many connections.
   void turn_away();
-  /// Checks the waiting request again: a job changed, or the waiting time is over.
+  /// Checks the waiting request again: a job changed, or the waiting time is over, which answers it.
   void resume(bool timed_out);
   /// True from a whole request to the last byte of its answer.
   [[nodiscard]] bool is_busy() const noexcept { return is_busy_; }
@@ -91,8 +91,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void take_identity(std::pair<std::optional<Identity>, std::string> found);
 
   /// 200 with a reply of JSON-RPC, 204 without one.
-  void send_reply(const std::optional<std::string>& reply);
-  void refuse(HttpRefusal refusal);
+  void send_reply(std::optional<std::string> reply);
+  void refuse(const HttpRefusal& refusal);
   /// Why reading failed, if the client can still be told; else closes.
   void refuse_unread(ErrorCodeOf error);
   void send(Response response);

@@ -239,11 +239,12 @@ TEST_F(AnHttpServer, GivesPlacesOfTheSilentToOthers) {
 TEST_F(AnHttpServer, AnswersWhatIsOwedWhenItEnds) {
   HttpClient waiting(server_->port());
   ASSERT_TRUE(ask(call("job.start", {{"seq", 1}, {"part_id", "p"}}), bearer()).contains("result"));
-  service_.change({1}, [](JobStatus& job) { job.state = JobState::kCompleted; });
-  waiting.send(waiting.request(call("job.wait", {{"seq", 1}})));
+  waiting.send(waiting.request(call("job.wait", {{"seq", 1}, {"timeout_ms", 30000}})));
+  EXPECT_TRUE(ask(call("system.ping")).contains("result")) << "that thread has seen the wait, which came before";
+  server_.reset();
   const auto reply = waiting.reply();
   ASSERT_TRUE(reply);
-  server_.reset();
+  EXPECT_EQ(json::parse(reply->body)["result"]["state"], "processing");
   EXPECT_TRUE(waiting.closes());
 }
 
