@@ -9,19 +9,26 @@ namespace fvd {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kOrder{
+constexpr std::array<std::string_view, 10> kOrder{
     "connect; without success try again for as long as it takes: the daemon listens when its database is open",
-    "system.state until `ready`, for it opens the devices later than its port; while `state` is error look at "
-    "error_code",
-    "once after a start of the line's program: job.latest; the next seq is newest_seq + 1",
-    "job.start with seq and part_id; without a reply in time a new connection, and the same again: nothing moves twice",
-    "job.status until `acquired`: the part may go; or system.state until `part_release`, after an error too",
+    "once after a start of the line's program without its memory: job.latest; the next seq is newest_seq + 1, and "
+    "session another text than before",
+    "a part is there: system.state until `ready`, for it opens the devices later than its port; while `state` is error "
+    "look at error_code",
+    "job.start with seq, part_id, session; without a reply in time a new connection, and the same again: nothing moves "
+    "twice",
+    "job.status until `acquired`: the part may go, until the next one is there; remember that it was let go",
     "job.status until `done`: the result is there; result_valid of system.state says so of any client's completed jobs",
     "result.get; compare seq and part_id, look at state and error_code, then keep it",
-    "result.ack, and seq + 1 for the next part",
-    "after 1009, 1010, 1014 or a job that ended with 1014: the same part with newest_seq + 1; after an error with "
-    "retry "
-    "(1001, 1002, 1013): the same request again; after any other: people",
+    "result.ack, and seq + 1 for the next part; where the job has ended without `acquired`, then system.state until "
+    "`part_release`: the part may go",
+    "a job that ended with 1014: with the part still there result.ack, and the same part with seq + 1; if it was let "
+    "go "
+    "it has no result: people, for what lies there may be another part",
+    "job.start refused with 1009: job.latest, and newest_seq + 1; with 1010 or 1014 job.status of the number first: "
+    "its "
+    "job may be this part's, whose reply was lost, and only without one (1007) job.latest; an error with retry (1001, "
+    "1002, 1013): the same request again; after any other: people",
 };
 
 struct Time {

@@ -193,8 +193,8 @@ def measure_over_a_kill(example, port, restart):
 
     def measure():
         line = example.Line("127.0.0.1", port)
-        results.append(line.measure("killed", newest + 1))
-        line.ask("result.ack", seq=results[0]["seq"])
+        results.append(line.measure("killed", line.begin()))
+        line.finish("killed", results[0]["seq"])
 
     thread = threading.Thread(target=measure)
     thread.start()
@@ -207,10 +207,82 @@ def measure_over_a_kill(example, port, restart):
     return results[0]
 
 
+class ScriptedLine:
+    """The loop against written replies, [method, reply] each; an int is an error's code."""
+
+    def __init__(self, example, *script):
+        self.line, self.script, self.let_go = example.Line("", 0), list(script), []
+        self.line.ask, self.line.let_go = self.ask, self.note
+        self.line.session = "1"
+
+    def note(self, part):
+        self.line.is_free = True
+        self.let_go.append(part)
+
+    def ask(self, method, expected=(), **params):
+        assert self.script, f"{method} {params} is not in the script"
+        wanted, reply = self.script.pop(0)
+        assert (method, params.get("seq")) == wanted, f"{method} {params} in place of {wanted}"
+        if isinstance(reply, int):
+            assert reply in expected, f"{reply} of {method} ends the program"
+            return {"code": reply}
+        return reply
+
+
+def job(seq, acquired=False, done=True, error=0, part="p"):
+    """Replies to job.status, or to it and result.get where it is done."""
+    status = [("job.status", seq), {"acquired": acquired, "done": done}]
+    result = [("result.get", seq), {"seq": seq, "part_id": part, "error_code": error}]
+    return [status, result] if done else [status]
+
+
+def check_what_is_rare(example):
+    """What a daemon that runs well does not answer."""
+    ready = [("system.state", None), {"ready": True, "part_release": True}]
+    moving = [("system.state", None), {"ready": False, "part_release": False}]
+
+    def start(seq, reply=None):
+        return [("job.start", seq), {} if reply is None else reply]
+
+    def ack(seq):
+        return [("result.ack", seq), {}]
+
+    def latest(seq):
+        return [("job.latest", None), {"newest_seq": seq}]
+
+    def measured(script, wanted_seq, let_go):
+        scripted = ScriptedLine(example, *script)
+        result = scripted.line.measure("p", 1)
+        assert result["seq"] == wanted_seq and scripted.let_go == let_go and not scripted.script, scripted.script
+
+    measured([ready, start(1), *job(1, True)], 1, ["p"])
+    measured([ready, start(1, 1010), *job(1, True)], 1, ["p"])  # the first request had come through long ago
+    measured([ready, start(1, 1010), [("job.status", 1), 1007], latest(8), ready, start(9), *job(9, True)], 9, ["p"])
+    measured([ready, start(1, 1009), latest(8), ready, start(9), *job(9, True)], 9, ["p"])
+    measured([ready, start(1), *job(1, error=1014), ack(1), ready, start(2), *job(2, True)], 2, ["p"])
+    measured([ready, start(1, 1014), *job(1, error=1014), ack(1), ready, start(2), *job(2, True)], 2, ["p"])
+    # A result that was found after a restart: standstill is not known, but the part was let go before.
+    measured([ready, start(1), *job(1, True, False), *job(1)], 1, ["p"])
+    scripted = ScriptedLine(example, ready, start(1), *job(1, error=1004), ack(1), moving, moving, ready)
+    scripted.line.measure("p", 1)
+    assert scripted.let_go == []
+    scripted.line.finish("p", 1)
+    assert scripted.let_go == ["p"] and not scripted.script, "ended without `acquired`: part_release lets it go"
+    for last in (job(1, error=1014), job(1, part="another")):
+        scripted = ScriptedLine(example, ready, start(1), *job(1, True, False), *last)
+        try:
+            scripted.line.measure("p", 1)
+        except SystemExit:
+            assert not scripted.script
+        else:
+            raise AssertionError("a part that has left is not measured again, and no other's result is taken")
+
+
 def main(fvd, fvd_sim, wanted="12"):
     spec = importlib.util.spec_from_file_location("line_loop", SOURCE / "daemon/api/examples/line_loop.py")
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
+    check_what_is_rare(example)
     example.POLL_S, example.RETRY_S = 0.1, 0.01
     with instrument(fvd, fvd_sim) as (port, restart):
         direct = example.Line("127.0.0.1", port)

@@ -7,15 +7,16 @@ import sys
 import time
 
 CONNECT_S, REPLY_S, RETRY_S, POLL_S = 3.0, 1.0, 0.5, 0.1
-SPENT = {1009, 1010, 1014}  # seq_conflict, seq_stale, interrupted: the part needs another number
+SEQ_CONFLICT, SEQ_STALE, UNKNOWN_JOB, INTERRUPTED = 1009, 1010, 1007, 1014
 
 
 class Line:
     def __init__(self, host, port):
         self.address, self.socket, self.id = (host, port), None, 0
+        self.session, self.is_free = None, False  # is_free: the part was let go
 
-    def ask(self, method, **params):
-        """The result, or the error. Without a reply in time: the same request again on a new connection."""
+    def ask(self, method, expected=(), **params):
+        """The result, or an expected error. Without a reply in time: the same request again on a new connection."""
         while True:
             self.id += 1
             try:
@@ -37,35 +38,66 @@ class Line:
                 return reply["result"]
             if reply["error"]["data"]["retry"]:
                 time.sleep(POLL_S)  # 1001 not ready, 1002 busy, 1013 shutting down: it will be back
-            elif reply["error"]["code"] in SPENT:
-                return {"error_code": reply["error"]["code"]}
+            elif reply["error"]["code"] in expected:
+                return reply["error"]
             else:
                 sys.exit(reply["error"]["message"])
 
+    def begin(self):
+        """The first number behind all that were used; what began before is of another session."""
+        seq = self.ask("job.latest")["newest_seq"] + 1
+        self.session = str(seq)
+        return seq
+
+    def let_go(self, part):
+        self.is_free = True
+        print(f"{part} may go", file=sys.stderr, flush=True)
+
     def measure(self, part, seq):
         """The part's result; seq: the number that it begins with."""
+        self.is_free = False
         while not self.ask("system.state", format="compact")["ready"]:
             time.sleep(POLL_S)
-        while self.ask("job.start", seq=seq, part_id=part).get("error_code") in SPENT:
-            seq = self.ask("job.latest")["newest_seq"] + 1
-        while not self.ask("job.status", seq=seq, format="compact")["done"]:
-            time.sleep(POLL_S)  # the part may go as soon as `acquired` is true
+        known = (SEQ_CONFLICT, SEQ_STALE, INTERRUPTED)
+        started = self.ask("job.start", known, seq=seq, part_id=part, session=self.session)
+        if started.get("code") == SEQ_CONFLICT:
+            return self.measure(part, self.begin())
+        while True:  # also after 1010, 1014: the first request may have come through
+            status = self.ask("job.status", () if self.is_free else (UNKNOWN_JOB,), seq=seq, format="compact")
+            if status.get("code") == UNKNOWN_JOB:
+                return self.measure(part, self.begin())
+            if status["acquired"] and not self.is_free:
+                self.let_go(part)
+            if status["done"]:
+                break
+            time.sleep(POLL_S)
         result = self.ask("result.get", seq=seq)
         if (result["seq"], result["part_id"]) != (seq, part):
             sys.exit(f"asked for {seq} of {part}, got {result}")
-        if result["error_code"] not in SPENT:
+        if result["error_code"] != INTERRUPTED:
             return result
-        self.ask("result.ack", seq=seq)  # the daemon ended meanwhile: the part once more
-        return self.measure(part, seq + 1)
+        if self.is_free:
+            sys.exit(f"{part} has left without a result: the daemon ended while it computed")
+        self.ask("result.ack", seq=seq)
+        return self.measure(part, seq + 1)  # the daemon ended meanwhile: the part is still there, once more
+
+    def finish(self, part, seq):
+        """To be called once the result is kept."""
+        self.ask("result.ack", seq=seq)
+        while not self.is_free:  # the stage was lost, or moving
+            if self.ask("system.state", format="compact")["part_release"]:
+                self.let_go(part)
+            else:
+                time.sleep(POLL_S)
 
 
 def run(host="127.0.0.1", port=7411):
     line = Line(host, int(port))
-    seq = line.ask("job.latest")["newest_seq"] + 1
+    seq = line.begin()
     for part in map(str.strip, sys.stdin):
         result = line.measure(part, seq)
         print(json.dumps(result), flush=True)  # kept before it is acknowledged
-        line.ask("result.ack", seq=result["seq"])
+        line.finish(part, result["seq"])
         seq = result["seq"] + 1
 
 
