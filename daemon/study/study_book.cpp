@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <system_error>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -65,7 +66,9 @@ StudyBook::StudyBook(fs::path folder) : folder_(std::move(folder)) {
 
 Study StudyBook::keep(StudyDraft draft, const std::function<std::string(const Study&)>& report) {
   const MutexLock keeping(keeping_);
-  const int number = next_number();
+  int number = next_number();
+  // One that was refused, and that the disk would not take back.
+  for (std::error_code error; fs::exists(folder_ / id_of(number), error);) ++number;
   if (make_directories(folder_)) sync_directory(fs::absolute(folder_).parent_path());
   Study study = std::move(draft.study);
   study.id = id_of(number);
