@@ -301,6 +301,36 @@ def check_threads(findings, files):
             sys.exit(f"checks: {path} needs no exception in RAW_THREAD_ALLOWED, or the search is broken")
 
 
+START_THREAD = re.compile(r'\bstart_thread\(\s*("[^"]*"|[\w:]+(?:\([^()]*\))?)\s*,')
+# Threads without ticks of their own, by where they start: who watches over them.
+UNTICKED = {
+    "core/scan/continuous_scan.cpp": "the stage's sweep: the machine's thread waits for it by its slices",
+    "daemon/jobs/jog.cpp": "waits for the next repeat and does nothing else",
+    "daemon/devices/left_threads.cpp": "one call of a device, which its caller waits for",
+    "daemon/ctl/stop_on_signal.cpp": "no part of the service",
+}
+
+
+def check_ticks(findings, files):
+    """A thread of the service ticks, so that one that hangs is noticed (core/runtime/thread_ticks.hpp)."""
+    seen, threads = set(), 0
+    for path in files:
+        if path.split("/")[0] not in ("core", "drivers", "daemon"):
+            continue
+        for match in START_THREAD.finditer(re.sub(r"//[^\n]*", "", read(path))):
+            threads += 1
+            if path in UNTICKED:
+                seen.add(path)
+                continue
+            ticks = re.compile(r"(?:ThreadTicks\s+\w+|\bticks_)\s*[({]\s*" + re.escape(match[1]) + r"\s*,")
+            beside = [p for p in files if os.path.dirname(p) == os.path.dirname(path)]
+            if not any(ticks.search(read(p)) for p in beside):
+                findings.add("raw_threads", path, 1, f"{path}: thread {match[1]} has no ThreadTicks in its folder: have it "
+                             "tick, or say in UNTICKED who watches over it")
+    if threads < 10 or {"core/scan/continuous_scan.cpp", "daemon/jobs/jog.cpp"} - seen:
+        sys.exit("checks: an exception in UNTICKED is not needed, or the search for threads is broken")
+
+
 RAW_WRITE = re.compile(r"std::(?:basic_)?o?fstream\b|\bfopen\b|\bO_(?:WRONLY|RDWR|CREAT|TMPFILE)\b"
                        r"|(?:fs|filesystem)::(?:create_\w+|remove|remove_all|rename|copy|copy_file|copy_symlink|resize_file"
                        r"|permissions|last_write_time)\s*\(|(?<![\w>.])std::(?:rename|remove)\s*\(\s*\w+\.c_str"
@@ -403,6 +433,7 @@ def main():
             elif part == "threads":
                 keys = ["raw_threads"]
                 check_threads(findings, files)
+                check_ticks(findings, files)
             elif part == "writes":
                 keys = ["raw_writes"]
                 check_writes(findings, files)

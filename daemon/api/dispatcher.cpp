@@ -252,7 +252,10 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
       throw Error(ErrorCode::kAborted, call.method + " waited, and stage.stop came meanwhile; nothing was moved");
     }
     auto answer = method.run(call);
-    note(method, call, "ok");
+    const auto* const later = std::get_if<Deferred>(&answer);
+    const auto* const task = later != nullptr ? std::get_if<std::shared_ptr<DeviceTask>>(&later->awaited) : nullptr;
+    note(method, call, task != nullptr ? "accepted" : "ok");
+    if (task != nullptr && method.about.is_audited) note_outcome_of(**task, call);
     return answer;
   } catch (const AccessError& error) {
     spdlog::warn("{} was refused to {}: {}", call.method, text_of(call.caller), error.what());
@@ -270,24 +273,36 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
 
 void Dispatcher::note(const Method& method, const Call& call, std::string_view outcome) const {
   const MethodDescription& about = method.about;
-  if (outcome == "ok" && (about.needs_id || about.is_audited)) {
+  if ((outcome == "ok" || outcome == "accepted") && (about.needs_id || about.is_audited)) {
     spdlog::info("{} for {}", call.method, text_of(call.caller));
   }
-  if (!about.is_audited) return;
+  if (about.is_audited) services_.audit.note(audit_entry(call, outcome));
+}
+
+void Dispatcher::note_outcome_of(DeviceTask& task, const Call& call) const {
+  // A row of its own: by then the caller, and who he was, may have changed.
+  task.note_outcome([entry = audit_entry(call, {}), &audit = services_.audit](const DeviceTask::Outcome& outcome) {
+    AuditEntry ended = entry;
+    ended.outcome = outcome.error ? std::string(error_name(*outcome.error)) : "ok";
+    audit.note(std::move(ended));
+  });
+}
+
+AuditEntry Dispatcher::audit_entry(const Call& call, std::string_view outcome) {
   json params = call.params;
   if (params.contains("text")) params["text"] = "...";  // a whole document
   std::string detail = params.dump(-1, ' ', true, json::error_handler_t::replace);
   if (detail.size() > kLongestDetail_bytes) detail = detail.substr(0, kLongestDetail_bytes - 3) + "...";
   const Caller& caller = call.caller;
-  services_.audit.note({0,
-                        {},
-                        caller.who.name,
-                        std::string(role_name(caller.who.role)),
-                        caller.peer,
-                        caller.name,
-                        call.method,
-                        std::move(detail),
-                        std::string(outcome)});
+  return {0,
+          {},
+          caller.who.name,
+          std::string(role_name(caller.who.role)),
+          caller.peer,
+          caller.name,
+          call.method,
+          std::move(detail),
+          std::string(outcome)};
 }
 
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {

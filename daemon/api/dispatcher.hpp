@@ -107,6 +107,9 @@ class Dispatcher {
   /// The method's answer; nothing if it would block and may not. Notes who asked and what came of it.
   [[nodiscard]] std::optional<Answer> answer_of(const Method& method, const Call& call, bool may_block) const;
   void note(const Method& method, const Call& call, std::string_view outcome) const;
+  /// Another row once the task has ended.
+  void note_outcome_of(DeviceTask& task, const Call& call) const;
+  [[nodiscard]] static AuditEntry audit_entry(const Call& call, std::string_view outcome);
 
   Services services_;
   const MethodTable methods_;

@@ -123,6 +123,23 @@ TEST_F(AnInstrumentWithSeveralCallers, JogsAsLongAsItIsAskedTo) {
   EXPECT_EQ(service_.jogs.size(), 2U);
 }
 
+TEST_F(AnInstrumentWithSeveralCallers, WritesDownHowItEndedWhereTheReplyComesLater) {
+  Caller page = page_;
+  page.received = HostClock::now();
+  (void)dispatcher_.handle(call("stage.move", {{"z_um", 1}}), page);
+  ASSERT_TRUE(service_.task);
+  json entries = answer_to(page_, call("audit.list"))["result"]["entries"];
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0]["outcome"], "accepted") << "nobody knows yet how it ends";
+
+  service_.task->fail(ErrorCode::kStageAlarm, "the drive has an alarm");
+  entries = answer_to(page_, call("audit.list"))["result"]["entries"];
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[0]["what"], "stage.move");
+  EXPECT_EQ(entries[0]["who"], "token page");
+  EXPECT_EQ(entries[0]["outcome"], "stage_alarm");
+}
+
 TEST_F(AnInstrumentWithSeveralCallers, WritesDownWhoAskedForWhat) {
   answer_to(plc_, start_);
   answer_to(page_, call("recipe.save", {{"id", "c"}, {"text", "{}"}, {"base_version", 1}, {"author", "anna"}}));
