@@ -12,7 +12,7 @@ import shutil
 import sys
 import time
 
-from rig import Answer, Rig, recipe
+from rig import START_TIMEOUT_S, Answer, Rig, recipe, wait_for
 
 AFTER = 3  # jobs behind the backup, whose results are lost with it
 
@@ -26,6 +26,12 @@ def fetched(client, seq):
     files = {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(folder.iterdir())
              if file.is_file() and file.name != "result.json" and not file.name.startswith(".")}
     return told | {f"file {name}": digest for name, digest in files.items()}
+
+
+def files_are_made(folder):
+    """Those that no verdict waits for, too."""
+    result = json.loads((pathlib.Path(folder) / "result.json").read_text())
+    return all(file["state"] != "pending" for file in result["files"])
 
 
 def measure(client, seq):
@@ -54,7 +60,7 @@ class Restored:
     def compare(self, client, seq, before):
         """The same within the time that pending files take."""
         changed = ["never told"]
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + START_TIMEOUT_S
         while changed and time.monotonic() < deadline:
             try:
                 now = fetched(client, seq)
@@ -105,6 +111,9 @@ def main():
         running = client.ask("job.status", seq=jobs + 1)
         if client.ask("job.wait", seq=jobs + 1)["state"] != "completed":
             sys.exit("the job beside the backup does not complete")
+        for seq in range(1, jobs + 1):
+            folder = client.ask("result.get", seq=seq, format="full")["directory"]
+            wait_for(lambda folder=folder: files_are_made(folder), what=f"all files in {folder}")
         told = {seq: fetched(client, seq) for seq in range(1, jobs + 1)}
         for seq in range(jobs + 2, jobs + 2 + AFTER):
             measure(client, seq)
