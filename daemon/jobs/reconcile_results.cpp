@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <exception>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -23,15 +25,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Throws fs::filesystem_error where the disk does not tell.
+bool is_as_told(const fs::path& path, const ResultFile& file) {
+  const fs::file_status status = fs::status(path);
+  if (file.files) return fs::is_directory(status);
+  return fs::is_regular_file(status) && fs::file_size(path) == file.size_bytes;
+}
+
 /// Empty where the folder holds all that its result.json lists.
 std::string what_is_missing(const fs::path& folder, const Result& result, const std::string& job_id) {
   if (result.job.id != job_id) return "it is the result of job " + result.job.id;
   for (const ResultFile& file : result.files) {
-    if (file.state != FileState::kWritten) continue;
-    std::error_code error;
-    const bool is_there = file.files ? fs::is_directory(folder / file.name, error)
-                                     : fs::file_size(folder / file.name, error) == file.size_bytes && !error;
-    if (!is_there) return file.name + " is missing or cut off";
+    if (file.state == FileState::kWritten && !is_as_told(folder / file.name, file))
+      return file.name + " is missing or cut off";
   }
   return {};
 }
@@ -42,9 +48,12 @@ struct Found {
   std::string problem;
 };
 
+/// Throws Error and fs::filesystem_error where the folder cannot be read: that tells nothing of what is in it.
 Found result_in(const fs::path& folder, const JobStatus& interrupted) {
+  if (!fs::exists(folder / "result.json")) return {std::nullopt, "it has no result.json"};
+  std::string text = read_text_file(folder / "result.json", kAnyLength);
   try {
-    StoredJob job{interrupted, folder.string(), read_text_file(folder / "result.json")};
+    StoredJob job{interrupted, folder.string(), std::move(text)};
     const Result result = read_result_json(job.result_json);
     if (const std::string problem = what_is_missing(folder, result, interrupted.job_id); !problem.empty()) {
       return {std::nullopt, problem};
@@ -76,6 +85,17 @@ Found result_in(const fs::path& folder, const JobStatus& interrupted) {
 bool ended_by_this_start(const JobStore& store, const std::string& job_id) {
   const auto& ended = store.interrupted_by_start();
   return std::find(ended.begin(), ended.end(), job_id) != ended.end();
+}
+
+/// Nothing where it cannot be read.
+std::optional<Found> look_into(const fs::path& folder, const JobStatus& interrupted) {
+  try {
+    return result_in(folder, interrupted);
+  } catch (const std::exception& failure) {
+    spdlog::error("job {}: {} cannot be read: it stays, and the next start looks again: {}", interrupted.job_id,
+                  folder.string(), failure.what());
+    return std::nullopt;
+  }
 }
 
 /// The result of a job that was told without one: what was told stays, and so does what was measured.
@@ -120,7 +140,9 @@ Reconciled reconcile_results(JobStore& store, const fs::path& results) {
     const fs::path folder = results / ended.job_id;
     std::error_code error;
     if (!fs::exists(folder, error)) continue;
-    const Found found = result_in(folder, ended);
+    const auto looked = look_into(folder, ended);
+    if (!looked) continue;
+    const Found& found = *looked;
     const bool was_told = ended.acknowledged || !ended_by_this_start(store, ended.job_id);
     if (found.whole && !was_told) {
       store.finish(found.whole->status, found.whole->result_dir, found.whole->result_json, found.whole->files_pending);

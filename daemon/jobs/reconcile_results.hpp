@@ -16,8 +16,8 @@ struct Reconciled {
 
 /// The folder of a job that this start found running becomes that job's result if it is whole. A job that was told
 /// without a result stays so: a whole one of it is moved to the folder set-aside beside `results`. What is not whole is
-/// removed. Each is logged. Folders of jobs and of evaluations that the database does not know stay. Throws Error
-/// kDatabase, kStorageFull. context: before anybody is told of jobs.
+/// removed; what cannot be read stays for the next start. Each is logged. Folders of jobs and of evaluations that the
+/// database does not know stay. Throws Error kDatabase, kStorageFull. context: before anybody is told of jobs.
 Reconciled reconcile_results(JobStore& store, const std::filesystem::path& results);
 
 }  // namespace fvd
