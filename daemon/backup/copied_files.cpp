@@ -24,7 +24,11 @@ constexpr std::size_t kPiece_bytes = std::size_t{1} << 20U;
 void copy_bytes(const fs::path& from, const fs::path& to) {
   std::ifstream source(from, std::ios::binary);
   if (!source) throw Error(ErrorCode::kBadInput, "cannot read " + from.string());
+  const auto mode = static_cast<mode_t>(fs::status(from).permissions());
   write_new_file(to, [&](const ByteSink& sink) {
+    // Before the first byte: a file of tokens is at no time more readable than it was.
+    if (file_calls().set_mode(to, mode) != 0) throw storage_error(errno, "set the permissions of", to);
+    give_to_owner_of(from, to);
     std::vector<char> piece(kPiece_bytes);
     while (source) {
       source.read(piece.data(), static_cast<std::streamsize>(piece.size()));
@@ -32,10 +36,6 @@ void copy_bytes(const fs::path& from, const fs::path& to) {
     }
     if (!source.eof()) throw Error(ErrorCode::kBadInput, "cannot read all of " + from.string());
   });
-  // A file of tokens stays as readable as it was.
-  const auto mode = static_cast<mode_t>(fs::status(from).permissions());
-  if (file_calls().set_mode(to, mode) != 0) throw storage_error(errno, "set the permissions of", to);
-  give_to_owner_of(from, to);
 }
 
 void copy_below(const fs::path& from, const fs::path& to) {

@@ -57,7 +57,9 @@ Known prepare_database(const fs::path& from, const fs::path& copy, const fs::pat
   }
   copy_database(Database(from), copy);
   Database database(copy);
+  const fs::path older = copy.string() + ".v" + std::to_string(schema_version(database));
   migrate(database);
+  remove_file(older);  // the backup has it
   Transaction transaction(database);
   Statement(database, "UPDATE jobs SET result_dir = ? || '/' || job_id WHERE result_dir <> ''")
       .bind(results.string())
@@ -73,6 +75,7 @@ void move(const fs::path& from, const fs::path& to) {
   if (!fs::exists(from, error)) return;
   (void)make_directories(to.parent_path());
   if (file_calls().rename(from, to) != 0) throw storage_error(errno, "move aside", from);
+  sync_directory(to.parent_path());  // before the other folder: else a power cut could leave it in neither
 }
 
 constexpr const char* kReplaced = "replaced-";
@@ -135,6 +138,11 @@ int add_results(const fs::path& from, const fs::path& to) {
     if (file_calls().rename(hidden, folder) != 0) throw storage_error(errno, "rename the copy to", folder);
     ++added;
   }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw Error(ErrorCode::kBadInput, "cannot list the results in " + from.string() + ": " + error.message());
+  }
+  // Under its hidden name the next start would remove it.
+  sync_directory(to);
   return added;
 }
 
@@ -183,7 +191,6 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   put_back_where_missing(folder / kStageProfile, instrument.stage_profile, restored.kept);
   put_back_where_missing(folder / kTokenFile, instrument.token_file, restored.kept);
   move(incoming, file);  // last: without it the daemon does not start
-  sync_directory(state);
   give_to_owner_of(state, file);
   give_to_owner_of(state, marker_file(file));
   give_to_owner_of(state, state / "results");

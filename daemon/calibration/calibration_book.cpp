@@ -145,12 +145,13 @@ Calibration CalibrationBook::add(const std::string& objective,
   const std::vector<CalibrationFile> files = change(next);
   all.push_back(next);
   const std::string text = checked_text(all);
-  if (make_directories(folder_)) sync_directory(fs::absolute(folder_).parent_path());
+  (void)make_directories(folder_);
   for (const CalibrationFile& file : files) {
     assert(file.name.starts_with(next.id) && file.name.find('/') == std::string::npos);
     remove_file(folder_ / file.name);  // of a version that never came to be
     write_new_file(folder_ / file.name, file.bytes);
   }
+  if (!files.empty()) sync_directory(folder_);  // a version in force that lacks a file is worse than none
   put_in_force(folder_, text);
   // From here on the file has the version: its number must not be given again, whatever comes of the flush.
   keep(next);

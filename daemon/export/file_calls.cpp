@@ -91,10 +91,16 @@ bool make_directories(const std::filesystem::path& folder) {
   if (std::filesystem::is_directory(folder, error)) return false;
   if (folder.has_parent_path() && folder.parent_path() != folder) (void)make_directories(folder.parent_path());
   if (!folder.has_filename()) return false;  // a trailing slash
-  if (file_calls().make_directory(folder) == 0) return true;
-  const int reason = errno == EEXIST ? ENOTDIR : errno;
-  if (std::filesystem::is_directory(folder, error)) return false;  // made meanwhile
-  throw storage_error(reason, "create directory", folder);
+  if (file_calls().make_directory(folder) != 0) {
+    const int reason = errno == EEXIST ? ENOTDIR : errno;
+    if (std::filesystem::is_directory(folder, error)) return false;  // made meanwhile
+    throw storage_error(reason, "create directory", folder);
+  }
+  // A power cut must not take it with all that is brought to the disk in it later.
+  if (file_calls().sync_directory(std::filesystem::absolute(folder).parent_path()) == 0) return true;
+  const int reason = errno;
+  ::rmdir(folder.c_str());  // or the next attempt would take it for one that is on the disk
+  throw storage_error(reason, "bring to disk directory", folder);
 }
 
 void remove_file(const std::filesystem::path& path) {

@@ -1,6 +1,7 @@
 #include "daemon/jobs/device_commands.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -18,6 +19,7 @@
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/image_png.hpp"
 #include "daemon/export/preview_hub.hpp"
+#include "daemon/export/storage_error.hpp"
 #include "daemon/jobs/objective_limits.hpp"
 
 namespace fvd {
@@ -86,11 +88,13 @@ fs::path new_snap(const fs::path& folder) {
   }
 }
 
+/// What cannot be removed stays: the new picture is there all the same.
 void drop_oldest(const fs::path& folder) {
   std::vector<fs::path> snaps;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (entry->path().extension() == ".png") snaps.push_back(entry->path());
+    std::error_code ignored;
+    if (entry->path().extension() == ".png" && entry->is_regular_file(ignored)) snaps.push_back(entry->path());
   }
   if (snaps.size() <= kSnapsKept) return;
   const auto before = [](const fs::path& a, const fs::path& b) {  // by time, "..Z-10" after "..Z-2"
@@ -98,7 +102,10 @@ void drop_oldest(const fs::path& folder) {
     return key(a) < key(b);
   };
   std::sort(snaps.begin(), snaps.end(), before);
-  for (std::size_t i = 0; i + kSnapsKept < snaps.size(); ++i) remove_file(snaps[i]);
+  for (std::size_t i = 0; i + kSnapsKept < snaps.size(); ++i) {
+    if (file_calls().unlink(snaps[i]) == 0) continue;
+    spdlog::warn("there are more than {} pictures: {}", kSnapsKept, storage_error(errno, "remove", snaps[i]).what());
+  }
 }
 
 void require_target(Micrometers target, const StageInfo& stage) {

@@ -10,6 +10,7 @@
 #include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/thread_ticks.hpp"
 #include "daemon/base/version.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/pipeline/evaluation_record.hpp"
 #include "daemon/pipeline/job_memory.hpp"
@@ -143,7 +144,14 @@ std::string ResultEvaluator::evaluated(const Order& order) const {
   if (record.verdict) row.verdict = verdict_name(*record.verdict);
   row.result_dir = directory.final_dir().string();
   row.result_json = record.json;
-  table.add(row);
+  try {
+    table.add(row);
+  } catch (...) {
+    // Nobody could find it. Under a hidden name first, which a start removes: a part of it must not be seen.
+    const std::filesystem::path hidden = deps_.results_dir / ("." + row.id + ".removed.tmp");
+    if (file_calls().rename(row.result_dir, hidden) == 0) file_calls().remove_all(hidden);
+    throw;
+  }
   spdlog::info("job {} was evaluated by recipe {}: {}", job_id, row.recipe, row.result_dir);
   return nlohmann::ordered_json{
       {"id", row.id},

@@ -96,6 +96,10 @@ StepHistoryState parse_step_history(const std::string& json_text) {
 }
 
 StageHistory::StageHistory(std::filesystem::path file) : file_(std::move(file)) {
+  // Of a process that was killed while it wrote; the first is an older version's.
+  for (const char* dot : {"", "."}) {
+    file_calls().unlink(file_.parent_path() / (dot + file_.filename().string() + ".tmp"));
+  }
   std::error_code error;
   if (!std::filesystem::exists(file_, error)) return;
   try {

@@ -67,7 +67,7 @@ def stop(build, rounds):
 
 
 def jog(build, rounds):
-    """From the last repeat to the true standstill, at the stage's highest speed."""
+    """From the last repeat to the true standstill, at the highest speed that the daemon jogs at."""
     overruns_ms = []
     with Rig(build) as rig:
         client = rig.start()

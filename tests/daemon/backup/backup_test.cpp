@@ -3,6 +3,8 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include "daemon/backup/restore.hpp"
 #include "daemon/base/unique_fd.hpp"
@@ -197,6 +200,59 @@ TEST_F(AnInstrument, IsRestoredOnAnotherMachine) {
   EXPECT_EQ(store.find(ClientSeq{1}).result_dir, (other.state_dir / "results" / first).string());
   EXPECT_TRUE(fs::exists(store.find(ClientSeq{1}).result_dir));
   FVD_EXPECT_ERROR(kSeqStale, (void)store.accept({2, "part", "chapter"}));
+}
+
+/// The permissions of a file when its first bytes are written.
+class FirstBytes final : public FileCalls {
+ public:
+  explicit FirstBytes(std::string name) : name_(std::move(name)) {}
+  int create(const fs::path& path) override {
+    const int fd = FileCalls::create(path);
+    if (path.filename() == name_) fd_ = fd;
+    return fd;
+  }
+  ssize_t write(int fd, const void* bytes, std::size_t count) override {
+    struct stat info {};
+    if (fd == std::exchange(fd_, fd == fd_ ? -1 : fd_) && ::fstat(fd, &info) == 0) mode = info.st_mode & 0777U;
+    return FileCalls::write(fd, bytes, count);
+  }
+  std::optional<mode_t> mode;
+
+ private:
+  const std::string name_;
+  int fd_ = -1;
+};
+
+TEST_F(AnInstrument, HasItsTokensCopiedByNobodyButWhoMayReadThem) {
+  paths_.token_file = folder_ / "tokens";
+  test::write_text(paths_.token_file, "secret");
+  fs::permissions(paths_.token_file, fs::perms::owner_read | fs::perms::owner_write);
+  FirstBytes calls("tokens");
+  const ReplacedFileCalls replaced(calls);
+  (void)make_backup(paths_, backup_, false);
+  EXPECT_EQ(calls.mode, 0600U);
+  EXPECT_EQ(test::read_text(backup_ / "tokens"), "secret");
+}
+
+TEST_F(AnInstrument, IsNotRestoredWithoutResultsThatCannotBeListed) {
+  measure(1);
+  (void)make_backup(paths_, backup_, false);
+  store_.reset();
+  fs::remove_all(backup_ / "results");
+  EXPECT_EQ(restore_backup(backup_, paths_).results, 0) << "a backup without results";
+  test::write_text(backup_ / "results", "no folder");
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)restore_backup(backup_, paths_), HasSubstr("results"));
+}
+
+TEST_F(AnInstrument, KeepsNoCopyOfAnOlderBackupsDatabase) {
+  (void)make_backup(paths_, backup_, false);
+  store_.reset();
+  fs::copy_file(FVD_TEST_DATA "/fvd_0.1.0.sqlite", backup_ / "fvd.sqlite", fs::copy_options::overwrite_existing);
+  (void)restore_backup(backup_, paths_);
+  for (const auto& entry : fs::directory_iterator(paths_.state_dir)) {
+    EXPECT_THAT(entry.path().filename().string(), testing::Not(testing::StartsWith("fvd.restored")));
+  }
+  EXPECT_NO_THROW(open());
 }
 
 TEST_F(AnInstrument, IsNotRestoredFromAFolderThatIsNoBackup) {

@@ -1,10 +1,18 @@
 #include "daemon/jobs/device_commands.hpp"
 
+#include <cerrno>
+#include <filesystem>
+#include <iterator>
 #include <stop_token>
+#include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
+
+#include "daemon/export/file_calls.hpp"
 #include "gtest/gtest.h"
 #include "sim/fakes/fakes.hpp"
+#include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
 namespace {
@@ -62,6 +70,42 @@ TEST(Snap, SetsNoCameraUpOnceItIsStopped) {
   ASSERT_TRUE(task.outcome().has_value());
   EXPECT_EQ(task.outcome()->error, ErrorCode::kAborted);
   EXPECT_TRUE(camera.exposures_us.empty());
+}
+
+class NothingIsUnlinked final : public FileCalls {
+ public:
+  int unlink(const std::filesystem::path& path) override {
+    asked.push_back(path.filename());
+    errno = EPERM;
+    return -1;
+  }
+  std::vector<std::string> asked;
+};
+
+TEST(Snap, IsToldThoughAnOldPictureCannotBeRemoved) {
+  const test::ScratchDir folder;
+  const std::filesystem::path snaps = folder / "snaps";
+  std::filesystem::create_directories(snaps / "a.png");  // no picture: it stays, and does not count
+  for (int i = 1; i <= 101; ++i) {
+    test::write_text(snaps / ("20200101T" + std::to_string(100000 + i) + "Z-1.png"), "");
+  }
+  sim::FakeClock clock;
+  SettingsCamera camera(clock, 16, 16);
+  sim::FakeAxis stage(clock);
+  const auto snap = [&] {
+    DeviceTask task(snap_work({}));
+    task.run({camera, stage, clock, folder.path()}, {});
+    return task.outcome().value_or(DeviceTask::Outcome{{}, ErrorCode::kInternal, "it did not end"});
+  };
+  {
+    NothingIsUnlinked calls;
+    const ReplacedFileCalls replaced(calls);
+    EXPECT_EQ(snap().error, std::nullopt);
+    EXPECT_THAT(calls.asked, testing::ElementsAre("20200101T100001Z-1.png", "20200101T100002Z-1.png"));
+  }
+  const DeviceTask::Outcome outcome = snap();
+  EXPECT_EQ(outcome.error, std::nullopt) << outcome.message;
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(snaps), {}), 101) << "a hundred, and the folder";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 /// A whole job on the engine, each call that writes failing: what clients are told, and that it goes on afterwards.
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/api/methods/methods.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/jobs/device_commands.hpp"
 #include "daemon/jobs/reconcile_results.hpp"
@@ -40,12 +42,19 @@ class AMachineOnABadDisk : public test::AnEngine {
       return seq;
     } catch (const Error& error) {
       if (!is_of_the_disk(error.code())) wrong("job " + std::to_string(seq) + " was refused: " + error.what());
+      if (!is_listed(error.code())) wrong("job.start does not list " + std::string(error_name(error.code())));
       if (bench_.moves != moves) wrong("a job that was refused moved the stage");
       return std::nullopt;
     }
   }
   static bool is_of_the_disk(ErrorCode code) {
     return code == ErrorCode::kStorageFull || code == ErrorCode::kStorageWrite || code == ErrorCode::kDatabase;
+  }
+
+  /// Among the errors of which clients are told beforehand.
+  [[nodiscard]] bool is_listed(ErrorCode code) const {
+    const std::vector<ErrorCode> listed = all_methods(*services_).at("job.start").about.errors;
+    return std::find(listed.begin(), listed.end(), code) != listed.end();
   }
 
   /// Ended as it was told, whole or without a result.

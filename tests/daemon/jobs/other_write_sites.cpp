@@ -176,11 +176,15 @@ class ARestoration final : public WriteSite {
   void work() override { (void)restore_backup(from_, instrument_.paths); }
   std::string wrong(bool done) override {
     if (!fs::exists(database())) return done ? "there is no database" : "";  // and no daemon starts
-    if (!done) return {};
-    if (!fs::exists(instrument_.result / "result.json")) return "the result is not back";
-    if (!fs::exists(instrument_.paths.config_file)) return "the configuration is not back";
     JobStore store(database());
     if (store.epoch() <= epoch_) return "an epoch runs twice";
+    epoch_ = store.epoch();
+    // The database comes last: whatever failed, all that it tells of is there.
+    const bool is_restored = !knows(store, 8);
+    if (done && !is_restored) return "the old database is in force";
+    if (!knows(store, 7)) return "neither database";
+    if (is_restored && !fs::exists(instrument_.result / "result.json")) return "the result is not back";
+    if (is_restored && !fs::exists(instrument_.paths.config_file)) return "the configuration is not back";
     try {
       (void)store.accept({8, "part", "chapter"});
       return "a number runs twice";
@@ -190,6 +194,13 @@ class ARestoration final : public WriteSite {
   }
 
  private:
+  static bool knows(const JobStore& store, std::int64_t seq) {
+    try {
+      return !store.find(ClientSeq{seq}).status.job_id.empty();
+    } catch (const Error&) {
+      return false;
+    }
+  }
   [[nodiscard]] fs::path database() const { return instrument_.paths.state_dir / "fvd.sqlite"; }
   const Instrument instrument_;
   const fs::path from_;

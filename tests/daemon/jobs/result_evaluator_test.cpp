@@ -110,6 +110,19 @@ TEST_F(AStoredResult, PassesOverAFolderThatADeadProcessLeft) {
   EXPECT_EQ(json::parse(outcome_of(job_id_).json)["id"], job_id_ + "-e2");
 }
 
+TEST_F(AStoredResult, LeavesNoFolderOfARecordThatTheDatabaseRefuses) {
+  StoredEvaluation other;
+  other.id = job_id_ + "-e1";
+  other.job_id = "another";
+  other.number = 1;
+  store_->evaluations().add(other);
+
+  EXPECT_EQ(outcome_of(job_id_).error, ErrorCode::kDatabase);
+  for (const auto& entry : std::filesystem::directory_iterator(results_dir())) {
+    EXPECT_EQ(entry.path().filename(), job_id_);
+  }
+}
+
 TEST_F(AStoredResult, IsKeptWithItsRecordsOverARestart) {
   const json reply = json::parse(outcome_of(job_id_).json);
   engine_->finish();

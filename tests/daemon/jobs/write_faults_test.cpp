@@ -31,27 +31,46 @@ std::string lacks(const fs::path& folder) {
   return {};
 }
 
+/// Of a job that is told as failed where its result was refused.
 class AResult final : public WriteSite {
  public:
-  explicit AResult(const fs::path& folder) : folder_(folder) {}
+  explicit AResult(const fs::path& folder) : folder_(folder), store_(folder / "fvd.sqlite") {
+    fs::create_directory(results_);
+    accept();
+  }
   void work() override {
     told_ = false;
-    AtomicDirectory directory(folder_ / "J7");
-    (void)store_result(directory, test::sample_result());
+    ResultData data = test::sample_result();
+    data.job_id = job_.job_id;
+    AtomicDirectory directory(results_ / data.job_id);
+    (void)store_result(directory, data);
     told_ = true;
   }
-  /// A whole one of a job that was told without it is set aside then: AReconciliation.
   void clear() override {
-    remove_abandoned_directories(folder_);
-    if (!told_) fs::remove_all(folder_ / "J7");
+    remove_abandoned_directories(results_);
+    if (told_) return;
+    job_.state = JobState::kFailed;
+    job_.error = ErrorCode::kStorageWrite;
+    store_.finish(job_, "", "");
+    (void)reconcile_results(store_, results_);
+    const fs::path aside = folder_ / "set-aside" / job_.job_id;
+    if (fs::exists(aside)) set_aside_ = lacks(aside);
+    accept();
   }
   std::string wrong(bool done) override {
-    if (done) return lacks(folder_ / "J7");
-    return fs::is_empty(folder_) ? "" : "something is left";
+    if (!set_aside_.empty()) return "what was set aside: " + set_aside_;
+    if (done) return lacks(results_ / job_.job_id);
+    return fs::is_empty(results_) ? "" : "something is left";
   }
 
  private:
+  void accept() { job_ = store_.accept({++seq_, "part", "chapter"}); }
   const fs::path folder_;
+  const fs::path results_ = folder_ / "results";
+  JobStore store_;
+  std::int64_t seq_ = 0;
+  JobStatus job_;
+  std::string set_aside_;
   bool told_ = false;
 };
 

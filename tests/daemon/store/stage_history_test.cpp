@@ -1,6 +1,7 @@
 #include "daemon/store/stage_history.hpp"
 
 #include <fstream>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "gtest/gtest.h"
@@ -57,6 +58,14 @@ TEST_F(AStageHistory, MovesADamagedFileAside) {
     EXPECT_FALSE(history.summary()) << text;
     EXPECT_FALSE(std::filesystem::exists(file())) << text;
   }
+}
+
+TEST_F(AStageHistory, RemovesWhatAProcessLeftThatWasKilledWhileItWrote) {
+  const std::vector<std::filesystem::path> left{scratch_ / "stage_history.json.tmp",
+                                                scratch_ / ".stage_history.json.tmp"};
+  for (const auto& part : left) std::ofstream(part) << "{";
+  const StageHistory history(file());
+  for (const auto& part : left) EXPECT_FALSE(std::filesystem::exists(part)) << part;
 }
 
 TEST(StepHistoryText, ReadsBackWhatItWrote) {
