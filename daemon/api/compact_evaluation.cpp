@@ -45,7 +45,16 @@ std::set<int> codes_of(const ordered_json& evaluation) {
 
 }  // namespace
 
-void add_compact_evaluation(const ordered_json& evaluation, std::size_t room, ordered_json& compact) {
+ordered_json picked_of_evaluation(const ordered_json& compact, const std::vector<std::string>& fields) {
+  if (fields.empty()) return compact;
+  ordered_json some = picked(compact, fields);
+  const bool is_shortened = some.contains("m") && compact.value("more", 0) > 0;
+  if (is_shortened && !some.contains("more")) some[kLeftOutKey] = compact["more"];
+  return some;
+}
+
+void add_compact_evaluation(const ordered_json& evaluation, const std::vector<std::string>& fields, std::size_t room,
+                            ordered_json& compact) {
   compact["v"] = evaluation.contains("verdict") ? evaluation["verdict"] : ordered_json(nullptr);
   compact["m"] = ordered_json::array();
   compact["more"] = 0;
@@ -56,7 +65,7 @@ void add_compact_evaluation(const ordered_json& evaluation, std::size_t room, or
     ordered_json longer = compact;
     longer["m"].push_back(triple_of(evaluation["measurements"][name.get<std::string>()]));
     longer["more"] = left - 1;
-    if (written_bytes(longer) > room) break;
+    if (written_bytes(picked_of_evaluation(longer, fields)) > room) break;
     compact = std::move(longer);
     --left;
   }
@@ -65,12 +74,14 @@ void add_compact_evaluation(const ordered_json& evaluation, std::size_t room, or
 
 void describe_compact_evaluation(Fields& fields) {
   const ResultFields result(fields);
-  result.text("v", "compact, with an evaluation: pass, fail, uncertain, invalid; null where nothing is limited",
-              Presence::kSometimes);
+  result.any("v", "compact, with an evaluation: a text, pass, fail, uncertain, invalid; null where nothing is limited",
+             Presence::kSometimes);
   result.any("m",
              "compact, with an evaluation: [id, value, U] of each measurement in the recipe's order, as many as fit",
              Presence::kSometimes);
-  result.integer("more", "compact, with an evaluation: measurements that did not fit", Presence::kSometimes);
+  result.integer("more",
+                 "compact, with an evaluation: measurements that did not fit; without it they count in left_out",
+                 Presence::kSometimes);
   result.any("c",
              "compact, with an evaluation: why values are missing or uncertain: 1122 too few valid points, 1141 "
              "invalid, 1142 outside the field of view, 1145 uncertain",

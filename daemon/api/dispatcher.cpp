@@ -342,8 +342,10 @@ std::optional<std::string> Dispatcher::resume(const WaitingRequest& waiting, boo
 }
 
 std::string Dispatcher::ended(const WaitingRequest& waiting) const {
+  const bool is_job = std::holds_alternative<JobWait>(waiting.until.awaited);
   return reply_line(failure_reply(waiting.id, ErrorCode::kShuttingDown,
-                                  "the daemon stops; what was waited for is told when it is back",
+                                  is_job ? "the daemon stops; what was waited for is told when it is back"
+                                         : "the daemon stops, and the command ends; ask for it anew when it is back",
                                   scan_state_name(services_.machine.snapshot()->state)));
 }
 

@@ -62,6 +62,15 @@ ordered_json result_schema(const DescribeFields& describe) {
   return schema;
 }
 
+/// Of a method's reply; a parameter `fields` picks keys, and then no key is sure to be there.
+ordered_json reply_schema(const MethodDescription& about) {
+  ordered_json schema = result_schema(about.result);
+  if (!schema_of(about.params)["properties"].contains("fields") || !schema.contains("required")) return schema;
+  schema["x-required-without-fields"] = schema["required"];
+  schema.erase("required");
+  return schema;
+}
+
 bool is_required(const ordered_json& schema, const std::string& name) {
   if (!schema.contains("required")) return false;
   const auto& required = schema["required"];
@@ -224,7 +233,7 @@ ordered_json openrpc_document(const MethodTable& methods) {
     described.push_back({{"name", name},
                          {"summary", about.summary},
                          {"params", params_json(about.params)},
-                         {"result", {{"name", "result"}, {"schema", result_schema(about.result)}}},
+                         {"result", {{"name", "result"}, {"schema", reply_schema(about)}}},
                          {"errors", errors_json(about)},
                          {"x-role", role_name(about.role)},
                          {"x-moves-stage", about.moves_stage},

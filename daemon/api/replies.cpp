@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "daemon/api/params.hpp"
+#include "daemon/api/reply_form.hpp"
 #include "daemon/api/rpc_errors.hpp"
 
 namespace fvd {
@@ -10,9 +11,7 @@ namespace fvd {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-std::string shortened_foreign_text(const std::string& text) {
-  return text.size() > kMaxForeignText_bytes ? text.substr(0, kMaxForeignText_bytes - 3) + "..." : text;
-}
+std::string shortened_foreign_text(const std::string& text) { return cut_text(text, kMaxForeignText_bytes); }
 
 std::string quoted(const std::string& text) { return "'" + shortened_foreign_text(text) + "'"; }
 

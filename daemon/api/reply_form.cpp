@@ -82,7 +82,7 @@ ordered_json picked(const ordered_json& object, const std::vector<std::string>& 
 
 void fit(ordered_json& object, std::size_t bytes, std::span<const std::string_view> give_way) {
   const auto fits = [&] { return written_bytes(object) <= bytes; };
-  int left_out = 0;
+  int left_out = object.value(std::string(kLeftOutKey), 0);
   const auto shorten = [&](const std::string& key) {
     object.erase(kLeftOutKey);
     leave_out(object, key);

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "daemon/api/compact_evaluation.hpp"
 #include "daemon/api/json_shapes.hpp"
@@ -66,8 +67,8 @@ void note_end(const JobStatus& job, ordered_json& json) {
 
 ordered_json rounded(const ordered_json& value) { return rounded_figure(value.get<double>()); }
 
-/// room: bytes that it may have.
-ordered_json compact_json(const StoredJob& stored, std::size_t room) {
+/// room: bytes that what is picked of it may have.
+ordered_json compact_json(const StoredJob& stored, const std::vector<std::string>& fields, std::size_t room) {
   const JobStatus& job = stored.status;
   ordered_json json = identity_of(job);
   json["state"] = job_state_name(job.state);
@@ -80,7 +81,7 @@ ordered_json compact_json(const StoredJob& stored, std::size_t room) {
     json.erase("client");  // who asks knows whose number it is; its bytes hold a value
     json["warnings_count"] = result["warnings"].size();
     json["simulated"] = result.at("provenance").at("simulated");
-    add_compact_evaluation(result["evaluation"], room, json);
+    add_compact_evaluation(result["evaluation"], fields, room, json);
     return json;
   }
   const auto& values = result.at("values");
@@ -154,10 +155,10 @@ void describe_result(Fields& fields) {
 ordered_json result_reply(const StoredJob& stored, const ReplyForm& form, std::size_t envelope_bytes) {
   const std::size_t most = longest_reply_bytes(form.format);
   const std::size_t room = most - std::min(most, envelope_bytes);
-  ordered_json json = form.format == ReplyFormat::kCompact ? compact_json(stored, room)
+  ordered_json json = form.format == ReplyFormat::kCompact ? compact_json(stored, form.fields, room)
                       : form.format == ReplyFormat::kFull  ? full_json(stored)
                                                            : complete_json(stored);
-  if (!form.fields.empty()) json = picked(json, form.fields);
+  if (!form.fields.empty()) json = picked_of_evaluation(json, form.fields);
   if (form.format == ReplyFormat::kCompact) fit(json, room, kCompactGiveWay);
   if (form.format == ReplyFormat::kFull) fit(json, room, kFullGiveWay);
   return json;

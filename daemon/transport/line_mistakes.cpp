@@ -18,6 +18,7 @@ constexpr std::string_view kHalf = "the connection was closed within a line, whi
 
 constexpr std::size_t kLongestBinary_bytes = 4;
 constexpr std::size_t kLongestDecimal_bytes = 12;
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr std::string_view kDigits = "0123456789";
 
 /// What encoding marks and a client's text begin with.
@@ -36,12 +37,16 @@ bool is_length_header(std::string_view line) noexcept {
 
 /// A few bytes, or digits, and then the beginning of an object or a list.
 bool has_prefix(std::string_view line) noexcept {
+  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
   const auto begin = line.find_first_of("{[");
   if (begin == 0 || begin == std::string_view::npos) return false;
   const std::string_view prefix = line.substr(0, begin);
-  if (prefix.find_first_not_of(" \t") == std::string_view::npos || prefix == "\xef\xbb\xbf") return false;
   if (prefix.front() == '"') return false;  // a JSON text, if no request
-  if (prefix.size() <= kLongestBinary_bytes) return true;
+  // Two printable characters would be a length that no request has.
+  const bool is_binary =
+      prefix.size() == 1 || std::any_of(prefix.begin(), prefix.end(), [](char c) { return c < ' ' || c > '~'; });
+  if (prefix.size() <= kLongestBinary_bytes && is_binary) return true;
   const auto digits = std::min(prefix.find_first_not_of(kDigits), prefix.size());
   return prefix.size() <= kLongestDecimal_bytes && digits > 0 &&
          prefix.find_first_not_of(" \t:;,", digits) == std::string_view::npos;

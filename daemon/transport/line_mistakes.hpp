@@ -11,7 +11,8 @@ namespace fvd {
 enum class LineEnd { kNone, kNul, kBreak };
 
 /// The mistake that shows in a line, or in the beginning of one whose end has not come (kNone): UTF-16, or a length
-/// before the text. Nothing for all else. No line of JSON text is taken for a mistake.
+/// before the text. Nothing for all else. Of lines of JSON text only a whole number, which is no request, is taken for
+/// a mistake.
 [[nodiscard]] std::optional<std::string_view> mistake_in(std::string_view line, LineEnd end) noexcept;
 
 /// The mistake of a line whose end does not come.

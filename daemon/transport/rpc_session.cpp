@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
 /// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
+/// A line waits for its turn after so many looks: with a client's many waits and lines, no work by their product.
+constexpr int kMostLooks = 4;
 constexpr std::string_view kTerminators("\n\r\0", 3);
 constexpr std::chrono::milliseconds kLongestLineEnd{3000};  // from a text to its end: networks repeat what they lose
 constexpr std::chrono::seconds kRefusalGrace{1};            // for a refused client to read the reason
@@ -109,6 +111,7 @@ void RpcSession::read() {
     // Input after a refusal is read and dropped: closing with unread input would discard the refusal.
     if (!self->refused_) {
       self->receive({self->chunk_.data(), count});
+      self->watches_end_ = false;
       self->process();
     }
     self->read();
@@ -182,13 +185,15 @@ void RpcSession::process() {
 }
 
 void RpcSession::watch_line_end() {
-  line_end_.cancel();
-  if (input_.empty() || half_closed_) return;
+  if (watches_end_ || input_.empty() || half_closed_) return;
+  watches_end_ = true;
   // Before a connection without a valid request is closed without a word.
-  line_end_.expires_after(std::min(kLongestLineEnd, std::chrono::milliseconds(host_.first_request) / 2));
+  const std::chrono::milliseconds first_request = host_.first_request;
+  line_end_.expires_after(is_accepted_ ? kLongestLineEnd : std::min(kLongestLineEnd, first_request / 2));
   line_end_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
-    if (error || self->refused_ || self->has_request() || self->input_.empty()) return;
-    if (self->line_end_.expiry() > std::chrono::steady_clock::now()) return;
+    if (error || self->line_end_.expiry() > std::chrono::steady_clock::now()) return;
+    self->watches_end_ = false;
+    if (self->refused_ || self->has_request() || self->input_.empty()) return;
     if (nlohmann::json::accept(self->input_)) self->refuse_with(Dispatcher::mistaken(missing_end(self->input_)));
   });
 }
@@ -197,6 +202,11 @@ void RpcSession::overtake() {
   const auto behind = waiting_ ? Dispatcher::Behind::kWait : Dispatcher::Behind::kWork;
   while (!refused_ && looked_at_ < lines_.size()) {
     const auto line = lines_.begin() + static_cast<std::ptrdiff_t>(looked_at_);
+    if (line->looks == kMostLooks) {
+      ++looked_at_;
+      continue;
+    }
+    ++line->looks;
     // A line of another protocol is refused when its turn comes, and nothing behind it is read.
     if (begins_foreign_protocol(line->text) || mistake_in(line->text, line->end)) return;
     Caller caller = caller_;

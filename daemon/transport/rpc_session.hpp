@@ -73,6 +73,7 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
     std::string text;
     LineEnd end = LineEnd::kBreak;
     HostTime received;  ///< when its end came, however long it waits then
+    int looks = 0;      ///< so often it was asked whether it may overtake
   };
 
   /// Restarts the idle timeout; an unfinished line does not restart it, an empty one does.
@@ -124,6 +125,7 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   bool timed_out_ = false;    // of waiting_
   bool check_again_ = false;  // a check was asked for during a check
   bool half_closed_ = false;
+  bool watches_end_ = false;  // of input_, since its last bytes came
   bool ending_ = false;       // the daemon ends: nothing waits any more
   bool must_log_in_ = false;
   bool is_accepted_ = false;  // it has made a valid request

@@ -5,6 +5,7 @@
 #include "daemon/api/methods/job_key_params.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/api/replies.hpp"
+#include "daemon/api/reply_form.hpp"
 #include "daemon/api/result_fields.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/jobs/device_commands.hpp"
@@ -42,18 +43,23 @@ void describe_info(Fields& fields) {
   result.text("version", "of the program");
   result.integer("api", "version of the wire contract");
   result.boolean("simulated", "a device is simulated");
-  result.any("camera", "an object: vendor, model, serial, firmware, address of the camera that is open",
+  result.any("camera",
+             "an object: vendor, model, serial, firmware, address of the camera that is open, each cut to 32 bytes",
              Presence::kSometimes);
 }
+
+/// What a camera says of itself, in one compact reply; of GigE Vision all of it.
+constexpr std::size_t kLongestOfCamera_bytes = 32;
 
 Reply info_of(const MachineStatus& machine) {
   Reply reply{{"name", "fvd"}, {"version", kVersion}, {"api", 1}, {"simulated", machine.simulated}};
   if (const auto& camera = machine.camera) {
-    reply["camera"] = {{"vendor", camera->vendor},
-                       {"model", camera->model},
-                       {"serial", camera->serial},
-                       {"firmware", camera->firmware},
-                       {"address", camera->address}};
+    const auto told = [](const std::string& text) { return cut_text(text, kLongestOfCamera_bytes); };
+    reply["camera"] = {{"vendor", told(camera->vendor)},
+                       {"model", told(camera->model)},
+                       {"serial", told(camera->serial)},
+                       {"firmware", told(camera->firmware)},
+                       {"address", told(camera->address)}};
   }
   return reply;
 }
@@ -84,7 +90,8 @@ void add_system_methods(MethodTable& methods, const Services& services, std::chr
       .about = {.summary = "Who answers",
                 .role = Role::kView,
                 .params = described<NoParams>(),
-                .result = describe_info},
+                .result = describe_info,
+                .is_brief = true},
       .peek = [&machine = services.machine](const Call&) { return info_of(*machine.snapshot()); }};
   methods["system.state"] = {
       .about = {.summary = "The machine's state, flat and cheap to poll",

@@ -1,5 +1,7 @@
 /// What a line relies on: errors of their own, and a description of the order.
 
+#include <algorithm>
+
 #include "tests/daemon/api/dispatcher_fixture.hpp"
 
 namespace fvd {
@@ -47,6 +49,26 @@ TEST_F(ADispatcher, DescribesUnitsRangesErrorsAndTheOrderOfALine) {
       EXPECT_FALSE(property.value("description", "").empty()) << one["name"] << key;
     }
   }
+}
+
+TEST_F(ADispatcher, DescribesWhichKeysAResultHasWhereFieldsPickThem) {
+  const json document = result_of("rpc.discover");
+  int picking = 0;
+  for (const json& one : document["methods"]) {
+    const json& schema = one["result"]["schema"];
+    const auto& params = one["params"];
+    const bool picks = std::any_of(params.begin(), params.end(), [](const json& p) { return p["name"] == "fields"; });
+    picking += picks ? 1 : 0;
+    EXPECT_EQ(schema.contains("x-required-without-fields"), picks) << one["name"];
+    EXPECT_FALSE(picks && schema.contains("required")) << one["name"] << ": a reply with fields would break it";
+    if (one["name"] == "result.get") {
+      EXPECT_FALSE(schema["properties"]["v"].contains("type")) << "it may be null";
+    }
+    if (one["name"] == "job.start") {
+      EXPECT_EQ(schema["required"][0], "job_id");
+    }
+  }
+  EXPECT_EQ(picking, 5);
 }
 
 }  // namespace

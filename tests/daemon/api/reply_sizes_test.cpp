@@ -266,7 +266,54 @@ TEST_F(ReplySizes, SayHowMuchWasLeftOut) {
   const json roomy =
       checked(1, "result.get", json{{"seq", kGreatest}, {"client", std::string(32, 'C')}, {"fields", {"m"}}},
               kCompactReply_bytes)["result"];
-  EXPECT_FALSE(roomy.contains(kLeftOutKey)) << roomy;
+  EXPECT_GT(roomy["m"].size(), compact["m"].size()) << "the room of keys that were not asked for is its own";
+  EXPECT_EQ(roomy["m"].size() + roomy.value(kLeftOutKey, 0U), 50U) << roomy;
+}
+
+TEST_F(ReplySizes, SayWhatIsMissingOfAListWhoseCountWasNotAskedFor) {
+  hold(widest_job("p", "disk", ErrorCode::kInternal), JobState::kCompleted, "");
+  service_.result = widest_result(true, 1.5);
+  const auto asked = [&](const json& id, const std::vector<std::string>& fields) {
+    return checked(id, "result.get", with(of_job(), "fields", fields), kCompactReply_bytes)["result"];
+  };
+  for (const json& id : ids()) {
+    const json all = checked(id, "result.get", of_job(), kCompactReply_bytes)["result"];
+    const json some = asked(id, {"seq", "part_id", "v", "m"});
+    EXPECT_GT(some["m"].size(), all["m"].size()) << some;
+    EXPECT_EQ(some["m"].size() + some.value(kLeftOutKey, 0U), 50U) << some;
+    EXPECT_FALSE(some.contains("more"));
+    const json counted = asked(id, {"seq", "m", "more"});
+    EXPECT_EQ(counted["m"].size() + counted["more"].get<std::size_t>(), 50U) << counted;
+    EXPECT_FALSE(counted.contains(kLeftOutKey)) << counted;
+    EXPECT_FALSE(asked(id, {"seq", "v"}).contains(kLeftOutKey));
+  }
+}
+
+TEST_F(ReplySizes, FitForACameraThatNamesItselfAtLength) {
+  hold(widest_job("p", "", ErrorCode::kInternal), JobState::kCompleted, "");
+  for (const std::size_t bytes : {std::size_t{32}, std::size_t{64}, std::size_t{5000}}) {
+    for (const std::string& text : spellings(bytes)) {
+      CameraInfo& camera = service_.machine->camera.emplace();
+      camera.vendor = camera.model = camera.serial = camera.firmware = camera.address = text;
+      for (const json& id : ids()) checked(id, "system.info", json::object(), kCompactReply_bytes);
+    }
+  }
+  CameraInfo& camera = service_.machine->camera.emplace();
+  camera.vendor = camera.model = camera.firmware = std::string(32, 'W');
+  camera.serial = std::string(16, '7');
+  camera.address = "255.255.255.255";
+  const json told = checked(1, "system.info", json::object(), kCompactReply_bytes)["result"]["camera"];
+  EXPECT_EQ(told["model"], camera.model) << "what GigE Vision has room for is told whole";
+  EXPECT_EQ(told["serial"], camera.serial);
+  EXPECT_EQ(told["address"], camera.address);
+}
+
+TEST_F(ReplySizes, CutForeignTextBetweenItsCharacters) {
+  std::string name = "x";
+  while (name.size() < 100) name += "\xc3\xa4";
+  const json error = checked(1, name, json::object(), kCompactReply_bytes)["error"];
+  EXPECT_EQ(error["code"], -32601);
+  EXPECT_EQ(error.dump().find("\xef\xbf\xbd"), std::string::npos) << "half a character: " << error;
 }
 
 TEST_F(ReplySizes, HoldTheFieldsThatAreAskedForInTheirOrder) {

@@ -31,8 +31,9 @@ TEST(LineMistakes, KnowLengthsBeforeTheText) {
 }
 
 TEST(LineMistakes, LetJsonAndWhatMayStillBecomeJsonPass) {
-  for (const char* line : {"{\"jsonrpc\":\"2.0\"}", " \t{\"a\":1}", "[{\"a\":1}]", "\xef\xbb\xbf{\"a\":1}", "\"a{b\"",
-                           "nonsense with {\"a\":1}", "{", "null", ""}) {
+  for (const char* line :
+       {"{\"jsonrpc\":\"2.0\"}", " \t{\"a\":1}", "[{\"a\":1}]", "\xef\xbb\xbf{\"a\":1}", "\"a{b\"",
+        "\xef\xbb\xbf {\"a\":1}", " \"{\"", "\t\"[\"", "ab{\"a\":1}", "nonsense with {\"a\":1}", "{", "null", ""}) {
     EXPECT_EQ(told(line, LineEnd::kNone), "nothing") << line;
   }
   EXPECT_EQ(told("{\"a\":1}", LineEnd::kNul), "nothing");

@@ -1,7 +1,10 @@
 /// What a PLC may rely on at its socket: answers while it waits, heartbeats, mistakes that are named, words at the end.
 
+#include <atomic>
 #include <chrono>
+#include <functional>
 #include <future>
+#include <memory>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -39,6 +42,21 @@ std::string with_length(const std::string& text, int bytes, bool little_endian) 
   }
   return all;
 }
+
+/// Counts how often somebody looks at the machine.
+class CountedMachine final : public MachineView {
+ public:
+  explicit CountedMachine(FakeJobService& service) : service_(service) {}
+  [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
+    ++looks;
+    return service_.snapshot();
+  }
+  void on_change(std::function<void()> listener) override { service_.on_change(std::move(listener)); }
+  mutable std::atomic<int> looks{0};
+
+ private:
+  FakeJobService& service_;
+};
 
 class AtItsSocket : public testing::Test {
  protected:
@@ -209,6 +227,66 @@ TEST_F(AtItsSocket, NamesAMissingEnd) {
   half.finish_sending();
   EXPECT_THAT(last_words(half), HasSubstr("within a line"));
   EXPECT_EQ(service_.starts, 0) << "none of them is executed";
+}
+
+TEST_F(AtItsSocket, IsPatientWithTheEndOfAKnownClientsLine) {
+  serve(60, 1);
+  LineClient client(server_->port());
+  ASSERT_THAT(client.ask(kPing), HasSubstr("result"));
+  client.send(kPing);
+  EXPECT_FALSE(client.line(milliseconds(1000)).has_value()) << "networks repeat what they lose";
+  EXPECT_THAT(client.ask(""), HasSubstr("result"));
+}
+
+TEST_F(AtItsSocket, NamesAMissingEndAlsoWhileTheMachineChanges) {
+  serve(60, 4);  // noticed after 2 s
+  LineClient other(server_->port());
+  wait_for_a_job(other);
+  LineClient client(server_->port());
+  client.send(kPing);
+  std::optional<std::string> line;
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!line && std::chrono::steady_clock::now() < until) {
+    service_.change({5}, [](JobStatus& job) { ++job.slices_done; });
+    line = client.line(milliseconds(50));
+  }
+  EXPECT_THAT(line.value_or("closed without a word"), HasSubstr("no end of line"));
+}
+
+TEST_F(AtItsSocket, LooksAtALineAFewTimesHoweverManyWaitsStandBeforeIt) {
+  JobStatus running;
+  running.job_id = "job-5";
+  running.request.seq = 5;
+  service_.current = running;
+  CountedMachine machine(service_);
+  RpcConfig config;
+  config.port = 0;
+  config.access.loopback_role = Role::kAdminister;
+  service_.access.emplace(config.access);
+  const Services all = service_.services();
+  server_ = std::make_unique<RpcServer>(config, runtime_.path(),
+                                        Services{machine, all.jobs, all.results, all.tasks, all.recipes, all.objectives,
+                                                 all.studies, all.control, all.audit, all.access});
+  LineClient client(server_->port());
+  for (const char* number : {"5", "6"}) {
+    client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[)" + std::string(number) + R"(,"p"]})");
+  }
+  constexpr int kMany = 150;
+  std::string lines;
+  for (int i = 0; i < kMany; ++i) {
+    lines += R"({"jsonrpc":"2.0","id":3,"method":"job.wait","params":{"seq":5,"timeout_ms":0}})"
+             "\n";
+  }
+  // Of a job that does not run: the snapshot tells nothing of it, and each waits for its turn.
+  for (int i = 0; i < kMany; ++i) {
+    lines += R"({"jsonrpc":"2.0","id":4,"method":"job.status","params":{"seq":6}})"
+             "\n";
+  }
+  const int before = machine.looks;
+  client.send(lines);
+  for (int i = 0; i < 2 * kMany; ++i) ASSERT_TRUE(client.line().has_value()) << i;
+  EXPECT_LT(machine.looks - before, 30 * kMany) << "not by the product of both";
+  server_.reset();  // before its machine
 }
 
 }  // namespace
