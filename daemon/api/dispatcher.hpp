@@ -10,7 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/access/access_error.hpp"
 #include "daemon/api/method.hpp"
+#include "daemon/api/refused_calls.hpp"
 #include "daemon/jobs/services.hpp"
 
 namespace fvd {
@@ -30,7 +32,7 @@ struct Handled {
   bool is_accepted = false;                 ///< it asked for something that exists and that the caller may
 };
 
-/// context: thread-safe; keeps no state between calls.
+/// context: thread-safe; keeps no state between calls but the number of refused ones.
 class Dispatcher {
  public:
   static constexpr std::size_t kMaxLineBytes = 65536;
@@ -58,6 +60,9 @@ class Dispatcher {
   [[nodiscard]] std::optional<std::string> resume(const WaitingRequest& waiting, bool timed_out) const;
   /// False if the machine's snapshot shows that resume() would return nothing. Never blocks.
   [[nodiscard]] bool may_have_come(const WaitingRequest& waiting) const;
+
+  /// The answer to a waiting request when the daemon ends.
+  [[nodiscard]] std::string ended(const WaitingRequest& waiting) const;
 
   /// The reply to a line that is too long to be read.
   [[nodiscard]] static std::string too_long();
@@ -97,9 +102,12 @@ class Dispatcher {
   /// The method's answer; nothing if it would block and may not. Notes who asked and what came of it.
   [[nodiscard]] std::optional<Answer> answer_of(const Method& method, const Call& call, bool may_block) const;
   void note(const Method& method, const Call& call, std::string_view outcome) const;
+  /// The same for who may not; of callers without a role few are told, and none is written down.
+  void note_refusal(const Method& method, const Call& call, const AccessError& error) const;
 
   Services services_;
   const MethodTable methods_;
+  mutable RefusedCalls refused_calls_;
 };
 
 }  // namespace fvd
