@@ -6,7 +6,6 @@
 #include <spdlog/spdlog.h>
 
 #include "config/strict_json.hpp"
-#include "daemon/access/access_error.hpp"
 #include "daemon/api/access.hpp"
 #include "daemon/api/json_shapes.hpp"
 #include "daemon/api/replies.hpp"
@@ -80,20 +79,6 @@ ordered_json refuse_batch(const json& batch, const std::string& why) {
     replies.push_back(failure_reply(id, json_rpc::kInvalidRequest, why));
   }
   return replies;
-}
-
-/// Throws AccessError, ProtocolError unless the caller may call the method in this form.
-void require_callable(const std::string& name, const MethodDescription& about, const Caller& caller,
-                      bool is_notification) {
-  if (!may_call(caller, about)) {
-    spdlog::warn("{} was refused to {}", name, text_of(caller));
-    throw AccessError(AccessCode::kNotAllowed, name + " needs the role " + std::string(role_name(about.role)) +
-                                                   ", this caller has " + std::string(role_name(caller.who.role)));
-  }
-  if (about.needs_id && is_notification) {
-    spdlog::warn("a {} without an id was refused to {}: it could not be told what became of it", name, text_of(caller));
-    throw ProtocolError{json_rpc::kInvalidRequest, name + " needs an id"};
-  }
 }
 
 }  // namespace
@@ -208,8 +193,17 @@ void Dispatcher::run_method(const json& request, const json& id, Caller caller, 
   }
   const Method& method = found->second;
   const bool is_notification = !request.contains("id");
-  if (!may_call(caller, method.about)) note(method, {caller, name, request.value("params", json())}, "not_allowed");
-  require_callable(name, method.about, caller, is_notification);
+  if (!may_call(caller, method.about)) {
+    const AccessError error(AccessCode::kNotAllowed,
+                            name + " needs the role " + std::string(role_name(method.about.role)) +
+                                ", this caller has " + std::string(role_name(caller.who.role)));
+    note_refusal(method, {caller, name, request.value("params", json())}, error);
+    throw error;
+  }
+  if (method.about.needs_id && is_notification) {
+    spdlog::warn("a {} without an id was refused to {}: it could not be told what became of it", name, text_of(caller));
+    throw ProtocolError{json_rpc::kInvalidRequest, name + " needs an id"};
+  }
   if (mode.in_batch && method.about.is_urgent) {
     throw ProtocolError{json_rpc::kInvalidRequest, name + " is for a request of its own, which nothing holds back"};
   }
@@ -258,8 +252,7 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
     if (task != nullptr && method.about.is_audited) note_outcome_of(**task, call);
     return answer;
   } catch (const AccessError& error) {
-    spdlog::warn("{} was refused to {}: {}", call.method, text_of(call.caller), error.what());
-    note(method, call, error_name(error.code()));
+    note_refusal(method, call, error);
     throw;
   } catch (const Error& error) {
     if (about.needs_id) {
@@ -303,6 +296,18 @@ AuditEntry Dispatcher::audit_entry(const Call& call, std::string_view outcome) {
           call.method,
           std::move(detail),
           std::string(outcome)};
+}
+
+void Dispatcher::note_refusal(const Method& method, const Call& call, const AccessError& error) const {
+  const Caller& caller = call.caller;
+  if (caller.who.role > Role::kNone) {
+    spdlog::warn("{} was refused to {}: {}", call.method, text_of(caller), error.what());
+    return note(method, call, error_name(error.code()));
+  }
+  const auto count = refused_calls_.count_to_tell(caller.who.name, HostClock::now());
+  if (!count) return;
+  spdlog::warn("{} was refused to {}: {}; {} calls from there since the last that was told", call.method,
+               text_of(caller), error.what(), *count);
 }
 
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {

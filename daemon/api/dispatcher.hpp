@@ -10,7 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/access/access_error.hpp"
 #include "daemon/api/method.hpp"
+#include "daemon/api/refused_calls.hpp"
 #include "daemon/jobs/services.hpp"
 
 namespace fvd {
@@ -30,7 +32,7 @@ struct Handled {
   bool is_accepted = false;                 ///< it asked for something that exists and that the caller may
 };
 
-/// context: thread-safe; keeps no state between calls.
+/// context: thread-safe; keeps no state between calls but the number of refused ones.
 class Dispatcher {
  public:
   static constexpr std::size_t kMaxLineBytes = 65536;
@@ -110,9 +112,12 @@ class Dispatcher {
   /// Another row once the task has ended.
   void note_outcome_of(DeviceTask& task, const Call& call) const;
   [[nodiscard]] static AuditEntry audit_entry(const Call& call, std::string_view outcome);
+  /// The same for who may not; of callers without a role few are told, and none is written down.
+  void note_refusal(const Method& method, const Call& call, const AccessError& error) const;
 
   Services services_;
   const MethodTable methods_;
+  mutable RefusedCalls refused_calls_;
 };
 
 }  // namespace fvd

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,16 @@ bool is_host_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-';
   });
+}
+
+/// True if two listeners cannot have their ports at a time. Absent: there is no listener; 0 is any that is free.
+bool are_one_port(const std::string& address, std::optional<int> port, const std::string& other_address,
+                  std::optional<int> other_port) {
+  if (port.value_or(0) == 0 || port != other_port) return false;
+  const auto bytes = address_bytes(address);
+  const auto other_bytes = address_bytes(other_address);
+  const auto has_every = [](const auto& all) { return all == address_bytes("0.0.0.0") || all == address_bytes("::"); };
+  return bytes && other_bytes && (bytes == other_bytes || has_every(bytes) || has_every(other_bytes));
 }
 
 /// Empty if the folder can be listed.
@@ -109,9 +120,17 @@ class ConfigCheck {
               "'" + http.address +
                   "' is reached from the network, where a token alone says who somebody is; give /rpc/token_file, or "
                   "listen on 127.0.0.1");
-    report_if(http.port.value_or(0) != 0 && http.port == config_.rpc.port && http.address == config_.rpc.address,
-              "/http/port", {"/rpc/port", "/http/address", "/rpc/address"},
-              std::to_string(config_.rpc.port) + " is /rpc/port, which speaks no HTTP; give another");
+    const RpcConfig& rpc = config_.rpc;
+    const MetricsConfig& metrics = config_.metrics;
+    report_if(are_one_port(http.address, http.port, rpc.address, rpc.port), "/http/port",
+              {"/rpc/port", "/http/address", "/rpc/address"},
+              std::to_string(rpc.port) + " is /rpc/port, which speaks no HTTP; give another");
+    report_if(are_one_port(metrics.address, metrics.port, rpc.address, rpc.port), "/metrics/port",
+              {"/rpc/port", "/metrics/address", "/rpc/address"},
+              std::to_string(rpc.port) + " is /rpc/port, which gives no metrics; give another");
+    report_if(are_one_port(metrics.address, metrics.port, http.address, http.port), "/metrics/port",
+              {"/http/port", "/metrics/address", "/http/address"},
+              std::to_string(http.port.value_or(0)) + " is /http/port, which gives no metrics; give another");
     for (std::size_t i = 0; i < http.hosts.size(); ++i) {
       report_if(
           !is_host_name(http.hosts[i].name), "/http/hosts/" + std::to_string(i) + "/name", {},

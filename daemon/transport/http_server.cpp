@@ -28,7 +28,8 @@ using ErrorCodeOf = boost::system::error_code;
 namespace {
 
 constexpr std::size_t kMaxConnections = 64;
-constexpr std::chrono::milliseconds kShutdownGrace{500};  // for the answers that are owed when the server ends
+constexpr std::ptrdiff_t kMostWithoutToken = kMaxConnections / 2;  // requests; the other places are of known callers
+constexpr std::chrono::milliseconds kShutdownGrace{500};           // for the answers that are owed when the server ends
 constexpr std::chrono::milliseconds kShutdownPollPeriod{5};
 constexpr std::chrono::milliseconds kAcceptPause{100};
 constexpr std::chrono::seconds kTickInterval{1};     // of the network thread
@@ -59,15 +60,21 @@ struct HttpServer::Impl {
         gate(names_of(config.hosts)),
         acceptor(context),
         pause(context),
-        host{context,      dispatcher,
-             s.access,     gate,
-             wrong_tokens, worker,
-             logins,       [this](const std::shared_ptr<HttpSession>& session) { sessions.erase(session); }},
+        host{context,
+             dispatcher,
+             s.access,
+             gate,
+             wrong_tokens,
+             refused_calls,
+             worker,
+             logins,
+             [this](const std::shared_ptr<HttpSession>& session) { sessions.erase(session); },
+             [this] { return has_room_without_token(); }},
         worker("fvd-http-work"),
         logins("fvd-http-login") {
     listen(config.address, *config.port);
     accept();
-    services.machine.on_change([this] { asio::post(context, [this] { resume_all(false); }); }, this);
+    services.machine.on_change([this] { asio::post(context, [this] { resume_all(); }); }, this);
     thread = start_thread("fvd-http", [this](const std::stop_token&) { run(); });
   }
 
@@ -123,22 +130,34 @@ struct HttpServer::Impl {
     }
   }
 
-  /// Closes the connection that has had nothing at work for longest; false if all have.
+  /// Closes the connection that has had nothing at work for longest, else the one whose token has been looked up for
+  /// longest; false if all are answered.
   bool make_room() {
     const auto oldest = std::min_element(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {
-      return std::pair(a->is_busy(), a->since()) < std::pair(b->is_busy(), b->since());
+      return std::pair(a->at_work(), a->since()) < std::pair(b->at_work(), b->since());
     });
-    if (oldest == sessions.end() || (*oldest)->is_busy()) return false;
+    if (oldest == sessions.end() || is_answered(*oldest)) return false;
     // A copy, for closing takes it out of the set. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
     const std::shared_ptr<HttpSession> session = *oldest;
     session->close();
     return true;
   }
 
-  void resume_all(bool timed_out) {
+  static bool is_answered(const std::shared_ptr<HttpSession>& session) {
+    return session->at_work() == HttpSession::AtWork::kAnswer;
+  }
+
+  /// Whoever can reach the port may wait for answers: those keep nobody with a token from a place.
+  [[nodiscard]] bool has_room_without_token() const {
+    return std::count_if(sessions.begin(), sessions.end(), [](const auto& session) {
+             return is_answered(session) && !session->has_token();
+           }) < kMostWithoutToken;
+  }
+
+  void resume_all() {
     // A copy: a session may close, and so leave the set, while it is resumed.
     const auto all = sessions;
-    for (const auto& session : all) session->resume(timed_out);
+    for (const auto& session : all) session->resume();
   }
 
   void run() {
@@ -150,9 +169,9 @@ struct HttpServer::Impl {
   void shut_down(std::chrono::steady_clock::time_point deadline) {
     ErrorCodeOf ignored;
     acceptor.close(ignored);
-    resume_all(true);  // who waits is told how far it is by now
-    const bool is_quiet =
-        std::none_of(sessions.begin(), sessions.end(), [](const auto& session) { return session->is_busy(); });
+    const auto all = sessions;  // a copy, as in resume_all()
+    for (const auto& session : all) session->end_wait_now();
+    const bool is_quiet = std::none_of(sessions.begin(), sessions.end(), is_answered);
     if (is_quiet || std::chrono::steady_clock::now() >= deadline) return context.stop();
     pause.expires_after(kShutdownPollPeriod);
     pause.async_wait([this, deadline](ErrorCodeOf) { shut_down(deadline); });
@@ -165,7 +184,8 @@ struct HttpServer::Impl {
   tcp::acceptor acceptor;
   asio::steady_timer pause;
   int port = 0;
-  WrongTokens wrong_tokens;  // network thread only, as the next two
+  WrongTokens wrong_tokens;  // network thread only, as the next three
+  RefusedCalls refused_calls;
   std::set<std::shared_ptr<HttpSession>> sessions;
   std::uint64_t connections = 0;  // since the start
   HttpSessionHost host;

@@ -58,13 +58,13 @@ const HttpSession::Route* HttpSession::route_of(const std::string& path) {
 
 template <typename Result>
 void HttpSession::work(Worker& worker, std::function<Result()> what, void (HttpSession::*then)(Result)) {
-  at_work_ = true;
+  on_worker_ = true;
   worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
     Result result = what();
     asio::io_context& context = self->host_.context;
     // The session is moved back: its destructor must run on the server's thread.
     asio::post(context, [self = std::move(self), result = std::move(result), then]() mutable {
-      self->at_work_ = false;
+      self->on_worker_ = false;
       if (!self->is_closed_) (self.get()->*then)(std::move(result));
     });
   });
@@ -105,13 +105,14 @@ void HttpSession::expire_after(std::chrono::milliseconds time) {
 }
 
 void HttpSession::await_request() {
-  is_busy_ = false;
+  state_ = AtWork::kNothing;
   since_ = HostClock::now();
   if (buffer_.size() > 0) return read_head();
   expire_after(kKeepAliveTime);
   socket_.async_wait(Socket::wait_read, [self = shared_from_this()](ErrorCodeOf error) {
     if (self->is_closed_) return;
-    if (error) return self->close();
+    // What came in the moment of the deadline completes without an error, here and in all that follows.
+    if (error || self->timed_out_) return self->close();
     self->read_head();
   });
 }
@@ -127,10 +128,10 @@ void HttpSession::read_head() {
 }
 
 void HttpSession::take_head(ErrorCodeOf error) {
-  if (error) return refuse_unread(error);
+  if (error || timed_out_) return refuse_unread(error);
   head_ = head_of(parser_->get());
   if (const auto refusal = host_.gate.refusal_of(head_, own_address_)) {
-    spdlog::warn("HTTP from {} was refused: {}", caller_.peer, refusal->error);
+    note_refusal(refusal->error);
     return refuse(*refusal);
   }
   const Route* route = route_of(head_.path);
@@ -149,7 +150,7 @@ void HttpSession::serve_call() {
   static const std::string kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
   asio::async_write(socket_, asio::buffer(kContinue), [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
     if (self->is_closed_) return;
-    if (error) return self->close();
+    if (error || self->timed_out_) return self->close();
     self->read_body();
   });
 }
@@ -162,7 +163,7 @@ void HttpSession::read_body() {
 }
 
 void HttpSession::take_body(ErrorCodeOf error) {
-  if (error) return refuse_unread(error);
+  if (error || timed_out_) return refuse_unread(error);
   deadline_.cancel();
   since_ = HostClock::now();
   caller_.received = HostClock::now();
@@ -171,11 +172,16 @@ void HttpSession::take_body(ErrorCodeOf error) {
 
 void HttpSession::recognise() {
   if (!head_.authorization) {
+    if (!host_.has_room_without_token()) {
+      return refuse({503, "too_many_connections",
+                     "too many callers without a token wait for an answer; send a token, or try again later"});
+    }
     caller_.who = by_address_;
     return answer();
   }
   const auto token = bearer_of(*head_.authorization);
   if (!token) return refuse_token("Authorization is not of the form Bearer TOKEN");
+  state_ = AtWork::kLogIn;
   using Found = std::pair<std::optional<Identity>, std::string>;
   work<Found>(
       host_.logins,
@@ -200,8 +206,9 @@ void HttpSession::take_identity(std::pair<std::optional<Identity>, std::string> 
 }
 
 void HttpSession::refuse_token(const std::string& why) {
+  state_ = AtWork::kNothing;
   const auto delay = host_.wrong_tokens.delay_of_another(address_, HostClock::now());
-  spdlog::warn("HTTP from {} was refused: {}", caller_.peer, why);
+  note_refusal(why);
   since_ = HostClock::now();
   wait_.expires_after(delay);
   wait_.async_wait([self = shared_from_this(), why](ErrorCodeOf error) {
@@ -210,8 +217,15 @@ void HttpSession::refuse_token(const std::string& why) {
   });
 }
 
+void HttpSession::note_refusal(const std::string& why) {
+  const auto count = host_.refused_calls.count_to_tell(address_, HostClock::now());
+  if (!count) return;
+  spdlog::warn("HTTP from {} was refused: {}; {} requests from there since the last that was told", caller_.peer, why,
+               *count);
+}
+
 void HttpSession::answer() {
-  is_busy_ = true;
+  state_ = AtWork::kAnswer;
   const std::string& text = parser_->get().body();
   if (auto handled = host_.dispatcher.try_handle(text, caller_)) return take(std::move(*handled));
   work<Handled>(
@@ -230,7 +244,7 @@ void HttpSession::begin_wait(WaitingRequest waiting) {
   wait_.expires_after(waiting.until.timeout);
   waiting_ = std::move(waiting);
   wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
-    if (!error && self->wait_.expiry() <= std::chrono::steady_clock::now()) self->resume(true);
+    if (!error && self->wait_.expiry() <= std::chrono::steady_clock::now()) self->check_wait(true);
   });
   watch_client();
   check_wait(false);
@@ -245,16 +259,22 @@ void HttpSession::watch_client() {
   });
 }
 
-void HttpSession::resume(bool timed_out) { check_wait(timed_out); }
+void HttpSession::end_wait_now() {
+  is_ending_ = true;
+  check_wait(false);
+}
 
 void HttpSession::check_wait(bool timed_out) {
   if (!waiting_) return;
   wait_is_over_ = wait_is_over_ || timed_out;
-  if (at_work_) {
+  if (on_worker_) {
     check_again_ = true;
     return;
   }
-  if (!wait_is_over_ && !host_.dispatcher.may_have_come(*waiting_)) return;
+  if (!wait_is_over_ && !host_.dispatcher.may_have_come(*waiting_)) {
+    if (is_ending_) end_wait(std::nullopt);
+    return;
+  }
   check_again_ = false;
   work<std::optional<std::string>>(
       host_.worker,
@@ -265,6 +285,7 @@ void HttpSession::check_wait(bool timed_out) {
 }
 
 void HttpSession::end_wait(std::optional<std::string> reply) {
+  if (!reply && is_ending_) reply = host_.dispatcher.ended(*waiting_);
   if (!reply) {
     if (check_again_) check_wait(false);
     return;
@@ -325,14 +346,14 @@ void HttpSession::send(Response response) {
   expire_after(kAnswerTime);
   http::async_write(socket_, response_, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
     if (self->is_closed_) return;
-    if (error) return self->close();
+    if (error || self->timed_out_) return self->close();
     if (self->response_.keep_alive()) return self->await_request();
     self->drain();
   });
 }
 
 void HttpSession::drain() {
-  is_busy_ = false;
+  state_ = AtWork::kNothing;
   ErrorCodeOf ignored;
   socket_.shutdown(Socket::shutdown_send, ignored);
   expire_after(kDrainTime);
@@ -344,7 +365,7 @@ void HttpSession::drain_more() {
   socket_.async_read_some(buffer_.prepare(kDrainChunk_bytes),
                           [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
                             if (self->is_closed_) return;
-                            if (error) return self->close();
+                            if (error || self->timed_out_) return self->close();
                             self->drain_more();
                           });
 }

@@ -16,6 +16,7 @@
 
 #include "daemon/access/access_rules.hpp"
 #include "daemon/api/dispatcher.hpp"
+#include "daemon/api/refused_calls.hpp"
 #include "daemon/transport/http_gate.hpp"
 #include "daemon/transport/worker.hpp"
 #include "daemon/transport/wrong_tokens.hpp"
@@ -31,9 +32,11 @@ struct HttpSessionHost {
   const AccessRules& access;
   const HttpGate& gate;
   WrongTokens& wrong_tokens;
+  RefusedCalls& refused_calls;
   Worker& worker;  ///< for calls that may block
   Worker& logins;  ///< for the token file: nobody waits behind a slow call to be recognised
   std::function<void(const std::shared_ptr<HttpSession>&)> on_close;
+  std::function<bool()> has_room_without_token;  ///< for one more request whose caller nobody vouches for
 };
 
 /// Held by shared_ptr: handlers that are still queued keep it alive. context: the server's thread only.
@@ -47,11 +50,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void start();
   /// Answers with 503 and closes: there are too many connections.
   void turn_away();
-  /// Checks the waiting request again: a job changed, or the waiting time is over, which answers it.
-  void resume(bool timed_out);
-  /// True from a whole request to the last byte of its answer.
-  [[nodiscard]] bool is_busy() const noexcept { return is_busy_; }
-  /// When it became as it is: a connection that is not busy gives way to another one, the oldest first.
+  /// Checks the waiting request again: a job changed.
+  void resume() { check_wait(false); }
+  /// The same at the daemon's end, which answers it in any case.
+  void end_wait_now();
+  /// What a connection has at work, which says when it gives way to another one.
+  enum class AtWork { kNothing, kLogIn, kAnswer };
+  /// kAnswer: from a whole request of a known caller to the last byte of its answer; it never gives way.
+  [[nodiscard]] AtWork at_work() const noexcept { return state_; }
+  /// True if the request, or the latest one, came with a token.
+  [[nodiscard]] bool has_token() const noexcept { return head_.authorization.has_value(); }
+  /// When it became as it is: of those with the same at work the oldest gives way first.
   [[nodiscard]] HostTime since() const noexcept { return since_; }
   /// Closes at once and calls the host's on_close.
   void close();
@@ -78,6 +87,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /// Finds out who the caller is, then answers.
   void recognise();
   void refuse_token(const std::string& why);
+  /// Tells the log, unless it was just told of one from there.
+  void note_refusal(const std::string& why);
   void answer();
   void take(Handled handled);
   void begin_wait(WaitingRequest waiting);
@@ -117,11 +128,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<WaitingRequest> waiting_;
   HostTime since_ = HostClock::now();
   std::uint64_t requests_ = 0;  ///< that had to wait
-  bool is_busy_ = false;
+  AtWork state_ = AtWork::kNothing;
   bool timed_out_ = false;
   bool wait_is_over_ = false;
-  bool at_work_ = false;      ///< a worker runs a task of this session, one at a time
+  bool on_worker_ = false;    ///< a worker runs a task of this session, one at a time
   bool check_again_ = false;  ///< a check was asked for during a check
+  bool is_ending_ = false;    ///< the daemon is
   bool is_closed_ = false;
 };
 

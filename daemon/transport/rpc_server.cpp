@@ -113,6 +113,8 @@ struct RpcServer::Impl {
   /// The one with control; while nobody has it whoever may have it.
   [[nodiscard]] bool may_control(const Identity& who) const;
   [[nodiscard]] bool has_room(const Identity& who);
+  /// For a connection that has to log in. The oldest of those that ask for nothing gives way.
+  [[nodiscard]] bool has_log_in_place();
   void resume_all();
 
   const RpcConfig config;
@@ -175,9 +177,7 @@ void RpcServer::Impl::admit(RpcSession::Socket socket, Caller caller) {
   const bool allowed = caller.who.role > Role::kNone || services.access.has_tokens();
   const bool room = allowed && has_room(caller.who);
   if (!allowed) spdlog::warn("a connection is refused: {}", text_of(caller));
-  const auto logging_in = std::count_if(sessions.begin(), sessions.end(),
-                                        [](const auto& other) { return other->must_log_in() && !other->is_refused(); });
-  const bool may_log_in = services.access.has_tokens() && logging_in < kLogInPlaces;
+  const bool may_log_in = services.access.has_tokens() && (room || has_log_in_place());
   const auto session = std::make_shared<RpcSession>(host, std::move(socket), std::move(caller));
   sessions.insert(session);
   if (room || (allowed && may_log_in)) return session->start(!room);
@@ -212,6 +212,21 @@ bool RpcServer::Impl::has_room(const Identity& who) {
   // A copy, for closing takes it out of the set. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
   const std::shared_ptr<RpcSession> session = *leaving;
   session->close();
+  return true;
+}
+
+bool RpcServer::Impl::has_log_in_place() {
+  std::ptrdiff_t logging_in = 0;
+  std::shared_ptr<RpcSession> oldest;
+  for (const auto& session : sessions) {
+    if (!session->must_log_in() || session->is_refused()) continue;
+    ++logging_in;
+    if (!session->is_answered()) continue;
+    if (!oldest || session->caller().connection < oldest->caller().connection) oldest = session;
+  }
+  if (logging_in < kLogInPlaces) return true;
+  if (!oldest) return false;
+  oldest->close();
   return true;
 }
 

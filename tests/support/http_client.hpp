@@ -28,7 +28,7 @@ class HttpClient {
            "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n" + more +
            "\r\n" + body;
   }
-  void send(const std::string& bytes) { client_.send(bytes); }
+  bool send(const std::string& bytes) { return client_.send(bytes); }
   /// Nothing if the server closes, or says nothing in time.
   std::optional<HttpReply> reply(std::chrono::milliseconds within = std::chrono::seconds(15)) {
     HttpReply reply;

@@ -42,13 +42,15 @@ class LineClient {
   LineClient(const LineClient&) = delete;
   LineClient& operator=(const LineClient&) = delete;
 
-  void send(const std::string& bytes) {
+  /// False where the server has closed: what it said can still be read.
+  bool send(const std::string& bytes) {
     std::size_t sent = 0;
     while (sent < bytes.size()) {
       const auto count = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-      if (count <= 0) return;  // the server closed: what it said can still be read
+      if (count <= 0) return false;
       sent += static_cast<std::size_t>(count);
     }
+    return true;
   }
 
   /// Half-closes: the server sees the end of what it is sent, and may still answer.

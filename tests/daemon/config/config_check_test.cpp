@@ -96,6 +96,25 @@ TEST_F(AUsableConfig, NeedsAPortAndNamesForHttp) {
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/http/address", "'localhost'")));
 }
 
+TEST_F(AUsableConfig, NeedsAPortForEachListener) {
+  config_.http.port = config_.rpc.port;
+  config_.http.address = "0.0.0.0";
+  config_.rpc.access.token_file = folder_ / "tokens";
+  test::write_text(folder_ / "tokens", "");
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/http/port", "/rpc/port"))) << "it has 127.0.0.1 too";
+  config_.http.address = "127.0.0.2";
+  EXPECT_THAT(check_config(config_), IsEmpty()) << "another address";
+  config_.http.address = "127.0.0.1";
+  config_.http.port = 7413;
+  config_.metrics.address = "::";
+  config_.metrics.port = 7413;
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/metrics/port", "/http/port")));
+  config_.metrics.port = config_.rpc.port;
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/metrics/port", "/rpc/port")));
+  config_.http.port = config_.metrics.port = config_.rpc.port = 0;
+  EXPECT_THAT(check_config(config_), IsEmpty()) << "any that is free";
+}
+
 TEST_F(AUsableConfig, NeedsRangesOfAddresses) {
   config_.rpc.access.allow = {
       {"192.168.1.10/24", Role::kView}, {"10.0.0.0/8", Role::kView}, {"10.0.0.0/8", Role::kOperate}};

@@ -131,6 +131,25 @@ class AnAccessMatrix : public ::testing::Test {
     }
   }
 
+  /// The answers wait ever longer, so the first of them alone are awaited.
+  void try_unknown_token() {
+    const Effects before(service_);
+    std::vector<std::unique_ptr<HttpClient>> clients;
+    for (const auto& [method, least] : methods_) {
+      clients.push_back(std::make_unique<HttpClient>(http_->port()));
+      const std::string request = request_of(method, test::working_params(method));
+      clients.back()->send(clients.back()->request(request, "Authorization: Bearer fvd-unknown\r\n"));
+      if (clients.size() > 3) continue;
+      ++cases_;
+      EXPECT_EQ(clients.back()->reply().value_or(HttpReply{}).status, 401) << method;
+    }
+    // Tokens are looked up in turn: that of the others has been.
+    EXPECT_TRUE(by_http(bearer(Role::kView))(request_of("system.state", json::object())));
+    http_.reset();
+    EXPECT_EQ(Effects(service_), before);
+    if (Effects(service_) != before) ++unauthorised_accepted_;
+  }
+
   Send by_line(LineClient& client) {
     return [&client](const std::string& request) { return is_executed(client.ask(request)); };
   }
@@ -185,11 +204,7 @@ TEST_F(AnAccessMatrix, AcceptsWhatRolesSayAndNothingElse) {
     try_all("form, " + who, std::nullopt, by_http(bearer(role), "application/x-www-form-urlencoded"));
     try_all("name that is rebound, " + who, std::nullopt, by_http(bearer(role), "application/json", "evil.example"));
   }
-  try_all("http, unknown token", std::nullopt, [this](const std::string& request) {
-    HttpClient client(http_->port());  // not awaited: its answer takes ever longer
-    client.send(client.request(request, "Authorization: Bearer fvd-unknown\r\n"));
-    return false;
-  });
+  try_unknown_token();
   const json figures{{"unauthorised_accepted", unauthorised_accepted_}, {"matrix_cases", cases_}};
   std::cout << "matrix: " << figures.dump() << '\n';
   if (const char* file = std::getenv("FVD_MATRIX_FILE")) std::ofstream(file) << figures.dump() << '\n';

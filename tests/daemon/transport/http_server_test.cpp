@@ -2,6 +2,8 @@
 
 #include "daemon/transport/http_server.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <future>
 #include <memory>
 #include <vector>
@@ -11,6 +13,7 @@
 
 #include "core/base/error.hpp"
 #include "daemon/access/token_file.hpp"
+#include "daemon/transport/wrong_tokens.hpp"
 #include "tests/daemon/api/fake_job_service.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/http_client.hpp"
@@ -126,18 +129,30 @@ TEST_F(AnHttpServer, KeepsNobodyLoggedIn) {
   EXPECT_EQ(ask(call("session.login", {{"token", token_}}))["error"]["code"], -32600);
 }
 
-TEST_F(AnHttpServer, RefusesWrongTokensEverMoreSlowlyAndRightOnesNever) {
+TEST_F(AnHttpServer, RefusesWrongTokensEverMoreSlowly) {
+  HttpClient guessing(server_->port());
+  const std::string basic = guessing.request("{}", "Authorization: Basic dXNlcjpw\r\n");
+  const std::string wrong = guessing.request(call("system.ping"), "Authorization: Bearer wrong\r\n");
+  auto least = WrongTokens::kFirstDelay;
+  for (const std::string& guess : {wrong, basic, wrong}) {
+    HttpClient client(server_->port());
+    const auto begin = std::chrono::steady_clock::now();
+    const auto refused = client.ask(guess);
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, least);
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->status, 401);
+    EXPECT_EQ(refused->fields.at("www-authenticate"), "Bearer");
+    least *= 2;
+  }
+}
+
+TEST_F(AnHttpServer, RecognisesRightTokensWhileWrongOnesWait) {
   std::vector<std::unique_ptr<HttpClient>> guessing;
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 5; ++i) {
     guessing.push_back(std::make_unique<HttpClient>(server_->port()));
     guessing.back()->send(guessing.back()->request(call("system.ping"), "Authorization: Bearer wrong\r\n"));
   }
   EXPECT_EQ(ask(call("session.info"), bearer())["result"]["role"], "operate");
-  const auto refused = guessing.front()->reply();
-  ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->status, 401);
-  EXPECT_EQ(refused->fields.at("www-authenticate"), "Bearer");
-  EXPECT_EQ(status_of(guessing.front()->request("{}", "Authorization: Basic dXNlcjpw\r\n")), 401);
 }
 
 TEST_F(AnHttpServer, SaysThatItsTokensCannotBeRead) {
@@ -236,6 +251,46 @@ TEST_F(AnHttpServer, GivesPlacesOfTheSilentToOthers) {
   EXPECT_TRUE(silent.front()->closes()) << "the oldest gave way";
 }
 
+TEST_F(AnHttpServer, KeepsPlacesForWhoHasAToken) {
+  ASSERT_TRUE(ask(call("job.start", {{"seq", 1}, {"part_id", "p"}}), bearer()).contains("result"));
+  std::vector<std::unique_ptr<HttpClient>> waiting;
+  for (int i = 0; i < 70; ++i) {
+    waiting.push_back(std::make_unique<HttpClient>(server_->port()));
+    waiting.back()->send(waiting.back()->request(call("job.wait", {{"seq", 1}, {"timeout_ms", 30000}})));
+  }
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+  while (ask(call("system.ping")) != 503) ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+  EXPECT_EQ(ask(call("stage.stop"), bearer())["result"]["stopped"], "command");
+  service_.change({1}, [](JobStatus& job) { job.state = JobState::kCompleted; });
+  const auto answered = std::count_if(waiting.begin(), waiting.end(), [](const auto& client) {
+    return client->reply().value_or(HttpReply{}).status == 200;
+  });
+  EXPECT_EQ(answered, 32) << "half of the places";
+}
+
+TEST_F(AnHttpServer, ListensToNobodyForLongWhomItHasRefused) {
+  HttpClient client(server_->port());
+  const auto refused = client.ask("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 404);
+  const std::string more(1U << 20U, 'x');
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+  while (client.send(more)) ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "it reads on and on";
+}
+
+TEST_F(AnHttpServer, TellsWhoWaitsForTheDevicesThatItEnds) {
+  test::write_text(folder_ / "tokens", credential_of("kiosk", Role::kAdminister, token_).line() + "\n");
+  HttpClient moving(server_->port());
+  moving.send(moving.request(call("stage.move", {{"z_um", 1}}), bearer()));
+  ASSERT_TRUE(ask(call("job.start", {{"seq", 1}, {"part_id", "p"}}), bearer()).contains("result")) << "after it";
+  server_.reset();
+  const auto reply = moving.reply();
+  ASSERT_TRUE(reply);
+  const json error = json::parse(reply->body)["error"];
+  EXPECT_EQ(error["code"], 1013) << reply->body;
+  EXPECT_THAT(error["message"].get<std::string>(), HasSubstr("system.state"));
+}
+
 TEST_F(AnHttpServer, AnswersWhatIsOwedWhenItEnds) {
   HttpClient waiting(server_->port());
   ASSERT_TRUE(ask(call("job.start", {{"seq", 1}, {"part_id", "p"}}), bearer()).contains("result"));
@@ -244,7 +299,7 @@ TEST_F(AnHttpServer, AnswersWhatIsOwedWhenItEnds) {
   server_.reset();
   const auto reply = waiting.reply();
   ASSERT_TRUE(reply);
-  EXPECT_EQ(json::parse(reply->body)["result"]["state"], "processing");
+  EXPECT_EQ(json::parse(reply->body)["error"]["code"], 1013) << reply->body;
   EXPECT_TRUE(waiting.closes());
 }
 

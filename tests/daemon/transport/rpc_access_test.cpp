@@ -1,6 +1,8 @@
 /// Who gets a connection, as whom, and what overtakes what.
 
 #include <future>
+#include <memory>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -152,6 +154,23 @@ TEST_F(AGuardedRpcServer, LetsWhoMayControlByATokenHaveThatPlace) {
   LineClient anew(server_->port());
   EXPECT_EQ(ask(anew, call("session.login", {{"token", operating}}))["result"]["role"], "operate");
   EXPECT_TRUE(controller.closes()) << "its old connection gives way";
+}
+
+TEST_F(AGuardedRpcServer, LetsNoSilentConnectionsKeepWhoMayControlFromLoggingIn) {
+  const std::string operating = new_token();
+  config_.access.token_file = folder_ / "tokens";
+  config_.access.loopback_role = Role::kView;
+  config_.max_connections = 2;
+  config_.first_request_s = 60;
+  test::write_text(config_.access.token_file, credential_of("plc", Role::kOperate, operating).line());
+  serve();
+  LineClient viewer(server_->port());
+  EXPECT_TRUE(ask(viewer, call("system.ping")).contains("result"));
+  std::vector<std::unique_ptr<LineClient>> silent;
+  for (int i = 0; i < 4; ++i) silent.push_back(std::make_unique<LineClient>(server_->port()));
+  LineClient controller(server_->port());
+  EXPECT_EQ(ask(controller, call("session.login", {{"token", operating}}))["result"]["role"], "operate");
+  EXPECT_TRUE(silent.front()->closes()) << "the oldest gives way";
 }
 
 TEST_F(AGuardedRpcServer, LogsInWhileTheWorkerIsBusy) {
