@@ -56,6 +56,7 @@ struct Front {
   const Dispatcher dispatcher{methods(), services};
   const HttpGate gate{{"fvd.example"}};
   WrongTokens wrong_tokens;
+  RefusedCalls refused_calls;
 };
 
 /// The client's end of a connection whose other end is a session in the same thread.
@@ -67,9 +68,11 @@ class Connection {
               front.services.access,
               front.gate,
               front.wrong_tokens,
+              front.refused_calls,
               worker_,
               worker_,
-              [this](const std::shared_ptr<HttpSession>&) { closed_ = true; }} {
+              [this](const std::shared_ptr<HttpSession>&) { closed_ = true; },
+              [] { return true; }} {
     std::array<int, 2> ends{};
     demand(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) == 0);
     own_ = ends[0];
