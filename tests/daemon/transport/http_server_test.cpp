@@ -17,6 +17,7 @@
 #include "tests/daemon/api/fake_job_service.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/http_client.hpp"
+#include "tests/support/rpc_text.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -25,9 +26,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-std::string call(const std::string& method, const json& params = json::object(), int id = 1) {
-  return json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}}.dump();
-}
+using test::call;
 
 HttpConfig on_port(int port) {
   HttpConfig config;

@@ -11,6 +11,7 @@
 #include "gtest/gtest.h"
 #include "tests/daemon/api/fake_job_service.hpp"
 #include "tests/support/line_client.hpp"
+#include "tests/support/rpc_text.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -18,9 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string call(const std::string& method, const json& params = json::object(), int id = 1) {
-  return json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}}.dump();
-}
+using test::call;
 
 class AGuardedRpcServer : public testing::Test {
  protected:

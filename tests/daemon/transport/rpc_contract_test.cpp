@@ -14,6 +14,7 @@
 #include "daemon/transport/rpc_server.hpp"
 #include "tests/daemon/api/fake_job_service.hpp"
 #include "tests/support/line_client.hpp"
+#include "tests/support/rpc_text.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -23,7 +24,6 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 
-const std::string kPing = R"({"jsonrpc":"2.0","id":1,"method":"system.ping"})";
 const std::string kWait = R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})";
 
 /// As a client encodes the text that keeps it in two bytes a character.
@@ -51,7 +51,9 @@ class CountedMachine final : public MachineView {
     ++looks;
     return service_.snapshot();
   }
-  void on_change(std::function<void()> listener) override { service_.on_change(std::move(listener)); }
+  void on_change(std::function<void()> listener, const void* whose) override {
+    service_.on_change(std::move(listener), whose);
+  }
   mutable std::atomic<int> looks{0};
 
  private:
@@ -126,7 +128,7 @@ TEST_F(AtItsSocket, AnswersBehindARequestThatNeedsTheDiskWhileItWaits) {
   wait_for_a_job(client);
   client.send(R"({"jsonrpc":"2.0","id":3,"method":"result.next"})"
               "\n" +
-              kPing + "\n");
+              test::kPing + "\n");
   const auto first = client.line();
   ASSERT_TRUE(first.has_value());
   EXPECT_EQ(json::parse(*first)["id"], 1);
@@ -181,20 +183,20 @@ TEST_F(AtItsSocket, SaysAtTheEndThatItStopsWhereTheDiskIsStuck) {
 TEST_F(AtItsSocket, KeepsAConnectionThatSendsEmptyLines) {
   serve(2);
   LineClient client(server_->port());
-  ASSERT_THAT(client.ask(kPing), HasSubstr("result"));
+  ASSERT_THAT(client.ask(test::kPing), HasSubstr("result"));
   const auto until = std::chrono::steady_clock::now() + milliseconds(2500);
   while (std::chrono::steady_clock::now() < until) {
     client.send("\n");
     EXPECT_FALSE(client.line(milliseconds(20)).has_value()) << "an empty line has no answer";
   }
-  EXPECT_THAT(client.ask(kPing), HasSubstr("result"));
+  EXPECT_THAT(client.ask(test::kPing), HasSubstr("result"));
 }
 
 TEST_F(AtItsSocket, NamesUtf16) {
   serve();
   for (const bool little_endian : {true, false}) {
-    EXPECT_THAT(refusal_of(utf16(kPing + "\r\n", little_endian)), HasSubstr("UTF-16"));
-    EXPECT_THAT(refusal_of((little_endian ? "\xff\xfe" : "\xfe\xff") + utf16(kPing + "\n", little_endian)),
+    EXPECT_THAT(refusal_of(utf16(test::kPing + "\r\n", little_endian)), HasSubstr("UTF-16"));
+    EXPECT_THAT(refusal_of((little_endian ? "\xff\xfe" : "\xfe\xff") + utf16(test::kPing + "\n", little_endian)),
                 HasSubstr("UTF-16"));
   }
 }
@@ -203,13 +205,13 @@ TEST_F(AtItsSocket, NamesLengthsBeforeTheText) {
   serve();
   for (const int bytes : {2, 4}) {
     for (const bool little_endian : {true, false}) {
-      EXPECT_THAT(refusal_of(with_length(kPing, bytes, little_endian)), HasSubstr("a length stands before"))
+      EXPECT_THAT(refusal_of(with_length(test::kPing, bytes, little_endian)), HasSubstr("a length stands before"))
           << bytes << little_endian;
     }
   }
-  EXPECT_THAT(refusal_of("47" + kPing), HasSubstr("a length stands before"));
-  EXPECT_THAT(refusal_of("0047\r\n" + kPing), HasSubstr("a length stands before"));
-  EXPECT_THAT(refusal_of("Content-Length: 47\r\n\r\n" + kPing), HasSubstr("a length stands before"));
+  EXPECT_THAT(refusal_of("47" + test::kPing), HasSubstr("a length stands before"));
+  EXPECT_THAT(refusal_of("0047\r\n" + test::kPing), HasSubstr("a length stands before"));
+  EXPECT_THAT(refusal_of("Content-Length: 47\r\n\r\n" + test::kPing), HasSubstr("a length stands before"));
   EXPECT_EQ(service_.starts, 0);
 }
 
@@ -223,7 +225,7 @@ TEST_F(AtItsSocket, NamesAMissingEnd) {
   closing.finish_sending();
   EXPECT_THAT(last_words(closing), HasSubstr("no end of line"));
   LineClient half(server_->port());
-  half.send(kPing.substr(0, 20));
+  half.send(test::kPing.substr(0, 20));
   half.finish_sending();
   EXPECT_THAT(last_words(half), HasSubstr("within a line"));
   EXPECT_EQ(service_.starts, 0) << "none of them is executed";
@@ -232,8 +234,8 @@ TEST_F(AtItsSocket, NamesAMissingEnd) {
 TEST_F(AtItsSocket, IsPatientWithTheEndOfAKnownClientsLine) {
   serve(60, 1);
   LineClient client(server_->port());
-  ASSERT_THAT(client.ask(kPing), HasSubstr("result"));
-  client.send(kPing);
+  ASSERT_THAT(client.ask(test::kPing), HasSubstr("result"));
+  client.send(test::kPing);
   EXPECT_FALSE(client.line(milliseconds(1000)).has_value()) << "networks repeat what they lose";
   EXPECT_THAT(client.ask(""), HasSubstr("result"));
 }
@@ -243,7 +245,7 @@ TEST_F(AtItsSocket, NamesAMissingEndAlsoWhileTheMachineChanges) {
   LineClient other(server_->port());
   wait_for_a_job(other);
   LineClient client(server_->port());
-  client.send(kPing);
+  client.send(test::kPing);
   std::optional<std::string> line;
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (!line && std::chrono::steady_clock::now() < until) {

@@ -10,6 +10,7 @@
 #include "gtest/gtest.h"
 #include "tests/daemon/api/fake_job_service.hpp"
 #include "tests/support/line_client.hpp"
+#include "tests/support/rpc_text.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -18,7 +19,6 @@ namespace {
 using nlohmann::json;
 using std::chrono::milliseconds;
 
-const std::string kPing = R"({"jsonrpc":"2.0","id":1,"method":"system.ping"})";
 /// Which the network thread cannot answer.
 const std::string kLatest = R"({"jsonrpc":"2.0","id":1,"method":"job.latest"})";
 
@@ -37,7 +37,7 @@ class AnRpcServer : public testing::Test {
     service_.access.emplace(with.access);
     server_ = std::make_unique<RpcServer>(with, runtime_.path(), service_.services());
   }
-  static bool answers(LineClient& client) { return client.ask(kPing).find("\"result\"") != std::string::npos; }
+  static bool answers(LineClient& client) { return client.ask(test::kPing).find("\"result\"") != std::string::npos; }
 
   test::ScratchDir runtime_;
   FakeJobService service_;
@@ -62,11 +62,11 @@ TEST_F(AnRpcServer, TakesEveryTerminatorAndLinesInPieces) {
   serve(config());
   LineClient client(server_->port());
   for (const std::string& end : {std::string("\n"), std::string("\r\n"), std::string("\r"), std::string(1, '\0')}) {
-    client.send(kPing.substr(0, 10));
-    client.send(kPing.substr(10) + end);
+    client.send(test::kPing.substr(0, 10));
+    client.send(test::kPing.substr(10) + end);
     EXPECT_TRUE(client.line().has_value()) << "terminator " << static_cast<int>(end[0]);
   }
-  client.send("\n\r\n  \n" + kPing + "\n" + kPing + "\n");
+  client.send("\n\r\n  \n" + test::kPing + "\n" + test::kPing + "\n");
   EXPECT_TRUE(client.line().has_value());
   EXPECT_TRUE(client.line().has_value());
 }
@@ -135,7 +135,7 @@ TEST_F(AnRpcServer, SurvivesClientsThatVanish) {
   serve(config());
   for (int i = 0; i < 20; ++i) {
     LineClient client(server_->port());
-    client.send(i % 2 == 0 ? kPing + "\n" : R"({"jsonrpc":"2.0","id":1,"met)");
+    client.send(i % 2 == 0 ? test::kPing + "\n" : R"({"jsonrpc":"2.0","id":1,"met)");
   }
   // Those that are gone no longer count, once the server has noticed.
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
@@ -200,7 +200,8 @@ TEST_F(AnRpcServer, AnswersPingsWhileAnotherClientsStartIsOnTheDisk) {
   serve(config());
   LineClient starter(server_->port());
   LineClient other(server_->port());
-  starter.send(R"({"jsonrpc":"2.0","id":2,"method":"job.start","params":[5,"p"]})" + std::string("\n") + kPing + "\n");
+  starter.send(R"({"jsonrpc":"2.0","id":2,"method":"job.start","params":[5,"p"]})" + std::string("\n") + test::kPing +
+               "\n");
   begun.get_future().wait();
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(answers(other));
   EXPECT_EQ(json::parse(other.ask(R"({"jsonrpc":"2.0","id":1,"method":"system.state"})"))["result"]["state"], "ready");
