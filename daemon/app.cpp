@@ -1,9 +1,11 @@
 #include "daemon/app.hpp"
 
 #include <chrono>
+#include <string>
 
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/jobs/reconcile_results.hpp"
 
 namespace fvd {
@@ -11,11 +13,10 @@ namespace fvd {
 namespace {
 
 std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
-  std::error_code error;
-  std::filesystem::create_directories(paths.state_dir / "results", error);
-  if (error) {
-    throw Error(ErrorCode::kStorageWrite, "cannot make " + (paths.state_dir / "results").string() + ": " +
-                                              error.message() + "; see /paths/state_dir");
+  try {
+    (void)make_directories(paths.state_dir / "results");
+  } catch (const Error& failure) {
+    throw Error(failure.code(), std::string(failure.what()) + "; see /paths/state_dir");
   }
   return paths.state_dir;
 }
@@ -35,6 +36,7 @@ App::App(const Config& config, bool start_anew)
              {std::chrono::seconds(config_.rpc.repeat_window_s), start_anew}),
       engine_(config_, {with_cleared_results(store_, config_.paths), clock_, openers_of(config_)}),
       rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {
+  if (config_.http.port) http_.emplace(config_.http, engine_.services());
   const MetricsConfig& metrics = config_.metrics;
   if (metrics.port) metrics_.emplace(metrics.address, *metrics.port, engine_.services().machine);
   // No device is touched by a program that cannot have its ports: another fvd may be measuring with them.

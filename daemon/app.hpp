@@ -10,6 +10,7 @@
 #include "daemon/jobs/engine.hpp"
 #include "daemon/metrics/metrics_server.hpp"
 #include "daemon/store/job_store.hpp"
+#include "daemon/transport/http_server.hpp"
 #include "daemon/transport/rpc_server.hpp"
 
 namespace fvd {
@@ -28,6 +29,8 @@ class App {
 
   /// TCP port on which clients connect.
   [[nodiscard]] int rpc_port() const { return rpc_.port(); }
+  /// That of POST /api/jsonrpc; nothing if there is none.
+  [[nodiscard]] std::optional<int> http_port() const { return http_ ? std::optional(http_->port()) : std::nullopt; }
   /// That of /metrics and /healthz; nothing if there is none.
   [[nodiscard]] std::optional<int> metrics_port() const {
     return metrics_ ? std::optional(metrics_->port()) : std::nullopt;
@@ -40,6 +43,7 @@ class App {
   JobStore store_;
   Engine engine_;
   RpcServer rpc_;
+  std::optional<HttpServer> http_;
   std::optional<MetricsServer> metrics_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kReloadable[] = {"/log/level"};
+constexpr const char* kReloadable[] = {"/log/level", "/store/keep_days", "/store/keep_gib", "/store/keep_free_gib"};
 
 bool is_reloadable(const std::string& pointer) {
   return std::find(std::begin(kReloadable), std::end(kReloadable), pointer) != std::end(kReloadable);
@@ -35,8 +35,11 @@ Reload plan_reload(const Config& running, const LoadedConfig& wanted) {
       continue;
     }
     const json::json_pointer place(pointer);
-    reload.changes.push_back(pointer + ": " + before[place].get<std::string>() + " -> " +
-                             after[place].get<std::string>());
+    const auto text = [&place](const json& config) {
+      const json& value = config[place];
+      return value.is_string() ? value.get<std::string>() : value.dump();
+    };
+    reload.changes.push_back(pointer + ": " + text(before) + " -> " + text(after));
   }
   if (!needs_start.empty()) {
     reload.refusal = "changed keys that only a restart takes: " + needs_start;

@@ -15,7 +15,8 @@ struct Reload {
 };
 
 /// All or nothing: one problem, or one changed key that only a start can take, refuses the whole of it. Taken while
-/// the daemon runs is /log/level; recipes are read anew whenever one is asked for.
+/// the daemon runs are /log/level and what is kept of results (/store); recipes and the file of tokens are read anew
+/// whenever one is asked for.
 [[nodiscard]] Reload plan_reload(const Config& running, const LoadedConfig& wanted);
 
 }  // namespace fvd

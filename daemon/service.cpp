@@ -57,6 +57,9 @@ bool ends(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
 std::optional<std::string> why_no_ports(const Config& config) {
   if (auto reason = why_no_port(config.rpc.address, config.rpc.port)) return reason;
+  if (config.http.port) {
+    if (auto reason = why_no_port(config.http.address, *config.http.port)) return reason;
+  }
   return config.metrics.port ? why_no_port(config.metrics.address, *config.metrics.port) : std::nullopt;
 }
 
@@ -76,7 +79,7 @@ bool await_ports(const Config& config, const ServiceSignals& signals) {
   return true;
 }
 
-void reload(const Options& options, Config& config, const std::string& status) {
+void reload(const Options& options, Config& config, App& app, const std::string& status) {
   notify_reloading();
   const LoadedConfig wanted = load_config(options.config_file, options.overrides);
   const Reload plan = plan_reload(config, wanted);
@@ -88,17 +91,19 @@ void reload(const Options& options, Config& config, const std::string& status) {
   if (plan.changes.empty()) spdlog::info("the configuration was read again: nothing differs");
   config = wanted.config;
   spdlog::set_level(spdlog::level::from_str(config.log.level));
+  app.engine().take(config.store);
   notify_ready(status);
 }
 
 /// Feeds the watchdog and reloads until a signal to end comes, which it returns.
-int await_end(const Options& options, Config& config, const ServiceSignals& signals, const std::string& status) {
+int await_end(const Options& options, Config& config, App& app, const ServiceSignals& signals,
+              const std::string& status) {
   ServiceWatchdog watchdog;
   for (;;) {
     watchdog.look(HostClock::now());
     const int signal = signals.within(ServiceWatchdog::interval());
     if (ends(signal)) return signal;
-    if (signal == SIGHUP) reload(options, config, status);
+    if (signal == SIGHUP) reload(options, config, app, status);
   }
 }
 
@@ -118,10 +123,11 @@ int serve(const Options& options, Config config) {
   if (!await_ports(config, signals)) return exit_code::kOk;
   App app(config, options.new_database);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
+  if (const auto port = app.http_port()) spdlog::info("HTTP on {}:{}", config.http.address, *port);
   if (const auto port = app.metrics_port()) spdlog::info("metrics on {}:{}", config.metrics.address, *port);
   const std::string status = "listening on port " + std::to_string(app.rpc_port());
   notify_ready(status);
-  spdlog::info("signal {}: stopping", await_end(options, config, signals, status));
+  spdlog::info("signal {}: stopping", await_end(options, config, app, signals, status));
   process_ends();
   notify_stopping();
   return thread_failed ? exit_code::kInternal : exit_code::kOk;

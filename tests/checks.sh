@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What a compiler that is not g++, a formatter, an analyser and the sanitizers say. Last line: one JSON object of counts.
 # usage: tests/checks.sh [--all] [PART ...]
-#   parts   format clang tidy layers sizes threads headers sanitized (default: all of them)
+#   parts   format clang tidy layers sizes threads writes headers sanitized (default: all of them)
 #   --all   clang-tidy over everything, not over what changed since the version was set
 # A count of a part that was not asked for is null. Known findings, which may not grow: tests/checks_known.txt.
 # FVD_CHECKS_JOBS: how many compilers at once (default 2).
@@ -13,12 +13,12 @@ for word in "$@"; do
   case $word in
     --all) options+=(--all) ;;
     sanitized) sanitized=1 ;;
-    format | clang | tidy | layers | sizes | threads | headers) parts+=("$word") ;;
-    *) fvd_say "checks.sh: no part $word; parts: format clang tidy layers sizes threads headers sanitized"; exit 64 ;;
+    format | clang | tidy | layers | sizes | threads | writes | headers) parts+=("$word") ;;
+    *) fvd_say "checks.sh: no part $word; parts: format clang tidy layers sizes threads writes headers sanitized"; exit 64 ;;
   esac
 done
 if [ ${#parts[@]} -eq 0 ] && [ -z "$sanitized" ]; then
-  parts=(format layers sizes threads headers clang tidy)
+  parts=(format layers sizes threads writes headers clang tidy)
   sanitized=1
 fi
 
@@ -31,7 +31,7 @@ run_sanitized() {
   local build=${FVD_SANITIZED_BUILD_DIR:-$FVD_ROOT/build-sanitized} begun=$SECONDS log
   # By clang, which is faster than g++ here and whose warnings are errors in it; line numbers only, and no optimisation of
   # what runs once: half the time.
-  (FVD_BUILD=$build FVD_CXX=clang++-14 FVD_SANITIZE=address,undefined FVD_FLAGS="-O1 -g1" FVD_TEST_FLAGS=-O0 fvd_build unit_and_sim_tests)
+  (FVD_BUILD=$build FVD_CXX=clang++-14 FVD_SANITIZE=address,undefined FVD_UNITY=ON FVD_FLAGS="-O1 -g1" FVD_TEST_FLAGS=-O0 fvd_build unit_and_sim_tests)
   fvd_say "sanitized: built in $((SECONDS - begun)) s"
   begun=$SECONDS
   log=$build/sanitized.log

@@ -54,6 +54,7 @@ constexpr std::array kNames{
     NamedCode{kCalibrationMissing, "calibration_missing"},
     NamedCode{kObjectiveMismatch, "objective_mismatch"},
     NamedCode{kStudyRefused, "study_refused"},
+    NamedCode{kResultRemoved, "result_removed"},
 };
 static_assert(kNames.size() == static_cast<std::size_t>(kLastErrorCode) + 1);
 

@@ -48,9 +48,10 @@ enum class ErrorCode {
   kRegionOutside,       ///< what an evaluation looks at does not lie in the field of view
   kCalibrationMissing,  ///< an evaluation or a study needs constants that there are none of
   kObjectiveMismatch,   ///< the recipe's objective is not the one that was confirmed
-  kStudyRefused,        ///< the jobs of a study do not make one; the last: see kLastErrorCode
+  kStudyRefused,        ///< the jobs of a study do not make one
+  kResultRemoved,       ///< the job's result was removed to make room; the last: see kLastErrorCode
 };
-inline constexpr ErrorCode kLastErrorCode = ErrorCode::kStudyRefused;
+inline constexpr ErrorCode kLastErrorCode = ErrorCode::kResultRemoved;
 
 /// The stable name of a code, e.g. "camera_disconnected".
 [[nodiscard]] std::string_view error_name(ErrorCode code) noexcept;

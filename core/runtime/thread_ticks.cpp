@@ -22,7 +22,7 @@ struct Registry {
 }  // namespace
 
 ThreadTicks::ThreadTicks(std::string name, std::chrono::milliseconds allowed)
-    : name_(std::move(name)), allowed_(allowed) {
+    : name_(std::move(name)), longest_(allowed) {
   Registry& registry = Registry::instance();
   const MutexLock lock(registry.mutex);
   registry.threads.push_back(this);

@@ -22,19 +22,25 @@ class ThreadTicks {
   ThreadTicks(const ThreadTicks&) = delete;
   ThreadTicks& operator=(const ThreadTicks&) = delete;
 
-  void tick(HostTime now) noexcept { last_ = now; }
+  void tick(HostTime now) noexcept { tick(now, longest_); }
+  /// Before a step that may take longer, or must not take as long: until the next tick `allowed` holds.
+  void tick(HostTime now, std::chrono::milliseconds allowed) noexcept {
+    allowed_ = allowed;
+    last_ = now;
+  }
   void rest() noexcept { last_ = kResting; }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Time since the last tick; 0 while the thread rests.
   [[nodiscard]] HostClock::duration age(HostTime now) const noexcept;
-  [[nodiscard]] std::chrono::milliseconds allowed() const noexcept { return allowed_; }
+  [[nodiscard]] std::chrono::milliseconds allowed() const noexcept { return allowed_.load(); }
 
  private:
   static constexpr HostTime kResting = HostTime::min();
 
   const std::string name_;
-  const std::chrono::milliseconds allowed_;
+  const std::chrono::milliseconds longest_;
+  std::atomic<std::chrono::milliseconds> allowed_{longest_};
   std::atomic<HostTime> last_{kResting};
 };
 

@@ -1,6 +1,7 @@
 #include "core/runtime/worker_pool.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <stop_token>
 #include <thread>
@@ -8,10 +9,14 @@
 
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 
 namespace fvd {
 
 namespace {
+
+/// Of one index; the longest are whole exporters.
+constexpr std::chrono::minutes kLongestIndex{10};
 
 /// One call of run(), in the frame of its caller. Everything is guarded by the pool's mutex.
 struct Loop {
@@ -36,11 +41,12 @@ struct WorkerPool::Impl {
   std::vector<std::jthread> threads;             // last: they use everything above
 
   /// Runs a loop's indices until none is left; lets go of the mutex for each.
-  void work(Loop& loop) FVD_REQUIRES(mutex) {
+  void work(Loop& loop, ThreadTicks* ticks) FVD_REQUIRES(mutex) {
     while (loop.has_more()) {
       const int index = loop.next++;
       ++loop.running;
       mutex.unlock();
+      if (ticks != nullptr) ticks->tick(HostClock::now());
       std::exception_ptr thrown;
       try {
         loop.body(index);
@@ -71,12 +77,16 @@ struct WorkerPool::Impl {
   }
 
   void serve(std::stop_token stop) {
+    ThreadTicks ticks("fvd-worker", kLongestIndex);
     MutexLock lock(mutex);
     const auto due = [this] {
       mutex.assert_held();
       return loop_with_more() != nullptr;
     };
-    while (work_arrived.wait(lock, stop, due)) work(*loop_with_more());
+    while (work_arrived.wait(lock, stop, due)) {
+      work(*loop_with_more(), &ticks);
+      ticks.rest();
+    }
   }
 };
 
@@ -96,7 +106,7 @@ void WorkerPool::run(int count, const std::function<void(int)>& body) {
   Loop loop{body, count, impl_->newest};
   impl_->newest = &loop;
   if (count > 1) impl_->work_arrived.notify_all();
-  impl_->work(loop);
+  impl_->work(loop, nullptr);  // the caller has ticks of its own
   impl_->work_done.wait(lock, [this, &loop] {
     impl_->mutex.assert_held();
     return loop.is_done();

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/api/caller.hpp"
+#include "daemon/api/reply_form.hpp"
 #include "daemon/jobs/device_task.hpp"
 
 namespace fvd {
@@ -18,8 +19,9 @@ namespace fvd {
 struct Call {
   const Caller& caller;
   const std::string& method;
-  const nlohmann::json& params;  ///< an object, checked against the method's description
-  bool may_wait = false;         ///< the reply may come later: not in a batch, not without an id
+  const nlohmann::json& params;    ///< an object, checked against the method's description
+  bool may_wait = false;           ///< the reply may come later: not in a batch, not without an id
+  std::size_t envelope_bytes = 0;  ///< of the reply around its result, with the end of the line
 };
 
 /// The result.
@@ -29,6 +31,7 @@ using Reply = nlohmann::ordered_json;
 struct JobWait {
   std::string job_id;
   bool until_acquired = false;
+  ReplyForm form{};
 };
 
 /// The reply comes later.

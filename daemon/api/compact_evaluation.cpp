@@ -1,10 +1,10 @@
 #include "daemon/api/compact_evaluation.hpp"
 
-#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
 
+#include "daemon/api/reply_form.hpp"
 #include "daemon/api/result_fields.hpp"
 #include "daemon/result/evaluation_result.hpp"
 
@@ -14,14 +14,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Of a reply around its result: the version, an id of 20 digits, braces and the end of the line.
-constexpr std::size_t kEnvelope_bytes = 64;
-/// As many digits as any length, share or angle is sure of.
-constexpr double kDecimals = 1e4;
-
 ordered_json number_of(const ordered_json& value, const char* key) {
   if (!value.contains(key)) return nullptr;
-  return std::round(value[key].get<double>() * kDecimals) / kDecimals;
+  return rounded_figure(value[key].get<double>());
 }
 
 ordered_json triple_of(const ordered_json& measurement) {
@@ -50,7 +45,7 @@ std::set<int> codes_of(const ordered_json& evaluation) {
 
 }  // namespace
 
-void add_compact_evaluation(const ordered_json& evaluation, ordered_json& compact) {
+void add_compact_evaluation(const ordered_json& evaluation, std::size_t room, ordered_json& compact) {
   compact["v"] = evaluation.contains("verdict") ? evaluation["verdict"] : ordered_json(nullptr);
   compact["m"] = ordered_json::array();
   compact["more"] = 0;
@@ -61,7 +56,7 @@ void add_compact_evaluation(const ordered_json& evaluation, ordered_json& compac
     ordered_json longer = compact;
     longer["m"].push_back(triple_of(evaluation["measurements"][name.get<std::string>()]));
     longer["more"] = left - 1;
-    if (longer.dump().size() + kEnvelope_bytes > kCompactEvaluation_bytes) break;
+    if (written_bytes(longer) > room) break;
     compact = std::move(longer);
     --left;
   }

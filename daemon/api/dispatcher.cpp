@@ -37,7 +37,7 @@ json usable_id(const json& request) {
 std::optional<std::string> fault_of(const json& request) {
   if (!request.is_object()) return "a request is an object";
   if (const auto id = request.find("id"); id != request.end() && !is_valid_id(*id)) {
-    return "id must be null, a text of at most 64 bytes, or an integer of at most 2^53-1";
+    return "id must be null, a text of at most 64 bytes as JSON writes it, or an integer of at most 2^53-1";
   }
   const auto version = request.find("jsonrpc");
   if (version == request.end() || *version != "2.0") return "jsonrpc must be \"2.0\"";
@@ -114,7 +114,9 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
   const auto document = parse_strict_json(line, problems, JsonComments::kRefused);
   if (!document) {
     const std::string why = "parse error: " + shortened_parse_error(problems.front().message);
-    return Handled{.reply = reply_line(failure_reply(nullptr, json_rpc::kParseError, why)), .is_parse_error = true};
+    ordered_json refusal = failure_reply(nullptr, json_rpc::kParseError, why);
+    fit_error(refusal);
+    return Handled{.reply = reply_line(refusal), .is_parse_error = true};
   }
   Outcome answer = document->is_array() ? handle_batch(*document, caller, may_block)
                                         : handle_request(*document, caller, {may_block, false});
@@ -127,17 +129,28 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
   return handled;
 }
 
-std::optional<Handled> Dispatcher::try_urgent(std::string_view line, const Caller& caller) const {
+std::optional<Handled> Dispatcher::try_overtake(std::string_view line, const Caller& caller, Behind behind) const {
+  const Method* method = method_of(line);
+  if (method == nullptr || !method->peek) return std::nullopt;
+  if (behind == Behind::kWork && !method->about.is_urgent) return std::nullopt;
+  // Who may not yet may log in with a line before it: then it keeps its turn.
+  if (!may_call(caller, method->about)) return std::nullopt;
+  return handle_line(line, caller, false);
+}
+
+bool Dispatcher::is_log_in(std::string_view line) const {
+  const Method* method = method_of(line);
+  return method != nullptr && method->about.is_log_in;
+}
+
+const Method* Dispatcher::method_of(std::string_view line) const {
   Problems ignored;  // told when its turn comes
   const auto document = parse_strict_json(line, ignored, JsonComments::kRefused);
-  if (!document || !document->is_object()) return std::nullopt;
+  if (!document || !document->is_object()) return nullptr;
   const auto name = document->find("method");
-  if (name == document->end() || !name->is_string()) return std::nullopt;
+  if (name == document->end() || !name->is_string()) return nullptr;
   const auto method = methods_.find(name->get<std::string>());
-  if (method == methods_.end() || !method->second.about.is_urgent) return std::nullopt;
-  // Who may not yet may log in with a line before it: then it keeps its turn.
-  if (!may_call(caller, method->second.about)) return std::nullopt;
-  return handle_line(line, caller, false);
+  return method == methods_.end() ? nullptr : &method->second;
 }
 
 Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& caller, bool may_block) const {
@@ -160,6 +173,11 @@ Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& ca
   return outcome;
 }
 
+bool Dispatcher::is_brief(const json& request) const {
+  const auto method = methods_.find(request["method"].get_ref<const std::string&>());
+  return method == methods_.end() || method->second.about.is_brief;
+}
+
 Dispatcher::Outcome Dispatcher::handle_request(const json& request, const Caller& caller, Mode mode) const {
   const json id = usable_id(request);
   if (const auto fault = fault_of(request)) return {failure_reply(id, json_rpc::kInvalidRequest, *fault)};
@@ -178,6 +196,7 @@ Dispatcher::Outcome Dispatcher::handle_request(const json& request, const Caller
                                  {{"error", "internal"}});
   }
   if (is_notification) answer.reply.reset();
+  if (answer.reply && answer.reply->contains("error") && is_brief(request)) fit_error(*answer.reply);
   return answer;
 }
 
@@ -203,7 +222,8 @@ void Dispatcher::run_method(const json& request, const json& id, Caller caller, 
   const LogScope scope({.caller = caller.name});
   // Whoever has no role is accepted once he has said who he is.
   outcome.is_accepted = method.about.role > Role::kNone;
-  auto answer = answer_of(method, {caller, name, params, !mode.in_batch && !is_notification}, mode.may_block);
+  auto answer =
+      answer_of(method, {caller, name, params, !mode.in_batch && !is_notification, envelope_bytes(id)}, mode.may_block);
   if (!answer) {
     outcome.would_block = true;
   } else if (auto* deferred = std::get_if<Deferred>(&*answer)) {
@@ -232,7 +252,10 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
       throw Error(ErrorCode::kAborted, call.method + " waited, and stage.stop came meanwhile; nothing was moved");
     }
     auto answer = method.run(call);
-    note(method, call, "ok");
+    const auto* const later = std::get_if<Deferred>(&answer);
+    const auto* const task = later != nullptr ? std::get_if<std::shared_ptr<DeviceTask>>(&later->awaited) : nullptr;
+    note(method, call, task != nullptr ? "accepted" : "ok");
+    if (task != nullptr && method.about.is_audited) note_outcome_of(**task, call);
     return answer;
   } catch (const AccessError& error) {
     spdlog::warn("{} was refused to {}: {}", call.method, text_of(call.caller), error.what());
@@ -250,24 +273,36 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
 
 void Dispatcher::note(const Method& method, const Call& call, std::string_view outcome) const {
   const MethodDescription& about = method.about;
-  if (outcome == "ok" && (about.needs_id || about.is_audited)) {
+  if ((outcome == "ok" || outcome == "accepted") && (about.needs_id || about.is_audited)) {
     spdlog::info("{} for {}", call.method, text_of(call.caller));
   }
-  if (!about.is_audited) return;
+  if (about.is_audited) services_.audit.note(audit_entry(call, outcome));
+}
+
+void Dispatcher::note_outcome_of(DeviceTask& task, const Call& call) const {
+  // A row of its own: by then the caller, and who he was, may have changed.
+  task.note_outcome([entry = audit_entry(call, {}), &audit = services_.audit](const DeviceTask::Outcome& outcome) {
+    AuditEntry ended = entry;
+    ended.outcome = outcome.error ? std::string(error_name(*outcome.error)) : "ok";
+    audit.note(std::move(ended));
+  });
+}
+
+AuditEntry Dispatcher::audit_entry(const Call& call, std::string_view outcome) {
   json params = call.params;
   if (params.contains("text")) params["text"] = "...";  // a whole document
   std::string detail = params.dump(-1, ' ', true, json::error_handler_t::replace);
   if (detail.size() > kLongestDetail_bytes) detail = detail.substr(0, kLongestDetail_bytes - 3) + "...";
   const Caller& caller = call.caller;
-  services_.audit.note({0,
-                        {},
-                        caller.who.name,
-                        std::string(role_name(caller.who.role)),
-                        caller.peer,
-                        caller.name,
-                        call.method,
-                        std::move(detail),
-                        std::string(outcome)});
+  return {0,
+          {},
+          caller.who.name,
+          std::string(role_name(caller.who.role)),
+          caller.peer,
+          caller.name,
+          call.method,
+          std::move(detail),
+          std::string(outcome)};
 }
 
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {
@@ -283,7 +318,9 @@ bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {
 std::optional<std::string> Dispatcher::resume(const WaitingRequest& waiting, bool timed_out) const {
   const auto refused = [&](ErrorCode code, const std::string& message) {
     const auto state = scan_state_name(services_.machine.snapshot()->state);
-    return reply_line(failure_reply(waiting.id, code, message, state));
+    ordered_json reply = failure_reply(waiting.id, code, message, state);
+    if (std::holds_alternative<JobWait>(waiting.until.awaited)) fit_error(reply);
+    return reply_line(reply);
   };
   try {
     if (const auto* task = std::get_if<std::shared_ptr<DeviceTask>>(&waiting.until.awaited)) {
@@ -296,12 +333,18 @@ std::optional<std::string> Dispatcher::resume(const WaitingRequest& waiting, boo
     const auto& wait = std::get<JobWait>(waiting.until.awaited);
     const JobStatus job = services_.jobs.job(wait.job_id);
     if (!timed_out && !has_come(job, wait.until_acquired)) return std::nullopt;
-    return reply_line(success_reply(waiting.id, job_status_json(job)));
+    return reply_line(success_reply(waiting.id, job_status_reply(job, wait.form, envelope_bytes(waiting.id))));
   } catch (const Error& error) {
     return refused(error.code(), error.what());
   } catch (const std::exception& error) {
     return refused(ErrorCode::kInternal, error.what());
   }
+}
+
+std::string Dispatcher::ended(const WaitingRequest& waiting) const {
+  return reply_line(failure_reply(waiting.id, ErrorCode::kShuttingDown,
+                                  "the daemon stops; what was waited for is told when it is back",
+                                  scan_state_name(services_.machine.snapshot()->state)));
 }
 
 std::string Dispatcher::too_long() {
@@ -314,6 +357,10 @@ std::string Dispatcher::foreign_protocol() {
   return reply_line(
       failure_reply(nullptr, json_rpc::kInvalidRequest,
                     "this port takes JSON-RPC, one JSON text a line, no HTTP and no TLS; the connection is closed"));
+}
+
+std::string Dispatcher::mistaken(std::string_view mistake) {
+  return reply_line(failure_reply(nullptr, json_rpc::kParseError, std::string(mistake) + "; the connection is closed"));
 }
 
 std::string Dispatcher::no_json() {

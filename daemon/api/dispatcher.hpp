@@ -45,8 +45,14 @@ class Dispatcher {
   /// line has to go to handle().
   [[nodiscard]] std::optional<Handled> try_handle(std::string_view line, const Caller& caller) const;
 
-  /// The same for a line with a single urgent request that may overtake others.
-  [[nodiscard]] std::optional<Handled> try_urgent(std::string_view line, const Caller& caller) const;
+  /// What a line stands behind on its connection.
+  enum class Behind { kWork, kWait };
+  /// The same for a line with a single request that may overtake what is open: an urgent one always, any that
+  /// try_handle() answers while the open one waits for a job or the devices.
+  [[nodiscard]] std::optional<Handled> try_overtake(std::string_view line, const Caller& caller, Behind behind) const;
+
+  /// True for a line with a single request that only says who the caller is: nobody waits behind slow calls for that.
+  [[nodiscard]] bool is_log_in(std::string_view line) const;
 
   /// Every method with its description.
   [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
@@ -56,10 +62,15 @@ class Dispatcher {
   /// False if the machine's snapshot shows that resume() would return nothing. Never blocks.
   [[nodiscard]] bool may_have_come(const WaitingRequest& waiting) const;
 
+  /// The answer to a waiting request when the daemon ends.
+  [[nodiscard]] std::string ended(const WaitingRequest& waiting) const;
+
   /// The reply to a line that is too long to be read.
   [[nodiscard]] static std::string too_long();
   /// The reply to a line of another protocol.
   [[nodiscard]] static std::string foreign_protocol();
+  /// The reply to what is no line of JSON text because of a mistake that can be named.
+  [[nodiscard]] static std::string mistaken(std::string_view mistake);
   /// The reply to the last of too many lines that are no JSON.
   [[nodiscard]] static std::string no_json();
   /// The reply to a connection from where nobody may do anything.
@@ -85,13 +96,20 @@ class Dispatcher {
     bool would_block = false;  ///< nothing was executed: handle() has to take the line
   };
 
+  /// Of a line with a single request; null for any other.
+  [[nodiscard]] const Method* method_of(std::string_view line) const;
   [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;
   [[nodiscard]] Outcome handle_request(const Json& request, const Caller& caller, Mode mode) const;
   [[nodiscard]] Outcome handle_batch(const Json& batch, const Caller& caller, bool may_block) const;
   void run_method(const Json& request, const Json& id, Caller caller, Mode mode, Outcome& outcome) const;
+  /// True for requests whose error replies are short: of methods that a PLC polls, and of none.
+  [[nodiscard]] bool is_brief(const Json& request) const;
   /// The method's answer; nothing if it would block and may not. Notes who asked and what came of it.
   [[nodiscard]] std::optional<Answer> answer_of(const Method& method, const Call& call, bool may_block) const;
   void note(const Method& method, const Call& call, std::string_view outcome) const;
+  /// Another row once the task has ended.
+  void note_outcome_of(DeviceTask& task, const Call& call) const;
+  [[nodiscard]] static AuditEntry audit_entry(const Call& call, std::string_view outcome);
 
   Services services_;
   const MethodTable methods_;

@@ -61,6 +61,8 @@ std::string_view request_meaning(ErrorCode code) noexcept {
       return "the daemon stops: ask again when it is back";
     case ErrorCode::kRecipeConflict:
       return "the recipe was changed meanwhile: get it anew and put the change into that";
+    case ErrorCode::kResultRemoved:
+      return "the result was removed to make room, as the group store says: job.status tells what the job came to";
     default:
       return {};
   }

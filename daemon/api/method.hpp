@@ -27,8 +27,11 @@ struct MethodDescription {
   bool needs_control = false;       ///< refused while another has control of the instrument
   /// Overtakes what the same connection asked for before, if peek answers it: nothing holds a stop back.
   bool is_urgent = false;
+  bool is_log_in = false;   ///< says who the caller is: waits for no other call
   bool is_audited = false;  ///< who asked for it is written down
-  bool needs_id = false;    ///< refused as a notification: somebody has to know what became of it
+  /// Every reply has a form of at most kCompactReply_bytes, and every error reply has: a PLC polls it.
+  bool is_brief = false;
+  bool needs_id = false;  ///< refused as a notification: somebody has to know what became of it
 };
 
 /// context: peek and run on any thread.

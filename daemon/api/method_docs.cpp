@@ -1,11 +1,15 @@
 #include "daemon/api/method_docs.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <sstream>
 #include <string_view>
 
 #include "config/field_writer.hpp"
 #include "daemon/api/error_meanings.hpp"
+#include "daemon/api/line_contract.hpp"
+#include "daemon/api/result_fields.hpp"
 #include "daemon/api/rpc_errors.hpp"
 #include "daemon/base/version.hpp"
 
@@ -23,11 +27,37 @@ ordered_json schema_of(const DescribeFields& describe) {
   return schema;
 }
 
-/// A result has no ranges worth telling, and no defaults.
+/// The end of a key that says its unit; longer ends first.
+struct UnitOfKey {
+  std::string_view end;
+  std::string_view unit;
+};
+constexpr std::array kUnits{
+    UnitOfKey{"_um_per_s", "um/s"}, UnitOfKey{"_um", "um"},      UnitOfKey{"_us", "us"},
+    UnitOfKey{"_ms", "ms"},         UnitOfKey{"_s", "s"},        UnitOfKey{"_px", "px"},
+    UnitOfKey{"_db", "dB"},         UnitOfKey{"_bytes", "byte"}, UnitOfKey{"_c", "degree Celsius"},
+    UnitOfKey{"_percent", "%"},     UnitOfKey{"_fraction", "1"}, UnitOfKey{"progress", "1"},
+    UnitOfKey{"_utc", "ISO 8601"},
+};
+
+void add_unit(const std::string& name, ordered_json& property) {
+  const auto unit = std::find_if(kUnits.begin(), kUnits.end(), [&name](const UnitOfKey& known) {
+    return name.size() >= known.end.size() && name.ends_with(known.end);
+  });
+  if (unit != kUnits.end()) property["x-unit"] = unit->unit;
+}
+
+/// A result has no defaults, and a range only where it is one that a client can use.
 ordered_json result_schema(const DescribeFields& describe) {
+  constexpr double kNoRange = 9.1e15;
   ordered_json schema = schema_of(describe);
   for (auto& [name, property] : schema["properties"].items()) {
-    for (const char* key : {"minimum", "maximum", "maxLength", "default"}) property.erase(key);
+    property.erase("default");
+    for (const char* key : {"minimum", "maximum"}) {
+      if (property.contains(key) && std::abs(property[key].get<double>()) > kNoRange) property.erase(key);
+    }
+    if (property.value("maxLength", std::size_t{0}) == kUnlimited_bytes) property.erase("maxLength");
+    add_unit(name, property);
   }
   return schema;
 }
@@ -44,6 +74,7 @@ ordered_json params_json(const DescribeFields& describe) {
   for (const auto& [name, property] : schema["properties"].items()) {
     ordered_json own = property;
     own.erase("description");
+    add_unit(name, own);
     params.push_back({{"name", name},
                       {"description", property.value("description", "")},
                       {"required", is_required(schema, name)},
@@ -55,7 +86,10 @@ ordered_json params_json(const DescribeFields& describe) {
 ordered_json errors_json(const MethodDescription& about) {
   ordered_json errors = ordered_json::array();
   for (const ErrorCode code : about.errors) {
-    errors.push_back({{"code", rpc_error(code).code}, {"message", error_name(code)}});
+    errors.push_back({{"code", rpc_error(code).code},
+                      {"message", error_name(code)},
+                      {"x-retry", rpc_error(code).retry},
+                      {"x-meaning", error_meaning(code)}});
   }
   return errors;
 }
@@ -138,13 +172,15 @@ void write_params(const MethodTable& methods, std::ostream& out) {
   }
 }
 
-void write_errors(std::ostream& out) {
-  struct Row {
-    std::string name;
-    bool retry;
-    std::string_view meaning;
-  };
-  std::map<int, Row> errors;
+struct ErrorRow {
+  std::string name;
+  bool retry = false;
+  std::string_view meaning;
+};
+
+/// Every error that a call may meet, but JSON-RPC's own.
+std::map<int, ErrorRow> all_errors() {
+  std::map<int, ErrorRow> errors;
   for (const AccessCode code : {AccessCode::kNotAllowed, AccessCode::kNoControl}) {
     const RpcError wire = rpc_error(code);
     errors[wire.code] = {std::string(error_name(code)), wire.retry, error_meaning(code)};
@@ -154,8 +190,25 @@ void write_errors(std::ostream& out) {
     const RpcError wire = rpc_error(code);
     errors[wire.code] = {std::string(error_name(code)), wire.retry, error_meaning(code)};
   }
+  return errors;
+}
+
+ordered_json all_errors_json() {
+  ordered_json list = ordered_json::array();
+  for (const int code :
+       {json_rpc::kParseError, json_rpc::kInvalidRequest, json_rpc::kMethodNotFound, json_rpc::kInvalidParams}) {
+    list.push_back(
+        {{"code", code}, {"name", json_rpc::name_of(code)}, {"retry", false}, {"meaning", "of JSON-RPC 2.0"}});
+  }
+  for (const auto& [code, error] : all_errors()) {
+    list.push_back({{"code", code}, {"name", error.name}, {"retry", error.retry}, {"meaning", error.meaning}});
+  }
+  return list;
+}
+
+void write_errors(std::ostream& out) {
   out << "| code | error | may succeed later | meaning, what to do |\n|---|---|---|---|\n";
-  for (const auto& [code, error] : errors) {
+  for (const auto& [code, error] : all_errors()) {
     out << "| " << code << " | " << error.name << " | " << (error.retry ? "yes" : "") << " | " << error.meaning
         << " |\n";
   }
@@ -179,9 +232,14 @@ ordered_json openrpc_document(const MethodTable& methods) {
                          {"x-needs-control", about.needs_control},
                          {"x-urgent", about.is_urgent},
                          {"x-audited", about.is_audited},
-                         {"x-needs-id", about.needs_id}});
+                         {"x-needs-id", about.needs_id},
+                         {"x-brief", about.is_brief}});
   }
-  return {{"openrpc", "1.2.6"}, {"info", {{"title", "fvd"}, {"version", kVersion}}}, {"methods", described}};
+  return {{"openrpc", "1.2.6"},
+          {"info", {{"title", "fvd"}, {"version", kVersion}}},
+          {"methods", described},
+          {"x-errors", all_errors_json()},
+          {"x-line", line_contract_json()}};
 }
 
 std::string methods_markdown(const MethodTable& methods) {
@@ -191,6 +249,7 @@ std::string methods_markdown(const MethodTable& methods) {
   write_params(methods, out);
   out << '\n';
   write_errors(out);
+  out << '\n' << line_contract_markdown();
   return out.str();
 }
 

@@ -16,6 +16,11 @@ std::string shortened_foreign_text(const std::string& text) {
 
 std::string quoted(const std::string& text) { return "'" + shortened_foreign_text(text) + "'"; }
 
+std::size_t envelope_bytes(const json& id) {
+  const std::string around = reply_line(success_reply(id, ordered_json::object()));
+  return around.size() - 1;  // the end of the line in place of {}
+}
+
 ordered_json success_reply(const json& id, ordered_json result) {
   return {{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}};
 }
@@ -44,7 +49,7 @@ std::string reply_line(const ordered_json& reply) {
 
 bool is_valid_id(const json& id) {
   if (id.is_null()) return true;
-  if (id.is_string()) return id.get_ref<const std::string&>().size() <= kMaxForeignText_bytes;
+  if (id.is_string()) return reply_line(id).size() <= kMaxForeignText_bytes + 2;
   return exact_integer(id).has_value();
 }
 

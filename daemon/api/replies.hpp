@@ -26,6 +26,8 @@ inline constexpr std::size_t kMaxForeignText_bytes = 64;
 /// The same in single quotes.
 [[nodiscard]] std::string quoted(const std::string& text);
 
+/// Of a success reply around its result, with the end of the line.
+[[nodiscard]] std::size_t envelope_bytes(const nlohmann::json& id);
 [[nodiscard]] nlohmann::ordered_json success_reply(const nlohmann::json& id, nlohmann::ordered_json result);
 [[nodiscard]] nlohmann::ordered_json failure_reply(const nlohmann::json& id, int code, const std::string& message,
                                                    nlohmann::ordered_json data = nullptr);
@@ -39,7 +41,8 @@ inline constexpr std::size_t kMaxForeignText_bytes = 64;
 /// One line without terminator, ASCII.
 [[nodiscard]] std::string reply_line(const nlohmann::ordered_json& reply);
 
-/// True for what is answered as it came: null, a text of at most 64 bytes, a whole number within +-(2^53-1).
+/// True for what is answered as it came: null, a text of at most 64 bytes as a reply writes it, a whole number within
+/// +-(2^53-1).
 [[nodiscard]] bool is_valid_id(const nlohmann::json& id);
 
 }  // namespace fvd

@@ -1,14 +1,11 @@
 #include "daemon/api/result_fields.hpp"
 
-#include <cstddef>
-#include <limits>
-#include <string>
+#include "daemon/api/reply_form.hpp"
 
 namespace fvd {
 
 namespace {
 
-constexpr std::size_t kUnlimited_bytes = 1U << 24U;
 constexpr NumberRange kAnyNumber{-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
 
 }  // namespace
@@ -24,24 +21,38 @@ void ResultFields::add(std::string_view name, Presence presence, Add add) const 
   }
 }
 
-void ResultFields::text(std::string_view name, std::string_view meaning, Presence presence) const {
+void ResultFields::text(std::string_view name, std::size_t max_bytes, std::string_view meaning,
+                        Presence presence) const {
   add(name, presence, [&](Fields& fields) {
     std::string none;
-    fields.text(name, none, kUnlimited_bytes, meaning);
+    fields.text(name, none, max_bytes, meaning);
   });
 }
 
-void ResultFields::integer(std::string_view name, std::string_view meaning, Presence presence) const {
+void ResultFields::choice(std::string_view name, const std::vector<std::string>& accepted, std::string_view meaning,
+                          Presence presence) const {
+  add(name, presence, [&](Fields& fields) {
+    std::string none = accepted.front();
+    fields.choice(name, none, accepted, meaning);
+  });
+}
+
+void ResultFields::integer(std::string_view name, IntegerRange range, std::string_view meaning,
+                           Presence presence) const {
   add(name, presence, [&](Fields& fields) {
     std::int64_t none = 0;
-    fields.integer64(name, none, {}, meaning);
+    fields.integer64(name, none, range, meaning);
   });
 }
 
 void ResultFields::number(std::string_view name, std::string_view meaning, Presence presence) const {
+  number(name, kAnyNumber, meaning, presence);
+}
+
+void ResultFields::number(std::string_view name, NumberRange range, std::string_view meaning, Presence presence) const {
   add(name, presence, [&](Fields& fields) {
     double none = 0.0;
-    fields.number(name, none, kAnyNumber, meaning);
+    fields.number(name, none, range, meaning);
   });
 }
 
@@ -57,6 +68,11 @@ void ResultFields::any(std::string_view name, std::string_view meaning, Presence
     std::string none;
     fields.any(name, none, kUnlimited_bytes, meaning);
   });
+}
+
+void describe_left_out(const ResultFields& result) {
+  result.integer(kLeftOutKey, kAnyCount, "so many values did not fit into the reply and are left out; absent = none",
+                 Presence::kSometimes);
 }
 
 }  // namespace fvd

@@ -30,6 +30,7 @@ constexpr std::array kCodes{
     CodeOnWire{kBadConfig, {1015, false}},
     CodeOnWire{kBadInput, {1016, false}},
     CodeOnWire{kRecipeConflict, {1017, false}},
+    CodeOnWire{kResultRemoved, {1018, false}},
     CodeOnWire{kCameraDisconnected, {1101, true}},
     CodeOnWire{kCameraFramesLost, {1102, true}},
     CodeOnWire{kCameraTimeout, {1103, true}},

@@ -36,7 +36,7 @@ bool copy_result(const fs::path& from, const fs::path& to) {
       copy_durably(from, to);
       return true;
     } catch (const Error& failure) {
-      fs::remove_all(to, error);
+      file_calls().remove_all(to);
       const bool is_there = fs::is_directory(from, error);
       if (is_there && (again || failure.code() != ErrorCode::kBadInput)) throw;
     }
@@ -70,9 +70,9 @@ std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs
     throw Error(ErrorCode::kBadInput, final_dir.string() + " exists already: give another name, or move it away");
   }
   const fs::path temporary = final_dir.string() + ".tmp";
-  fs::create_directories(final_dir.parent_path(), error);
-  if (!fs::create_directory(temporary, error)) {
-    if (error) throw storage_error(error.value(), "create directory", temporary);
+  (void)make_directories(final_dir.parent_path());
+  if (file_calls().make_directory(temporary) != 0) {
+    if (errno != EEXIST) throw storage_error(errno, "create directory", temporary);
     throw Error(ErrorCode::kBadInput, temporary.string() +
                                           " exists: another backup is being made, or one was cut off: give another "
                                           "name, or remove it");
@@ -81,10 +81,15 @@ std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs
     std::vector<std::string> missing = copy_all(instrument, temporary, with_results);
     sync_directory(temporary);
     if (file_calls().rename_to_new(temporary, final_dir) != 0) throw storage_error(errno, "rename to", final_dir);
-    sync_directory(final_dir.parent_path());
+    try {
+      sync_directory(final_dir.parent_path());
+    } catch (...) {
+      if (file_calls().rename(final_dir, temporary) != 0) file_calls().remove_all(final_dir);
+      throw;
+    }
     return missing;
   } catch (...) {
-    fs::remove_all(temporary, error);
+    file_calls().remove_all(temporary);
     throw;
   }
 }

@@ -10,6 +10,7 @@
 
 #include "core/base/error.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 
 namespace fvd {
@@ -32,19 +33,14 @@ void copy_bytes(const fs::path& from, const fs::path& to) {
     if (!source.eof()) throw Error(ErrorCode::kBadInput, "cannot read all of " + from.string());
   });
   // A file of tokens stays as readable as it was.
-  fs::permissions(to, fs::status(from).permissions());
+  const auto mode = static_cast<mode_t>(fs::status(from).permissions());
+  if (file_calls().set_mode(to, mode) != 0) throw storage_error(errno, "set the permissions of", to);
   give_to_owner_of(from, to);
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw storage_error(error.value(), "create directory", folder);
 }
 
 void copy_below(const fs::path& from, const fs::path& to) {
   if (!fs::is_directory(from)) return copy_bytes(from, to);
-  make_folder(to);
+  (void)make_directories(to);
   for (const auto& entry : fs::directory_iterator(from)) {
     if (entry.path().filename().string().starts_with('.')) continue;
     copy_below(entry.path(), to / entry.path().filename());
@@ -57,7 +53,7 @@ void copy_below(const fs::path& from, const fs::path& to) {
 void copy_durably(const fs::path& from, const fs::path& to) {
   try {
     if (from.empty() || !fs::exists(from)) return;
-    make_folder(fs::absolute(to).parent_path());
+    (void)make_directories(fs::absolute(to).parent_path());
     copy_below(from, to);
     sync_directory(fs::absolute(to).parent_path());
   } catch (const fs::filesystem_error& failure) {
@@ -69,7 +65,7 @@ void give_to_owner_of(const fs::path& like, const fs::path& path) {
   struct stat owner {};
   if (::geteuid() != 0 || ::stat(like.c_str(), &owner) != 0) return;
   const auto give = [&owner](const fs::path& one) {
-    if (::lchown(one.c_str(), owner.st_uid, owner.st_gid) != 0) throw storage_error(errno, "give away", one);
+    if (file_calls().set_owner(one, owner.st_uid, owner.st_gid) != 0) throw storage_error(errno, "give away", one);
   };
   std::error_code error;
   if (!fs::exists(path, error)) return;

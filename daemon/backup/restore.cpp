@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <system_error>
 
 #include "core/base/error.hpp"
 #include "daemon/backup/copied_files.hpp"
 #include "daemon/backup/state_files.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 #include "daemon/store/database_copy.hpp"
 #include "daemon/store/migrations.hpp"
@@ -50,8 +53,7 @@ std::optional<Known> known_to_the_replaced(const Database& database) {
 /// The backup's database as this version reads it, with the results where they are here.
 Known prepare_database(const fs::path& from, const fs::path& copy, const fs::path& results) {
   for (const char* log : {"-wal", "-shm"}) {  // of a restoration that was cut off
-    std::error_code ignored;
-    fs::remove(copy.string() + log, ignored);
+    remove_file(copy.string() + log);
   }
   copy_database(Database(from), copy);
   Database database(copy);
@@ -69,17 +71,44 @@ Known prepare_database(const fs::path& from, const fs::path& copy, const fs::pat
 void move(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::exists(from, error)) return;
-  fs::create_directories(to.parent_path(), error);
-  fs::rename(from, to, error);
-  if (error) throw storage_error(error.value(), "move aside", from);
+  (void)make_directories(to.parent_path());
+  if (file_calls().rename(from, to) != 0) throw storage_error(errno, "move aside", from);
 }
 
-fs::path unused_folder(const fs::path& state) {
-  for (int number = 1;; ++number) {
-    const fs::path folder = state / ("replaced-" + std::to_string(number));
-    std::error_code error;
-    if (!fs::exists(folder, error)) return folder;
+constexpr const char* kReplaced = "replaced-";
+
+/// What restorations have replaced, by number.
+std::map<int, fs::path> replaced_in(const fs::path& state) {
+  const std::string prefix = kReplaced;
+  std::map<int, fs::path> replaced;
+  std::error_code error;
+  for (fs::directory_iterator entry(state, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const std::string digits = name.starts_with(prefix) ? name.substr(prefix.size()) : "";
+    const bool is_number =
+        !digits.empty() && digits.size() < 9 && digits.find_first_not_of("0123456789") == digits.npos;
+    if (is_number) replaced.emplace(std::stoi(digits), entry->path());
   }
+  return replaced;
+}
+
+/// Its number is higher than that of any other.
+fs::path unused_folder(const fs::path& state) {
+  const auto replaced = replaced_in(state);
+  return state / (kReplaced + std::to_string(replaced.empty() ? 1 : replaced.rbegin()->first + 1));
+}
+
+/// Of what restorations have replaced all but the two newest; told. What cannot be removed stays.
+std::vector<fs::path> drop_oldest_replaced(const fs::path& state) {
+  constexpr std::size_t kKept = 2;
+  std::map<int, fs::path> replaced = replaced_in(state);
+  std::error_code error;
+  std::vector<fs::path> dropped;
+  for (auto oldest = replaced.begin(); replaced.size() > kKept; oldest = replaced.erase(oldest)) {
+    file_calls().remove_all(oldest->second);
+    if (!fs::exists(oldest->second, error)) dropped.push_back(oldest->second);
+  }
+  return dropped;
 }
 
 void put_back_where_missing(const fs::path& from, const fs::path& to, std::vector<std::string>& kept) {
@@ -89,7 +118,7 @@ void put_back_where_missing(const fs::path& from, const fs::path& to, std::vecto
     kept.push_back(to.string());
     return;
   }
-  fs::remove(to, error);
+  // An empty folder is filled as it is; it is there, so that nothing else has to give way.
   copy_durably(from, to);
 }
 
@@ -101,9 +130,9 @@ int add_results(const fs::path& from, const fs::path& to) {
     std::error_code ignored;
     if (fs::exists(folder, ignored)) continue;
     const fs::path hidden = to / ("." + entry->path().filename().string() + ".restored.tmp");
-    fs::remove_all(hidden, ignored);
+    file_calls().remove_all(hidden);
     copy_durably(entry->path(), hidden);
-    fs::rename(hidden, folder);
+    if (file_calls().rename(hidden, folder) != 0) throw storage_error(errno, "rename the copy to", folder);
     ++added;
   }
   return added;
@@ -117,7 +146,7 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   }
   const fs::path state = fs::absolute(instrument.state_dir);
   const fs::path file = state / kDatabaseFile;
-  fs::create_directories(state / "results");
+  (void)make_directories(state / "results");
   // Held to the end: no daemon starts meanwhile.
   std::error_code ignored;
   const auto held = fs::exists(file, ignored) ? std::make_unique<Database>(file) : nullptr;
@@ -159,6 +188,7 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   give_to_owner_of(state, marker_file(file));
   give_to_owner_of(state, state / "results");
   if (std::error_code error; fs::exists(aside, error)) restored.replaced = aside;
+  restored.dropped = drop_oldest_replaced(state);
   return restored;
 }
 

@@ -12,8 +12,9 @@
 namespace fvd {
 
 struct Restored {
-  std::int64_t epoch = 0;           ///< the next start has a higher one
-  std::filesystem::path replaced;   ///< where what was there before is now; empty = there was nothing
+  std::int64_t epoch = 0;                        ///< the next start has a higher one
+  std::filesystem::path replaced;                ///< where what was there before is now; empty = there was nothing
+  std::vector<std::filesystem::path> dropped{};  ///< what earlier restorations replaced: the two newest are kept
   bool numbers_are_exact = false;   ///< the replaced database told which numbers were used since the backup
   int results = 0;                  ///< that were added
   std::vector<std::string> kept{};  ///< what was there and was left as it is

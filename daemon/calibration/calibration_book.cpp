@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -14,7 +15,9 @@
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/json_values.hpp"
+#include "daemon/export/storage_error.hpp"
 
 namespace fvd {
 
@@ -91,15 +94,14 @@ std::string checked_text(std::vector<Calibration> versions) {
 }
 
 /// In place of the old file as a whole: a power cut leaves the one or the other. The folder is still to be flushed.
-void replace_file(const fs::path& folder, const std::string& text) {
+void put_in_force(const fs::path& folder, const std::string& text) {
   const fs::path next = folder / (std::string(kFileName) + ".new");
-  std::error_code error;
-  fs::remove(next, error);  // of a process that died while it wrote
+  remove_file(next);  // of a process that died while it wrote
   write_new_file(next, text);
-  fs::rename(next, folder / kFileName, error);
-  if (error) {
-    throw Error(ErrorCode::kStorageWrite, "cannot replace " + (folder / kFileName).string() + ": " + error.message());
-  }
+  if (file_calls().rename(next, folder / kFileName) == 0) return;
+  const int reason = errno;
+  file_calls().unlink(next);
+  throw storage_error(reason, "replace", folder / kFileName);
 }
 
 }  // namespace
@@ -143,16 +145,13 @@ Calibration CalibrationBook::add(const std::string& objective,
   const std::vector<CalibrationFile> files = change(next);
   all.push_back(next);
   const std::string text = checked_text(all);
-  std::error_code error;
-  const bool is_new = fs::create_directories(folder_, error);
-  if (error) throw Error(ErrorCode::kStorageWrite, "cannot make " + folder_.string() + ": " + error.message());
-  if (is_new) sync_directory(fs::absolute(folder_).parent_path());
+  if (make_directories(folder_)) sync_directory(fs::absolute(folder_).parent_path());
   for (const CalibrationFile& file : files) {
     assert(file.name.starts_with(next.id) && file.name.find('/') == std::string::npos);
-    fs::remove(folder_ / file.name, error);  // of a version that never came to be
+    remove_file(folder_ / file.name);  // of a version that never came to be
     write_new_file(folder_ / file.name, file.bytes);
   }
-  replace_file(folder_, text);
+  put_in_force(folder_, text);
   // From here on the file has the version: its number must not be given again, whatever comes of the flush.
   keep(next);
   sync_directory(folder_);

@@ -16,7 +16,7 @@ namespace fvd {
 struct RpcConfig {
   std::string address = "127.0.0.1";  ///< numeric address to listen on
   int port = 7411;                    ///< 0..65535, 0 = any free port, written to <runtime_dir>/rpc.json
-  int max_connections = 16;           ///< 1..1000
+  int max_connections = 16;           ///< 2..1000
   int idle_timeout_s = 120;           ///< 1..86400; a connection that sends nothing for this long is closed
   int repeat_window_s = 600;          ///< 1..31536000; a number is repeated as long as its job ended no longer ago
   int fifo_results = 1000;            ///< 1..1000000; more results that wait are told as an overrun
@@ -39,6 +39,21 @@ struct ComputeConfig {
 
 struct LogConfig {
   std::string level = "info";  ///< trace, debug, info, warn, error
+};
+
+struct HttpHost {
+  std::string name;  ///< as in the URL, without scheme and port
+
+  bool operator==(const HttpHost&) const = default;
+};
+
+/// For clients that speak HTTP: web pages, other programs.
+struct HttpConfig {
+  std::string address = "127.0.0.1";  ///< numeric address to listen on
+  std::optional<int> port;            ///< 0..65535, 0 = any free port; absent = no HTTP
+  std::vector<HttpHost> hosts;        ///< names by which clients may call it, beside its addresses and localhost
+
+  bool operator==(const HttpConfig&) const = default;
 };
 
 /// What is removed to make room: of acknowledged results alone, the oldest first, recorded slices before the rest.
@@ -78,6 +93,7 @@ struct TemperatureConfig {
 /// With a block for each kind of device.
 struct Config : DeviceConfigs {
   RpcConfig rpc;
+  HttpConfig http;
   PathsConfig paths;
   ComputeConfig compute;
   LogConfig log;

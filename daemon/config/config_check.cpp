@@ -27,6 +27,15 @@ std::string text(double value) {
   return out.str();
 }
 
+/// While the socket is made its name is longer by one.
+constexpr std::size_t kLongestSocketPath = sizeof sockaddr_un::sun_path - 2;
+
+bool is_host_name(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-';
+  });
+}
+
 /// Empty if the folder can be listed.
 std::string folder_problem(const fs::path& folder) {
   std::error_code error;
@@ -41,6 +50,7 @@ class ConfigCheck {
 
   Problems run() {
     check_rpc(config_.rpc);
+    check_http(config_.http);
     check_listener("/metrics/address", config_.metrics.address);
     for (Problem& problem : check_devices(config_, read_)) report_if(true, problem.pointer, {}, problem.message);
     check_travel(config_.stage);
@@ -85,10 +95,28 @@ class ConfigCheck {
     check_allowed(rpc.access);
     check_tokens(rpc.access);
     const fs::path socket = rpc.socket.empty() ? config_.paths.runtime_dir / "fvd.sock" : rpc.socket;
-    report_if(socket.string().size() >= sizeof sockaddr_un::sun_path,
-              rpc.socket.empty() ? "/paths/runtime_dir" : "/rpc/socket", {},
+    report_if(socket.string().size() > kLongestSocketPath, rpc.socket.empty() ? "/paths/runtime_dir" : "/rpc/socket",
+              {},
               "'" + socket.string() + "' is too long for a socket, which may have " +
-                  std::to_string(sizeof sockaddr_un::sun_path - 1) + " characters; give a shorter /rpc/socket");
+                  std::to_string(kLongestSocketPath) + " characters; give a shorter /rpc/socket");
+  }
+
+  void check_http(const HttpConfig& http) {
+    check_listener("/http/address", http.address);
+    const auto address = address_bytes(http.address);
+    report_if(http.port && address && !is_loopback(*address) && config_.rpc.access.token_file.empty(), "/http/address",
+              {"/http/port", "/rpc/token_file"},
+              "'" + http.address +
+                  "' is reached from the network, where a token alone says who somebody is; give /rpc/token_file, or "
+                  "listen on 127.0.0.1");
+    report_if(http.port.value_or(0) != 0 && http.port == config_.rpc.port && http.address == config_.rpc.address,
+              "/http/port", {"/rpc/port", "/http/address", "/rpc/address"},
+              std::to_string(config_.rpc.port) + " is /rpc/port, which speaks no HTTP; give another");
+    for (std::size_t i = 0; i < http.hosts.size(); ++i) {
+      report_if(
+          !is_host_name(http.hosts[i].name), "/http/hosts/" + std::to_string(i) + "/name", {},
+          "'" + http.hosts[i].name + "' is no name; expected e.g. fvd.line3.example, without scheme, port and path");
+    }
   }
 
   void check_allowed(const AccessConfig& access) {

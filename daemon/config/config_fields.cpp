@@ -49,7 +49,7 @@ void describe(AccessConfig& access, Fields& fields) {
 void describe(RpcConfig& rpc, Fields& fields) {
   fields.text("address", rpc.address, kMaxName, "numeric IPv4 or IPv6 address to listen on");
   fields.integer("port", rpc.port, {0, 65535}, "TCP port; 0 = any free one, written to <runtime_dir>/rpc.json");
-  fields.integer("max_connections", rpc.max_connections, {1, 1000},
+  fields.integer("max_connections", rpc.max_connections, {2, 1000},
                  "one more gets an error line and is closed; one is kept for who has control");
   fields.integer("idle_timeout_s", rpc.idle_timeout_s, {1, 86400}, "a connection silent for so long is closed");
   fields.integer("repeat_window_s", rpc.repeat_window_s, {1, 31536000},
@@ -60,6 +60,20 @@ void describe(RpcConfig& rpc, Fields& fields) {
                  "a connection that has made no valid request by then is closed");
   path(fields, "socket", rpc.socket, "unix socket for programs of this machine; empty = <runtime_dir>/fvd.sock");
   describe(rpc.access, fields);
+}
+
+void describe(HttpConfig& http, Fields& fields) {
+  fields.text("address", http.address, kMaxName, "numeric IPv4 or IPv6 address to listen on");
+  fields.optional("port", http.port, [](Fields& in, int& port) {
+    in.integer("port", port, {0, 65535}, "TCP port of POST /api/jsonrpc; 0 = any free one; absent = none");
+  });
+  fields.list(
+      "hosts", http.hosts, {0, 20},
+      "names by which clients may call it, as that of a reverse proxy; localhost and its own addresses need none",
+      [](Fields& in, HttpHost& host) {
+        in.text("name", host.name, kMaxName, "as in the URL, without scheme and port");
+        in.require("name");
+      });
 }
 
 void describe(PathsConfig& paths, Fields& fields) {
@@ -120,6 +134,8 @@ void describe(MetricsConfig& metrics, Fields& fields) {
 
 void describe(Config& config, Fields& fields) {
   fields.group("rpc", "where clients connect", [&](Fields& in) { describe(config.rpc, in); });
+  fields.group("http", "JSON-RPC by HTTP for pages and other programs; without a token a caller may look at most",
+               [&](Fields& in) { describe(config.http, in); });
   describe(static_cast<DeviceConfigs&>(config), fields);
   fields.group("paths", "folders", [&](Fields& in) { describe(config.paths, in); });
   fields.group("compute", "resources of the computation", [&](Fields& in) { describe(config.compute, in); });

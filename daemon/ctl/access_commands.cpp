@@ -78,7 +78,7 @@ void log_in(RpcClient& client, const std::filesystem::path& token_file) {
     throw Error(ErrorCode::kBadInput, "cannot read a token from " + token_file.string());
   }
   while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) token.pop_back();
-  (void)client.call("session.login", {{"token", token}});
+  client.log_in(token);
 }
 
 void add_access_commands(CLI::App& app, AccessArguments& a, const std::function<RpcClient()>& connect,

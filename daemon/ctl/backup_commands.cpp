@@ -49,6 +49,10 @@ int restore(const BackupArguments& arguments, const Terminal& terminal) {
   terminal.out << "restored; the next epoch is " << restored.epoch + 1 << ", " << restored.results
                << " results were added\n";
   if (!restored.replaced.empty()) terminal.out << "what was there before is in " << restored.replaced.string() << "\n";
+  for (const fs::path& dropped : restored.dropped) {
+    terminal.out << dropped.string()
+                 << ", which an earlier restoration replaced, is removed: the newest two are kept\n";
+  }
   for (const std::string& kept : restored.kept) {
     terminal.out << kept << " is there and stays as it is; the backup's is in " << folder.string() << "\n";
   }

@@ -10,6 +10,7 @@ int exit_code(ErrorCode code) noexcept {
     case ErrorCode::kUnknownRecipe:
     case ErrorCode::kRecipeConflict:
     case ErrorCode::kUnknownJob:
+    case ErrorCode::kResultRemoved:
     case ErrorCode::kBadSlice:
     case ErrorCode::kMemoryBudget:
     case ErrorCode::kStageLimit:
@@ -59,6 +60,7 @@ int exit_code_of_rpc(int code) noexcept {
     case 1015:    // invalid configuration
     case 1016:    // invalid input
     case 1017:    // recipe changed meanwhile
+    case 1018:    // result removed
     case 1142:    // region outside
     case 1143:    // calibration missing
     case 1144:    // file of a surface

@@ -13,6 +13,7 @@
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/access_commands.hpp"
 #include "daemon/ctl/backup_commands.hpp"
+#include "daemon/ctl/connection.hpp"
 #include "daemon/ctl/device_commands.hpp"
 #include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
@@ -34,12 +35,11 @@ namespace fvd::ctl {
 namespace {
 
 constexpr std::chrono::seconds kCommandTimeout{330};  ///< the daemon gives a command up after 5 minutes
+constexpr int kNotAllowedCode = 1004;
 
 /// The options of all commands; CLI11 fills them.
 struct Arguments {
-  std::string address;
-  std::string runtime_dir = "/run/fvd";
-  std::string token_file;
+  ConnectionArguments connection;
   AccessArguments access;
   std::string job;
   std::string seq = "auto";
@@ -64,13 +64,6 @@ struct Arguments {
   StudyArguments study;
 };
 
-RpcClient connect(const Arguments& arguments) {
-  RpcClient client(arguments.address.empty() ? read_endpoint(arguments.runtime_dir)
-                                             : parse_endpoint(arguments.address));
-  if (!arguments.token_file.empty()) log_in(client, arguments.token_file);
-  return client;
-}
-
 void print(std::ostream& out, const Json& json) {
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
 }
@@ -94,7 +87,7 @@ int report_end(const Json& status, const Terminal& terminal) {
 }
 
 int state(const Arguments& arguments, const Terminal& terminal) {
-  RpcClient client = connect(arguments);
+  RpcClient client = connect(arguments.connection);
   print(terminal.out, client.call("system.state"));
   return kExitOk;
 }
@@ -103,7 +96,7 @@ int start(Arguments& arguments, const Terminal& terminal) {
   if (arguments.seq != "auto") {
     arguments.start.seq = std::stoll(arguments.seq);  // digits only, checked by the parser
   }
-  RpcClient client = connect(arguments);
+  RpcClient client = connect(arguments.connection);
   const Json job = start_job(client, arguments.start, arguments.client);
   print(terminal.out, job);
   if (!arguments.watch) return kExitOk;
@@ -112,21 +105,21 @@ int start(Arguments& arguments, const Terminal& terminal) {
 }
 
 int wait(const Arguments& arguments, const Terminal& terminal) {
-  RpcClient client = connect(arguments);
+  RpcClient client = connect(arguments.connection);
   const Json status = wait_for_job(client, job_key(client, arguments.job, arguments.client));
   print(terminal.out, status);
   return report_end(status, terminal);
 }
 
 int watch(const Arguments& arguments, const Terminal& terminal) {
-  RpcClient client = connect(arguments);
+  RpcClient client = connect(arguments.connection);
   return report_end(
       watch_job(client, job_key(client, arguments.job, arguments.client), terminal.out, terminal.out_is_terminal),
       terminal);
 }
 
 int result(const Arguments& arguments, const Terminal& terminal) {
-  RpcClient client = connect(arguments);
+  RpcClient client = connect(arguments.connection);
   Json params = job_key(client, arguments.job, arguments.client);
   params["format"] = arguments.format;
   const Json reply = client.call("result.get", params);
@@ -139,7 +132,7 @@ int result(const Arguments& arguments, const Terminal& terminal) {
 }
 
 int evaluate(const Arguments& arguments, const Terminal& terminal) {
-  RpcClient client = connect(arguments);
+  RpcClient client = connect(arguments.connection);
   Json params = job_key(client, arguments.job, arguments.client);
   params["recipe"] = arguments.start.recipe;
   const Json reply = client.call("result.evaluate", params, kCommandTimeout);
@@ -153,7 +146,7 @@ int rpc(const Arguments& arguments, const Terminal& terminal) {
   if (!params.is_object() && !params.is_array()) {
     throw Error(ErrorCode::kBadInput, "'" + arguments.params + "' is not a JSON object or array");
   }
-  RpcClient client = connect(arguments);
+  RpcClient client = connect(arguments.connection);
   print(terminal.out, client.call(arguments.method, params, kCommandTimeout));
   return kExitOk;
 }
@@ -247,16 +240,16 @@ void add_command_groups(CLI::App& app, Arguments& a, const Terminal& terminal, C
   add_device_commands(app, a.devices, terminal, chosen);
   add_setup_command(app, a.setup, terminal, chosen);
   add_recipe_commands(
-      app, a.recipe, [&a] { return connect(a); }, terminal, chosen);
+      app, a.recipe, [&a] { return connect(a.connection); }, terminal, chosen);
   add_study_commands(
-      app, a.study, [&a] { return connect(a); }, a.client, terminal, chosen);
+      app, a.study, [&a] { return connect(a.connection); }, a.client, terminal, chosen);
 
   add_backup_commands(app, a.backup, terminal, chosen);
   add_objective_commands(
-      app, a.objective, [&a] { return connect(a); }, terminal, chosen);
+      app, a.objective, [&a] { return connect(a.connection); }, terminal, chosen);
 
   add_access_commands(
-      app, a.access, [&a] { return connect(a); }, terminal, chosen);
+      app, a.access, [&a] { return connect(a.connection); }, terminal, chosen);
 }
 
 void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command& chosen) {
@@ -286,10 +279,9 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
 
   sub = command("result", "print the result of a job", [&] { return result(a, terminal); });
   sub->add_option("job", a.job, job_help);
-  sub->add_option(
-         "--format", a.format,
-         "compact: at most 512 bytes, 440 with an evaluation; full: at most 2560 bytes, and the warnings; complete: "
-         "result.json")
+  sub->add_option("--format", a.format,
+                  "compact: at most 440 bytes; full: at most 1400 bytes, and the warnings; complete: "
+                  "result.json")
       ->check(CLI::IsMember({"compact", "full", "complete"}))
       ->capture_default_str();
 
@@ -353,11 +345,14 @@ int run(std::vector<std::string> arguments, const Terminal& terminal) {
   CLI::App app("fvdctl: client of the focus-variation daemon fvd", "fvdctl");
   app.set_version_flag("--version", std::string("fvdctl ") + kVersion);
   app.require_subcommand(1);
-  CLI::Option* address = app.add_option("--address", values.address, "host:port of the daemon");
-  app.add_option("--runtime-dir", values.runtime_dir, "where the daemon's rpc.json tells its socket and its port")
+  CLI::Option* address = app.add_option("--address", values.connection.address,
+                                        "host:port of the daemon, or http://host:port of its HTTP");
+  app.add_option("--runtime-dir", values.connection.runtime_dir,
+                 "where the daemon's rpc.json tells its socket and its port")
       ->excludes(address)
       ->capture_default_str();
-  app.add_option("--token-file", values.token_file, "say who calls by the token in this file");
+  app.add_option("--token-file", values.connection.token_file, "say who calls by the token in this file")
+      ->envname("FVD_TOKEN_FILE");
   app.add_option("--client", values.client, "whose sequence numbers are meant; a plain PLC is plc")
       ->capture_default_str();
   add_commands(app, values, terminal, chosen);
@@ -368,7 +363,12 @@ int run(std::vector<std::string> arguments, const Terminal& terminal) {
     if (const std::string unknown = unknown_command(app); !unknown.empty()) return fail(terminal, unknown, kExitUsage);
     return app.exit(error, terminal.out, terminal.err) == 0 ? kExitOk : kExitUsage;
   }
-  return chosen();
+  try {
+    return chosen();
+  } catch (const RpcError& error) {
+    if (error.code() != kNotAllowedCode) throw;
+    throw RpcError(error.code(), error.what() + other_way(values.connection), error.data());
+  }
 }
 
 }  // namespace

@@ -103,8 +103,11 @@ LineSocket::LineSocket(const RpcEndpoint& endpoint, std::chrono::milliseconds ti
 }
 
 void LineSocket::send_line(std::string_view line, std::chrono::milliseconds timeout) {
+  send_bytes(std::string(line) + "\n", timeout);
+}
+
+void LineSocket::send_bytes(std::string_view bytes, std::chrono::milliseconds timeout) {
   const auto deadline = SteadyClock::now() + timeout;
-  const std::string bytes = std::string(line) + "\n";
   std::string_view rest = bytes;
   while (!rest.empty()) {
     const ssize_t sent = ::send(socket_.get(), rest.data(), rest.size(), MSG_NOSIGNAL);
@@ -135,26 +138,31 @@ bool LineSocket::take_line(std::string& line) {
   }
 }
 
-std::string LineSocket::receive_line(std::chrono::milliseconds timeout) {
+std::string LineSocket::receive_some(std::chrono::milliseconds timeout) {
   const auto deadline = SteadyClock::now() + timeout;
-  std::string line;
   char buffer[16384];
-  while (!take_line(line)) {
-    if (received_.size() > kMaxLineBytes) {
-      throw Error(ErrorCode::kBadInput, endpoint_.text() + " sends a reply without end: is it an fvd?");
-    }
+  for (;;) {
     if (!wait_ready(socket_.get(), POLLIN, deadline)) {
       throw Error(ErrorCode::kTimeout,
                   endpoint_.text() + " did not answer within " + std::to_string(timeout.count()) + " ms");
     }
     const ssize_t size = ::recv(socket_.get(), buffer, sizeof buffer, 0);
-    if (size > 0) {
-      received_.append(buffer, static_cast<std::size_t>(size));
-    } else if (size == 0) {
-      throw Error(ErrorCode::kNotReady, endpoint_.text() + " closed the connection before it answered");
-    } else if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
+    if (size > 0) return {buffer, static_cast<std::size_t>(size)};
+    if (size == 0) throw Error(ErrorCode::kNotReady, endpoint_.text() + " closed the connection before it answered");
+    if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
       throw Error(ErrorCode::kNotReady, "receiving from " + endpoint_.text() + " failed: " + errno_text(errno));
     }
+  }
+}
+
+std::string LineSocket::receive_line(std::chrono::milliseconds timeout) {
+  const auto deadline = SteadyClock::now() + timeout;
+  std::string line;
+  while (!take_line(line)) {
+    if (received_.size() > kMaxLineBytes) {
+      throw Error(ErrorCode::kBadInput, endpoint_.text() + " sends a reply without end: is it an fvd?");
+    }
+    received_ += receive_some(std::chrono::ceil<std::chrono::milliseconds>(deadline - SteadyClock::now()));
   }
   return line;
 }

@@ -22,6 +22,15 @@ class LineSocket {
   /// Sends one line; the terminator is added. Throws Error kNotReady (closed), kTimeout.
   void send_line(std::string_view line, std::chrono::milliseconds timeout);
 
+  /// Sends the bytes as they are. Throws as send_line().
+  void send_bytes(std::string_view bytes, std::chrono::milliseconds timeout);
+
+  /// What comes next, at least one byte. Throws as receive_line().
+  [[nodiscard]] std::string receive_some(std::chrono::milliseconds timeout);
+
+  /// The other end, "host:port".
+  [[nodiscard]] std::string peer() const { return endpoint_.text(); }
+
   /// The next line without its LF or CRLF, empty lines skipped. Throws Error kNotReady (closed, also in the middle of a
   /// line), kTimeout, kBadInput for a line over kMaxLineBytes.
   [[nodiscard]] std::string receive_line(std::chrono::milliseconds timeout);

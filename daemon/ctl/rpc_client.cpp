@@ -1,6 +1,7 @@
 #include "daemon/ctl/rpc_client.hpp"
 
 #include "core/base/error.hpp"
+#include "daemon/ctl/http_exchange.hpp"
 
 namespace fvd::ctl {
 
@@ -21,16 +22,25 @@ namespace {
 }  // namespace
 
 RpcClient::RpcClient(const RpcEndpoint& endpoint, std::chrono::milliseconds connect_timeout)
-    : socket_(endpoint, connect_timeout) {}
+    : socket_(endpoint, connect_timeout), is_http_(endpoint.is_http) {}
+
+void RpcClient::log_in(const std::string& token) {
+  if (is_http_) {
+    token_ = token;
+  } else {
+    (void)call("session.login", {{"token", token}});
+  }
+}
 
 Json RpcClient::call(const std::string& method, const Json& params, std::chrono::milliseconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   const int id = ++last_id_;
   const Json request{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}};
-  socket_.send_line(request.dump(-1, ' ', true, Json::error_handler_t::replace), timeout);
+  const std::string text = request.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (!is_http_) socket_.send_line(text, timeout);
   for (;;) {
-    const auto left = deadline - std::chrono::steady_clock::now();
-    const std::string line = socket_.receive_line(std::chrono::ceil<std::chrono::milliseconds>(left));
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const std::string line = is_http_ ? http_exchange(socket_, text, token_, timeout) : socket_.receive_line(left);
     Json reply = Json::parse(line, nullptr, false);
     if (!reply.is_object() || reply.value("jsonrpc", Json()) != "2.0") refuse_reply(line, "is not JSON-RPC 2.0");
     if (reply.contains("method")) continue;  // a notification

@@ -1,6 +1,6 @@
 #pragma once
 
-/// JSON-RPC 2.0 over one connection, one line per message, one request at a time.
+/// JSON-RPC 2.0 over one connection, one request at a time; a message is a line, or a body of HTTP.
 
 #include <chrono>
 #include <stdexcept>
@@ -36,6 +36,9 @@ class RpcClient {
   /// Throws Error kNotReady.
   explicit RpcClient(const RpcEndpoint& endpoint, std::chrono::milliseconds connect_timeout = kConnectTimeout);
 
+  /// Says who calls from now on. Throws as call().
+  void log_in(const std::string& token);
+
   /// Returns the result. params: object or array. Notifications that arrive meanwhile are skipped.
   /// Throws RpcError for an error reply; Error kNotReady, kTimeout; kInternal for a reply that is not JSON-RPC 2.0 or
   /// answers another request.
@@ -44,6 +47,8 @@ class RpcClient {
 
  private:
   LineSocket socket_;
+  bool is_http_;
+  std::string token_;  // that goes with each request of HTTP
   int last_id_ = 0;
 };
 

@@ -16,21 +16,29 @@ std::string RpcEndpoint::text() const {
   return (ipv6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
 
-RpcEndpoint parse_endpoint(std::string_view text) {
-  const auto colon = text.rfind(':');
+RpcEndpoint parse_endpoint(std::string_view whole_text) {
+  constexpr std::string_view kHttp = "http://";
   RpcEndpoint endpoint;
+  endpoint.is_http = whole_text.starts_with(kHttp);
+  std::string_view text = whole_text.substr(endpoint.is_http ? kHttp.size() : 0);
+  if (endpoint.is_http && text.ends_with('/')) text.remove_suffix(1);
+  if (text.starts_with("https://")) {
+    throw Error(ErrorCode::kBadInput, "fvdctl speaks no TLS: give http:// or host:port, through a tunnel if need be");
+  }
+  const auto colon = text.rfind(':');
   if (colon != std::string_view::npos) {
     std::string_view host = text.substr(0, colon);
     if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
     const std::string_view port = text.substr(colon + 1);
     const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
-    const bool whole = error == std::errc() && end == port.data() + port.size();
-    if (whole && !host.empty() && endpoint.port >= 1 && endpoint.port <= 65535) {
+    const bool is_number = error == std::errc() && end == port.data() + port.size();
+    if (is_number && !host.empty() && endpoint.port >= 1 && endpoint.port <= 65535) {
       endpoint.host = host;
       return endpoint;
     }
   }
-  throw Error(ErrorCode::kBadInput, "address '" + std::string(text) + "' is not host:port with a port of 1..65535");
+  throw Error(ErrorCode::kBadInput,
+              "address '" + std::string(whole_text) + "' is not host:port or http://host:port with a port of 1..65535");
 }
 
 RpcEndpoint read_endpoint(const std::filesystem::path& runtime_dir) {

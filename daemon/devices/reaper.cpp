@@ -1,12 +1,21 @@
 #include "daemon/devices/reaper.hpp"
 
+#include <chrono>
 #include <utility>
 
 #include "core/base/clock.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "daemon/devices/left_threads.hpp"
 
 namespace fvd {
+
+namespace {
+
+/// A device that was lost takes its timeouts one after the other.
+constexpr std::chrono::minutes kLongestClosing{5};
+
+}  // namespace
 
 Reaper::Reaper(std::chrono::milliseconds last_wait)
     : last_wait_(last_wait),
@@ -37,7 +46,9 @@ Closed Reaper::enqueue(std::shared_ptr<void> device) {
 }
 
 void Reaper::run(Work& work, const std::stop_token& stop) {
+  ThreadTicks ticks("fvd-reaper", kLongestClosing);
   for (;;) {
+    ticks.rest();
     Burial burial;
     {
       MutexLock lock(work.mutex);
@@ -53,6 +64,7 @@ void Reaper::run(Work& work, const std::stop_token& stop) {
       burial = std::move(work.given_up.front());
       work.given_up.pop_front();
     }
+    ticks.tick(HostClock::now());
     burial.device.reset();
     *burial.closed = true;
   }

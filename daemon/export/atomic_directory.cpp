@@ -91,8 +91,8 @@ void AtomicDirectory::commit() {
   try {
     sync_directory(final_dir_.parent_path());
   } catch (...) {
-    file_calls().remove_all(final_dir_);
-    temporary_.clear();
+    // Under its hidden name again first: a part of it must not be seen.
+    if (file_calls().rename(final_dir_, temporary_) != 0) file_calls().remove_all(final_dir_);
     throw;
   }
   temporary_.clear();
@@ -105,8 +105,8 @@ std::size_t remove_abandoned_directories(const fs::path& parent) {
     const std::string name = entry->path().filename().string();
     std::error_code ignored;
     if (!name.starts_with(".") || !name.ends_with(kTemporarySuffix) || !entry->is_directory(ignored)) continue;
-    const std::uintmax_t gone = fs::remove_all(entry->path(), ignored);
-    if (gone > 0 && gone != static_cast<std::uintmax_t>(-1)) ++removed;
+    file_calls().remove_all(entry->path());
+    if (!fs::exists(entry->path(), ignored)) ++removed;
   }
   return removed;
 }

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/export/storage_error.hpp"
+
 namespace fvd {
 
 namespace {
@@ -28,6 +30,11 @@ int FileCalls::create(const std::filesystem::path& path) {
 }
 
 ssize_t FileCalls::write(int fd, const void* bytes, std::size_t count) { return ::write(fd, bytes, count); }
+
+int FileCalls::allocate(int fd, std::int64_t bytes) {
+  errno = ::posix_fallocate(fd, 0, bytes);
+  return errno == 0 ? 0 : -1;
+}
 
 int FileCalls::sync(int fd) { return ::fsync(fd); }
 
@@ -63,6 +70,12 @@ int FileCalls::rename(const std::filesystem::path& from, const std::filesystem::
 
 int FileCalls::unlink(const std::filesystem::path& path) { return ::unlink(path.c_str()); }
 
+int FileCalls::set_mode(const std::filesystem::path& path, mode_t mode) { return ::chmod(path.c_str(), mode); }
+
+int FileCalls::set_owner(const std::filesystem::path& path, uid_t user, gid_t group) {
+  return ::lchown(path.c_str(), user, group);
+}
+
 void FileCalls::remove_all(const std::filesystem::path& path) noexcept {
   std::error_code ignored;
   std::filesystem::remove_all(path, ignored);
@@ -71,6 +84,21 @@ void FileCalls::remove_all(const std::filesystem::path& path) noexcept {
 FileCalls& file_calls() noexcept {
   FileCalls* const calls = replaced.load();
   return calls != nullptr ? *calls : real_calls();
+}
+
+bool make_directories(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error)) return false;
+  if (folder.has_parent_path() && folder.parent_path() != folder) (void)make_directories(folder.parent_path());
+  if (!folder.has_filename()) return false;  // a trailing slash
+  if (file_calls().make_directory(folder) == 0) return true;
+  const int reason = errno == EEXIST ? ENOTDIR : errno;
+  if (std::filesystem::is_directory(folder, error)) return false;  // made meanwhile
+  throw storage_error(reason, "create directory", folder);
+}
+
+void remove_file(const std::filesystem::path& path) {
+  if (file_calls().unlink(path) != 0 && errno != ENOENT) throw storage_error(errno, "remove", path);
 }
 
 ReplacedFileCalls::ReplacedFileCalls(FileCalls& calls) noexcept { replaced = &calls; }

@@ -16,6 +16,7 @@
 
 #include "core/base/error.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 
 namespace fvd {
@@ -52,7 +53,7 @@ tmsize_t write_bytes(thandle_t handle, void* from, tmsize_t size) {
   DiskFile& file = disk_file(handle);
   const char* bytes = static_cast<const char*>(from);
   for (tmsize_t done = 0; done < size;) {
-    const ssize_t count = ::write(file.fd, bytes + done, static_cast<std::size_t>(size - done));
+    const ssize_t count = file_calls().write(file.fd, bytes + done, static_cast<std::size_t>(size - done));
     if (count >= 0) {
       done += count;
     } else if (errno != EINTR) {

@@ -14,6 +14,7 @@
 #include "core/base/error.hpp"
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "core/runtime/worker_pool.hpp"
 #include "daemon/export/picture_exporters.hpp"
 #include "daemon/export/result_json.hpp"
@@ -209,6 +210,13 @@ bool FirstFiles::is_complete() const noexcept {
                                          [](const ResultFile& file) { return file.state == FileState::kPending; });
 }
 
+namespace {
+
+/// All that a verdict waits for.
+constexpr std::chrono::minutes kLongestFiles{10};
+
+}  // namespace
+
 struct FirstFilesWriter::Impl {
   Impl(AtomicDirectory& directory, const ResultData& data)
       : exporters(divided(chosen_exporters(data.exports))), work(directory, data, &written) {
@@ -229,6 +237,8 @@ struct FirstFilesWriter::Impl {
 FirstFilesWriter::FirstFilesWriter(AtomicDirectory& directory, const ResultData& data)
     : impl_(std::make_unique<Impl>(directory, data)) {
   impl_->thread = start_thread("fvd-files", [impl = impl_.get()](const std::stop_token&) {
+    ThreadTicks ticks("fvd-files", kLongestFiles);
+    ticks.tick(HostClock::now());
     try {
       impl->work.make(impl->exporters.first);
     } catch (...) {

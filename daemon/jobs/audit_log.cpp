@@ -2,19 +2,24 @@
 
 #include <chrono>
 #include <ctime>
+#include <iterator>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 
 namespace fvd {
 
 namespace {
 
 constexpr std::chrono::seconds kRetryPeriod{1};
-constexpr std::chrono::seconds kLongestRead{2};  // that a reader waits for what is not written yet
+constexpr std::chrono::minutes kLongestWrite{2};        // the database's own patience, some times
+constexpr std::chrono::milliseconds kLongestRead{100};  // that a reader waits for what is not written yet
+constexpr std::chrono::minutes kRefusalsPeriod{1};
+constexpr std::size_t kMostRefused = 200;  // identities that are counted side by side
 
 std::string now_utc() {
   using namespace std::chrono;
@@ -38,22 +43,58 @@ AuditLog::~AuditLog() {
   thread_.request_stop();
   thread_.join();
   const MutexLock lock(mutex_);
-  for (const AuditEntry& lost : waiting_) spdlog::error("not written down: {} by {}", lost.what, lost.who);
+  if (!waiting_.empty() || lost_in_all_ > 0) {
+    spdlog::error("{} entries of who asked for what are not written down", lost_in_all_ + std::ssize(waiting_));
+  }
 }
 
 void AuditLog::note(AuditEntry entry) {
   entry.time_utc = now_utc();
   {
     const MutexLock lock(mutex_);
-    if (waiting_.size() == kMostKept) {
-      spdlog::error("not written down, for the database takes nothing: {} by {}", waiting_.front().what,
-                    waiting_.front().who);
-      waiting_.pop_front();
-      ++lost_;
-    }
-    waiting_.push_back(std::move(entry));
+    if (!is_listed_locked(entry)) return;
+    keep_locked(std::move(entry));
   }
   changed_.notify_all();
+}
+
+void AuditLog::keep_locked(AuditEntry entry) {
+  if (waiting_.size() == kMostKept) {
+    if (lost_in_all_++ == 0) {
+      spdlog::error(
+          "not written down, for the database takes nothing: {} by {}; others follow it, their number is told",
+          waiting_.front().what, waiting_.front().who);
+    }
+    waiting_.pop_front();
+    ++lost_;
+  }
+  waiting_.push_back(std::move(entry));
+}
+
+bool AuditLog::is_listed_locked(const AuditEntry& entry) {
+  if (entry.outcome == "ok" || entry.outcome == "accepted") return true;
+  const HostTime now = HostClock::now();
+  close_minutes_locked(now, refusals_.size() >= kMostRefused);
+  Refusals& refusals = refusals_.try_emplace(entry.who, Refusals{.since = now, .last = {}}).first->second;
+  if (++refusals.rows <= kMostRefusals) return true;
+  ++refusals.not_listed;
+  refusals.last = entry;
+  return false;
+}
+
+void AuditLog::close_minutes_locked(HostTime now, bool all) {
+  for (auto at = refusals_.begin(); at != refusals_.end();) {
+    Refusals& refusals = at->second;
+    if (!all && now - refusals.since < kRefusalsPeriod) {
+      ++at;
+      continue;
+    }
+    if (refusals.not_listed > 0) {
+      refusals.last.detail = std::to_string(refusals.not_listed) + " refusals within a minute; this is the last";
+      keep_locked(std::move(refusals.last));
+    }
+    at = refusals_.erase(at);
+  }
 }
 
 std::vector<AuditEntry> AuditLog::newest(int most, std::int64_t before) {
@@ -68,18 +109,27 @@ std::vector<AuditEntry> AuditLog::newest(int most, std::int64_t before) {
 }
 
 void AuditLog::run(const std::stop_token& stop) {
+  ThreadTicks ticks("fvd-audit", kLongestWrite);
   while (!stop.stop_requested()) {
+    ticks.tick(HostClock::now());
     const bool written = write();
+    ticks.rest();
     MutexLock lock(mutex_);
     if (written) {
-      changed_.wait(lock, stop, [this] {
+      changed_.wait_for(lock, stop, kRefusalsPeriod, [this] {
         mutex_.assert_held();
         return !waiting_.empty();
       });
+      close_minutes_locked(HostClock::now(), false);
     } else {
       changed_.wait_for(lock, stop, kRetryPeriod, [] { return false; });
     }
   }
+  {
+    const MutexLock lock(mutex_);
+    close_minutes_locked(HostClock::now(), true);
+  }
+  ticks.tick(HostClock::now());
   (void)write();
 }
 
@@ -102,6 +152,10 @@ bool AuditLog::write() {
   {
     const MutexLock lock(mutex_);
     written_ = written;
+    if (written && lost_in_all_ > 0) {
+      spdlog::error("{} entries of who asked for what were lost while the database took nothing", lost_in_all_);
+      lost_in_all_ = 0;
+    }
     // Entries that came meanwhile stand behind these.
     for (std::size_t i = lost_; written && i < entries.size(); ++i) waiting_.pop_front();
   }

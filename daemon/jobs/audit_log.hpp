@@ -2,23 +2,29 @@
 
 /// Writes down who asked for what, behind whoever asked: nobody waits for its disk.
 
+#include <cstdint>
 #include <deque>
-#include <functional>
+#include <map>
 #include <stop_token>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "core/base/clock.hpp"
 #include "core/base/mutex.hpp"
 #include "daemon/jobs/services.hpp"
 #include "daemon/store/audit_table.hpp"
 
 namespace fvd {
 
-/// What the disk does not take is kept and tried again, so many entries at most; the log tells of any that is lost.
-/// context: thread-safe.
+/// What the disk does not take is kept and tried again, so many entries at most; the log tells how many were lost.
+/// Whoever is refused again and again takes so many rows a minute, and one that counts the others: rows that matter are
+/// not pushed out. context: thread-safe.
 class AuditLog final : public AuditService {
  public:
   static constexpr std::size_t kMostKept = 1000;
+  static constexpr int kMostRefusals = 30;  ///< a minute, of one identity
 
   /// table: outlives it.
   explicit AuditLog(AuditTable& table);
@@ -28,9 +34,22 @@ class AuditLog final : public AuditService {
   AuditLog& operator=(const AuditLog&) = delete;
 
   void note(AuditEntry entry) override;
+  /// Waits a tenth of a second at most for what was noted just before.
   [[nodiscard]] std::vector<AuditEntry> newest(int most, std::int64_t before) override;
 
  private:
+  /// Of one identity, within the minute that began then.
+  struct Refusals {
+    HostTime since;
+    int rows = 0;
+    AuditEntry last;
+    std::int64_t not_listed = 0;
+  };
+
+  /// False: it is counted, and has no row of its own.
+  bool is_listed_locked(const AuditEntry& entry) FVD_REQUIRES(mutex_);
+  void close_minutes_locked(HostTime now, bool all) FVD_REQUIRES(mutex_);
+  void keep_locked(AuditEntry entry) FVD_REQUIRES(mutex_);
   void run(const std::stop_token& stop);
   /// False if the disk did not take it.
   bool write();
@@ -39,9 +58,11 @@ class AuditLog final : public AuditService {
   Mutex mutex_;
   Condition changed_;
   std::deque<AuditEntry> waiting_ FVD_GUARDED_BY(mutex_);
-  std::size_t lost_ FVD_GUARDED_BY(mutex_) = 0;  ///< so many were taken from the front without being written
-  bool written_ FVD_GUARDED_BY(mutex_) = true;   ///< the table took all there was, the last time
-  std::jthread thread_;                          // last
+  std::map<std::string, Refusals> refusals_ FVD_GUARDED_BY(mutex_);
+  std::size_t lost_ FVD_GUARDED_BY(mutex_) = 0;          ///< so many were taken from the front without being written
+  std::int64_t lost_in_all_ FVD_GUARDED_BY(mutex_) = 0;  ///< likewise, since the table took everything
+  bool written_ FVD_GUARDED_BY(mutex_) = true;           ///< the table took all there was, the last time
+  std::jthread thread_;                                  // last
 };
 
 }  // namespace fvd

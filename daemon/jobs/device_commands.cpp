@@ -15,6 +15,7 @@
 #include "core/focus/grey_statistics.hpp"
 #include "core/scan/still.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/image_png.hpp"
 #include "daemon/export/preview_hub.hpp"
 #include "daemon/jobs/objective_limits.hpp"
@@ -72,8 +73,8 @@ ordered_json grey_json(const GreyStatistics& grey) {
 
 /// <folder>/20261124T050102Z-<n>.png, n counting within the second.
 fs::path new_snap(const fs::path& folder) {
+  (void)make_directories(folder);
   std::error_code error;
-  fs::create_directories(folder, error);
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   ::gmtime_r(&now, &utc);
@@ -97,7 +98,7 @@ void drop_oldest(const fs::path& folder) {
     return key(a) < key(b);
   };
   std::sort(snaps.begin(), snaps.end(), before);
-  for (std::size_t i = 0; i + kSnapsKept < snaps.size(); ++i) fs::remove(snaps[i], error);
+  for (std::size_t i = 0; i + kSnapsKept < snaps.size(); ++i) remove_file(snaps[i]);
 }
 
 void require_target(Micrometers target, const StageInfo& stage) {

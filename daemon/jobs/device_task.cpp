@@ -15,8 +15,24 @@ void DeviceTask::foretell(const Outcome& outcome) noexcept {
 
 void DeviceTask::end(Outcome outcome) noexcept {
   foretell(outcome);
-  const MutexLock lock(mutex_);
-  if (!outcome_) outcome_ = std::move(outcome);
+  std::function<void(const Outcome&)> look;
+  {
+    const MutexLock lock(mutex_);
+    if (outcome_) return;
+    outcome_ = outcome;
+    look = std::exchange(look_, {});
+  }
+  if (look) look(outcome);
+}
+
+void DeviceTask::note_outcome(std::function<void(const Outcome&)> look) {
+  std::optional<Outcome> outcome;
+  {
+    const MutexLock lock(mutex_);
+    outcome = outcome_;
+    if (!outcome) look_ = std::move(look);
+  }
+  if (outcome) look(*outcome);
 }
 
 DeviceTask::Outcome DeviceTask::perform(const Devices& devices, std::stop_token stop) const noexcept {

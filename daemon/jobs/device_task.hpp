@@ -51,6 +51,8 @@ class DeviceTask {
   [[nodiscard]] Outcome perform(const Devices& devices, std::stop_token stop) const noexcept;
   /// Tells when_ended what the answer will be: while the devices are not free yet.
   void foretell(const Outcome& outcome) noexcept;
+  /// Calls `look` once with the answer, at once where it is there; must not throw.
+  void note_outcome(std::function<void(const Outcome&)> look);
   /// Gives the answer; only the first call counts.
   void end(Outcome outcome) noexcept;
   /// perform() and end().
@@ -66,6 +68,7 @@ class DeviceTask {
   TaskMotion motion_ = TaskMotion::kNone;
   mutable Mutex mutex_;
   std::function<void(const Outcome&)> when_ended_ FVD_GUARDED_BY(mutex_);
+  std::function<void(const Outcome&)> look_ FVD_GUARDED_BY(mutex_);
   std::optional<Outcome> outcome_ FVD_GUARDED_BY(mutex_);
 };
 

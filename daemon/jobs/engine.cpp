@@ -13,9 +13,9 @@ namespace fvd {
 
 namespace {
 
-/// Longest time that one slice of a job, one opening of a device or one whole command may take; an autofocus may have a
-/// thousand looks.
-constexpr std::chrono::minutes kLongestStep{60};
+/// Longest time that the machine's thread may take to look after devices and disk between jobs and commands, which
+/// have times of their own.
+constexpr std::chrono::minutes kLongestLook{2};
 
 int thread_count(int configured) {
   if (configured > 0) return configured;
@@ -67,7 +67,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
                machine.apply(at_rest ? MachineEvent::kStandstillMeasured : MachineEvent::kMotionSeen);
              });
            }),
-      ticks_("fvd-machine", kLongestStep),
+      ticks_("fvd-machine", kLongestLook),
       tasks_({board_, hub_, work_, deps.clock, preview_, history_, config.paths.state_dir, config.objectives}),
       storage_(deps.store.file(), config.paths.state_dir / "results"),
       following_(deps.store),

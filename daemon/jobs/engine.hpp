@@ -62,6 +62,9 @@ class Engine {
     return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_, control_, audit_, access_};
   }
 
+  /// What a reload changes while all goes on. context: any thread.
+  void take(const StoreConfig& limits) { retention_.set_limits(limits); }
+
   /// The instrument's constants, in <state_dir>/calibration. context: any thread.
   [[nodiscard]] CalibrationBook& calibrations() { return calibrations_; }
 

@@ -1,6 +1,7 @@
 #include "daemon/jobs/following_files.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -8,6 +9,7 @@
 
 #include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "daemon/export/result_json.hpp"
 
 namespace fvd {
@@ -17,7 +19,10 @@ namespace {
 /// A tenth of a busy processor: less, and files stay pending as long as anything else computes.
 constexpr int kNice = 10;
 
-constexpr const char* kThread = "fvd-files";
+constexpr const char* kThread = "fvd-follow";
+
+/// Of one result, while everything else goes first.
+constexpr std::chrono::minutes kLongestResult{30};
 
 }  // namespace
 
@@ -91,6 +96,7 @@ void FollowingFiles::finish() {
 void FollowingFiles::run(const std::stop_token& stop) {
   // Of this thread alone, as Linux takes it. Where it is not allowed, files are made all the same.
   (void)::setpriority(PRIO_PROCESS, 0, kNice);
+  ThreadTicks ticks(kThread, kLongestResult);
   while (true) {
     ResultToFollow next;
     {
@@ -104,7 +110,9 @@ void FollowingFiles::run(const std::stop_token& stop) {
       next = std::move(waiting_.front().result);
       waiting_.pop_front();
     }
+    ticks.tick(HostClock::now());
     follow(std::move(next), stop);
+    ticks.rest();
     {
       const MutexLock lock(mutex_);
       running_bytes_ = 0;

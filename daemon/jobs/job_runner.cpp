@@ -60,6 +60,17 @@ ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config&
   return result;
 }
 
+/// For files of earlier results, before the scan.
+constexpr std::chrono::minutes kLongestWait{60};
+
+/// Of one slice or one phase; the stage may come to a continuous scan's first slice at the scan's own speed.
+std::chrono::milliseconds longest_step(const Recipe& recipe) {
+  constexpr std::chrono::minutes kLongestSlice{10};
+  if (recipe.mode != ScanMode::kContinuous || recipe.speed_um_per_s <= 0.0) return kLongestSlice;
+  const double scan_s = std::min(recipe.step_um * recipe.slices / recipe.speed_um_per_s, 86400.0);
+  return kLongestSlice + std::chrono::seconds(static_cast<std::int64_t>(2.0 * scan_s));
+}
+
 }  // namespace
 
 void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
@@ -75,6 +86,8 @@ void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
   spdlog::info("job {} starts: client {}, seq {}, part '{}', recipe {}", job.status.job_id, request.client, request.seq,
                request.part_id, job.recipe.id);
   deps_.preview.clear();
+  longest_step_ = longest_step(job.recipe);
+  deps_.ticks.tick(HostClock::now(), longest_step_);
   if (const auto failure = deps_.hub.open()) {
     return end(job, {.error = failure->code, .message = failure->message, .failure = failure});
   }
@@ -100,6 +113,7 @@ void JobRunner::wait_for_memory(const AcceptedJob& job, const std::stop_token& s
   if (others <= room) return;
   spdlog::info("job {} waits for files of results before it: they take {} MiB, it needs {} MiB of {} MiB",
                job.status.job_id, others >> 20U, needed >> 20U, budget >> 20U);
+  deps_.ticks.tick(HostClock::now(), kLongestWait);
   if (!deps_.following.wait_for(room, stop)) {
     throw Error(ErrorCode::kAborted, "stopped while it waited for files of results before it");
   }
@@ -182,11 +196,11 @@ MeasurementObserver JobRunner::observer() {
   };
   MeasurementObserver observer;
   observer.on_phase = [this, change_job](std::string_view phase) {
-    deps_.ticks.tick(HostClock::now());
+    deps_.ticks.tick(HostClock::now(), longest_step_);
     change_job([phase](MachineRecord&, JobStatus& job) { job.phase = phase; });
   };
   observer.on_slice = [this, change_job](const SliceProgress& progress) {
-    deps_.ticks.tick(HostClock::now());
+    deps_.ticks.tick(HostClock::now(), longest_step_);
     change_job([&progress](MachineRecord&, JobStatus& job) {
       job.slices_done = progress.slices;
       job.frames = progress.frames;

@@ -2,6 +2,7 @@
 
 /// One job from its start to its durable end.
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -89,6 +90,7 @@ class JobRunner {
   void end(const AcceptedJob& job, const JobEnd& end);
 
   Dependencies deps_;
+  std::chrono::milliseconds longest_step_{};  ///< of the job that runs
 };
 
 }  // namespace fvd

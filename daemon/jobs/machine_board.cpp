@@ -88,9 +88,13 @@ std::shared_ptr<const MachineStatus> MachineBoard::snapshot() const {
   return status_;
 }
 
-void MachineBoard::on_change(std::function<void()> listener) {
+void MachineBoard::on_change(std::function<void()> listener, const void* whose) {
   const MutexLock lock(telling_mutex_);
-  listener_ = std::move(listener);
+  if (listener) {
+    listeners_[whose] = std::move(listener);
+  } else {
+    listeners_.erase(whose);
+  }
 }
 
 MachineRecord MachineBoard::read() const {
@@ -162,7 +166,7 @@ void MachineBoard::tell() {
   }
   for (const std::string& change : news) spdlog::info("{}", change);
   if (!news.empty()) notify_status(state);
-  if (listener_) listener_();
+  for (const auto& [whose, listener] : listeners_) listener();
 }
 
 }  // namespace fvd

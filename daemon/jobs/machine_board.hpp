@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,7 +46,7 @@ struct MachineRecord {
   void require_objective_unused() const;
 };
 
-/// context: thread-safe. A reader waits for the copy of a pointer alone. The log is written, and the listener called,
+/// context: thread-safe. A reader waits for the copy of a pointer alone. The log is written, and the listeners called,
 /// under a lock that no reader needs; no lock is held over a database or a device.
 class MachineBoard final : public MachineView {
  public:
@@ -60,12 +61,12 @@ class MachineBoard final : public MachineView {
   MachineBoard(Constants constants, std::optional<JobStatus> latest_job);
 
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override;
-  void on_change(std::function<void()> listener) override;
+  void on_change(std::function<void()> listener, const void* whose = nullptr) override;
 
   [[nodiscard]] MachineRecord read() const;
 
   /// Changes the record in one piece: readers see the whole change or nothing of it, and nothing if it throws. Then
-  /// logs what changed for clients and tells the listener. change: short, calls nothing of the board, takes no lock
+  /// logs what changed for clients and tells the listeners. change: short, calls nothing of the board, takes no lock
   /// that is held while the board is called.
   void update(const std::function<void(MachineRecord&)>& change);
 
@@ -93,8 +94,8 @@ class MachineBoard final : public MachineView {
   mutable Mutex status_mutex_;  // held for a pointer's copy alone, inside mutex_ or without it
   std::shared_ptr<const MachineStatus> status_ FVD_GUARDED_BY(status_mutex_);
 
-  Mutex telling_mutex_;  // held while the listener runs: once on_change({}) returned, it is not called again
-  std::function<void()> listener_ FVD_GUARDED_BY(telling_mutex_);
+  Mutex telling_mutex_;  // held while listeners run: once on_change({}) returned, that one is not called again
+  std::map<const void*, std::function<void()>> listeners_ FVD_GUARDED_BY(telling_mutex_);
 };
 
 }  // namespace fvd

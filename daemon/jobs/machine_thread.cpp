@@ -16,6 +16,8 @@ namespace {
 /// How often an idle thread looks after its devices, and how often when one is missing.
 constexpr std::chrono::milliseconds kDeviceCheckPeriod{500};
 constexpr std::chrono::milliseconds kDeviceRetryPeriod{200};
+/// A whole command; an autofocus may have a thousand looks. A job says for each of its steps how long it may take.
+constexpr std::chrono::minutes kLongestCommand{60};
 
 }  // namespace
 
@@ -43,8 +45,9 @@ void MachineThread::run(std::stop_token stop) {
     const bool complete = look_after_devices();
     in_between_();
     const auto work = work_.take(stop, complete ? kDeviceCheckPeriod : kDeviceRetryPeriod);
-    ticks_.tick(HostClock::now());
-    if (work) work->run();
+    if (!work) continue;
+    ticks_.tick(HostClock::now(), kLongestCommand);
+    work->run();
   }
   hub_.drop_all();
   ticks_.rest();

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cstring>
+#include <exception>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -14,6 +15,7 @@
 #include "core/base/error.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/result_json.hpp"
+#include "daemon/export/storage_error.hpp"
 #include "daemon/jobs/result_pipeline.hpp"
 #include "daemon/result/evaluate.hpp"
 
@@ -23,15 +25,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Throws fs::filesystem_error where the disk does not tell.
+bool is_as_told(const fs::path& path, const ResultFile& file) {
+  const fs::file_status status = fs::status(path);
+  if (file.files) return fs::is_directory(status);
+  return fs::is_regular_file(status) && fs::file_size(path) == file.size_bytes;
+}
+
 /// Empty where the folder holds all that its result.json lists.
 std::string what_is_missing(const fs::path& folder, const Result& result, const std::string& job_id) {
   if (result.job.id != job_id) return "it is the result of job " + result.job.id;
   for (const ResultFile& file : result.files) {
-    if (file.state != FileState::kWritten) continue;
-    std::error_code error;
-    const bool is_there = file.files ? fs::is_directory(folder / file.name, error)
-                                     : fs::file_size(folder / file.name, error) == file.size_bytes && !error;
-    if (!is_there) return file.name + " is missing or cut off";
+    if (file.state == FileState::kWritten && !is_as_told(folder / file.name, file))
+      return file.name + " is missing or cut off";
   }
   return {};
 }
@@ -42,9 +48,12 @@ struct Found {
   std::string problem;
 };
 
+/// Throws Error and fs::filesystem_error where the folder cannot be read: that tells nothing of what is in it.
 Found result_in(const fs::path& folder, const JobStatus& interrupted) {
+  if (!fs::exists(folder / "result.json")) return {std::nullopt, "it has no result.json"};
+  std::string text = read_text_file(folder / "result.json", kAnyLength);
   try {
-    StoredJob job{interrupted, folder.string(), read_text_file(folder / "result.json")};
+    StoredJob job{interrupted, folder.string(), std::move(text)};
     const Result result = read_result_json(job.result_json);
     if (const std::string problem = what_is_missing(folder, result, interrupted.job_id); !problem.empty()) {
       return {std::nullopt, problem};
@@ -78,16 +87,28 @@ bool ended_by_this_start(const JobStore& store, const std::string& job_id) {
   return std::find(ended.begin(), ended.end(), job_id) != ended.end();
 }
 
-/// The result of a job that was told as interrupted: what was told stays, and so does what was measured.
+/// Nothing where it cannot be read.
+std::optional<Found> look_into(const fs::path& folder, const JobStatus& interrupted) {
+  try {
+    return result_in(folder, interrupted);
+  } catch (const std::exception& failure) {
+    spdlog::error("job {}: {} cannot be read: it stays, and the next start looks again: {}", interrupted.job_id,
+                  folder.string(), failure.what());
+    return std::nullopt;
+  }
+}
+
+/// The result of a job that was told without one: what was told stays, and so does what was measured.
 bool set_aside(const fs::path& folder, const fs::path& aside) {
-  std::error_code error;
-  fs::create_directories(aside.parent_path(), error);
-  if (file_calls().rename_to_new(folder, aside) != 0) {
-    spdlog::error("{}: its job was told as interrupted, but it cannot be moved to {}: {}: it stays", folder.string(),
-                  aside.string(), std::strerror(errno));
+  try {
+    (void)make_directories(aside.parent_path());
+    if (file_calls().rename_to_new(folder, aside) != 0) throw storage_error(errno, "rename it to", aside);
+  } catch (const Error& failure) {
+    spdlog::error("{}: its job was told without a result, and it stays where it is: {}", folder.string(),
+                  failure.what());
     return false;
   }
-  spdlog::warn("{}: its job was told as interrupted and stays so; the whole result is in {} from now on",
+  spdlog::warn("{}: its job was told without a result and stays so; the whole result is in {} from now on",
                folder.string(), aside.string());
   return true;
 }
@@ -115,27 +136,30 @@ void name_lost_evaluations(JobStore& store, const fs::path& results) {
 
 Reconciled reconcile_results(JobStore& store, const fs::path& results) {
   Reconciled done;
-  for (const JobStatus& interrupted : store.results().interrupted()) {
-    const fs::path folder = results / interrupted.job_id;
+  for (const JobStatus& ended : store.results().without_result()) {
+    const fs::path folder = results / ended.job_id;
     std::error_code error;
     if (!fs::exists(folder, error)) continue;
-    const Found found = result_in(folder, interrupted);
-    const bool was_told = interrupted.acknowledged || !ended_by_this_start(store, interrupted.job_id);
+    const auto looked = look_into(folder, ended);
+    if (!looked) continue;
+    const Found& found = *looked;
+    const bool was_told = ended.acknowledged || !ended_by_this_start(store, ended.job_id);
     if (found.whole && !was_told) {
       store.finish(found.whole->status, found.whole->result_dir, found.whole->result_json, found.whole->files_pending);
       spdlog::warn("job {}: the daemon stopped between its result and its row: it is {} with the result in {}",
-                   interrupted.job_id, job_state_name(found.whole->status.state), folder.string());
+                   ended.job_id, job_state_name(found.whole->status.state), folder.string());
       ++done.adopted;
       continue;
     }
     if (found.whole) {
-      if (set_aside(folder, results.parent_path() / "set-aside" / interrupted.job_id)) ++done.set_aside;
+      if (set_aside(folder, results.parent_path() / "set-aside" / ended.job_id)) ++done.set_aside;
       continue;
     }
-    spdlog::warn("job {}: {} is no whole result of it: removed: {}", interrupted.job_id, folder.string(),
-                 found.problem);
     file_calls().remove_all(folder);
-    ++done.removed;
+    const bool is_gone = !fs::exists(folder, error);
+    spdlog::warn("job {}: {} is no whole result of it: {}: {}", ended.job_id, folder.string(),
+                 is_gone ? "removed" : "it cannot be removed, the next start tries again", found.problem);
+    if (is_gone) ++done.removed;
   }
   name_lost_evaluations(store, results);
   return done;

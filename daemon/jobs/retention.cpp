@@ -4,6 +4,7 @@
 #include <chrono>
 #include <exception>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <spdlog/spdlog.h>
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::minutes kPeriod{1};
+constexpr std::chrono::minutes kLongestStep{10};  // of one result
 
 bool has_limits(const StoreConfig& config) {
   return config.keep_days > 0 || config.keep_gib > 0 || config.keep_free_gib > 0;
@@ -86,8 +88,10 @@ std::string without_slices(const std::string& text) {
 
 }  // namespace
 
+Retention::Retention(JobStore& store, const StoreConfig& config, fs::path results)
+    : store_(store), config_(config), results_(std::move(results)), ticks_("fvd-retention", kLongestStep) {}
+
 void Retention::start() {
-  if (!has_limits(config_)) return;
   thread_ = start_thread("fvd-retention", [this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -96,11 +100,17 @@ void Retention::finish() {
   if (thread_.joinable()) thread_.join();
 }
 
+void Retention::set_limits(const StoreConfig& limits) {
+  const MutexLock lock(mutex_);
+  config_ = limits;
+}
+
 void Retention::run(const std::stop_token& stop) {
   Mutex mutex;
   Condition never;
   while (!stop.stop_requested()) {
-    run_once(stop);
+    if (has_limits(config())) run_once(stop);
+    ticks_.rest();
     MutexLock lock(mutex);
     (void)never.wait_for(lock, stop, kPeriod, [] { return false; });
   }
@@ -116,6 +126,7 @@ void Retention::run_once(const std::stop_token& stop) noexcept {
 }
 
 void Retention::finish_removals() {
+  ticks_.tick(HostClock::now());
   evaluations_ = evaluations_in(results_);
   for (const std::string& job_id : store_.results().removed_last()) remove_folders(job_id);
 }
@@ -139,6 +150,7 @@ void Retention::make_room(const std::stop_token& stop) {
   std::vector<KeptResult> results;
   for (const StoredJob& job : jobs) {
     if (stop.stop_requested()) return;
+    ticks_.tick(HostClock::now());
     const bool removable = job.status.acknowledged && !job.files_pending;
     // What may still grow is looked at anew.
     if (!removable) sizes_.erase(job.status.job_id);
@@ -149,8 +161,9 @@ void Retention::make_room(const std::stop_token& stop) {
   std::error_code error;
   const fs::space_info disk = fs::space(results_, error);
   if (error) throw std::system_error(error, results_.string());
-  for (const RetentionStep& step : retention_plan(results, limits_of(config_), disk.available)) {
+  for (const RetentionStep& step : retention_plan(results, limits_of(config()), disk.available)) {
     if (stop.stop_requested()) return;
+    ticks_.tick(HostClock::now());
     const StoredJob& job = jobs[step.result];
     step.slices_alone ? remove_slices(job) : remove_result(job);
     sizes_.erase(job.status.job_id);

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/mutex.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/store/retention_plan.hpp"
@@ -23,14 +25,15 @@ namespace fvd {
 class Retention {
  public:
   /// What they refer to outlives it.
-  Retention(JobStore& store, const StoreConfig& config, std::filesystem::path results)
-      : store_(store), config_(config), results_(std::move(results)) {}
+  Retention(JobStore& store, const StoreConfig& config, std::filesystem::path results);
   ~Retention() { finish(); }
   Retention(const Retention&) = delete;
   Retention& operator=(const Retention&) = delete;
 
-  /// Looks at once, and once a minute. Nothing where no limit is set.
+  /// Looks at once, and once a minute, while a limit is set.
   void start();
+  /// Other limits from the next look on. context: any thread.
+  void set_limits(const StoreConfig& limits);
   void finish();
 
   /// Looks once. Never throws. context: not after start().
@@ -41,6 +44,10 @@ class Retention {
     std::uint64_t bytes = 0;
     std::uint64_t slices_bytes = 0;
   };
+  [[nodiscard]] StoreConfig config() const {
+    const MutexLock lock(mutex_);
+    return config_;
+  }
   void run(const std::stop_token& stop);
   void finish_removals();
   void make_room(const std::stop_token& stop);
@@ -52,11 +59,13 @@ class Retention {
   void remove_slices(const StoredJob& job);
 
   JobStore& store_;
-  const StoreConfig config_;
+  mutable Mutex mutex_;
+  StoreConfig config_ FVD_GUARDED_BY(mutex_);
   const std::filesystem::path results_;
   std::map<std::string, Size> sizes_;                            // of results that do not change any more
   std::map<std::string, std::vector<std::string>> evaluations_;  // on the disk, by job
-  std::jthread thread_;                                          // last: ends before anything it uses
+  ThreadTicks ticks_;
+  std::jthread thread_;  // last: ends before anything it uses
 };
 
 }  // namespace fvd

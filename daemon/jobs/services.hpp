@@ -70,8 +70,9 @@ class MachineView {
   virtual ~MachineView() = default;
   /// No lock that is held across a database or file access; never null.
   [[nodiscard]] virtual std::shared_ptr<const MachineStatus> snapshot() const = 0;
-  /// Called after every change of a job or the machine, from any thread; must return at once. Set before use.
-  virtual void on_change(std::function<void()> listener) = 0;
+  /// Called after every change of a job or the machine, from any thread; must return at once. One for each `whose`; an
+  /// empty one ends it: after the return it is not called again.
+  virtual void on_change(std::function<void()> listener, const void* whose = nullptr) = 0;
 };
 
 /// Accepts jobs and tells of them.

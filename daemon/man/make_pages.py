@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Man pages and completions of bash, from what the programs and the tables of keys say of themselves.
 
-make_pages.py --fvd PROGRAM --fvdctl PROGRAM --keys config/README.md --version V --out FOLDER
-Writes fvd.8, fvdctl.1, fvd.json.5, fvd-recipe.5, fvd.bash and fvdctl.bash. The date is that of SOURCE_DATE_EPOCH, if set.
+make_pages.py --fvd PROGRAM --fvdctl PROGRAM --fvd-sim PROGRAM --keys config/README.md --version V --out FOLDER
+Writes fvd.8, fvdctl.1, fvd-sim.1, fvd.json.5, fvd-recipe.5, fvd.bash, fvdctl.bash and fvd-sim.bash. The date is that of
+SOURCE_DATE_EPOCH, if set.
 """
 import argparse
 import os
@@ -129,16 +130,17 @@ complete -o bashdefault -o default -F _{name} {name}
 
 def main():
     parser = argparse.ArgumentParser()
-    for option in ("fvd", "fvdctl", "keys", "version", "out"):
+    for option in ("fvd", "fvdctl", "fvd-sim", "keys", "version", "out"):
         parser.add_argument("--" + option, required=True)
     options = parser.parse_args()
     out = pathlib.Path(options.out)
     out.mkdir(parents=True, exist_ok=True)
-    fvd, fvdctl = Command(options.fvd), Command(options.fvdctl)
+    fvd, fvdctl, fvd_sim = Command(options.fvd), Command(options.fvdctl), Command(options.fvd_sim)
     readme = pathlib.Path(options.keys).read_text(encoding="utf-8")
     date = time.strftime("%Y-%m-%d", time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", time.time()))))
     pages = {"fvd.8": {"OPTIONS": definitions(fvd.entries("Positionals", "Options"))},
              "fvdctl.1": {"OPTIONS": definitions(fvdctl.entries("Options")), "COMMANDS": command_sections(fvdctl, "fvdctl")},
+             "fvd-sim.1": {"COMMANDS": command_sections(fvd_sim, "fvd-sim")},
              "fvd.json.5": {"KEYS": keys(readme, "fvd.json")},
              "fvd-recipe.5": {"KEYS": keys(readme, "recipe")}}
     for page, parts in pages.items():
@@ -146,7 +148,7 @@ def main():
         for name, value in {**parts, "DATE": date, "VERSION": options.version}.items():
             text = text.replace(f"@{name}@", value)
         (out / page).write_text(text, encoding="utf-8")
-    for root, name in ((fvd, "fvd"), (fvdctl, "fvdctl")):
+    for root, name in ((fvd, "fvd"), (fvdctl, "fvdctl"), (fvd_sim, "fvd-sim")):
         (out / (name + ".bash")).write_text(completion(root, name), encoding="utf-8")
 
 

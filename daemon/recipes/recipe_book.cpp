@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 #include "daemon/recipes/recipe_folder.hpp"
 #include "daemon/recipes/recipe_masks.hpp"
@@ -181,11 +182,7 @@ std::int64_t RecipeBook::save_locked(const RecipeSave& request) {
                                           "remove files that nobody needs from " +
                                           folders_.edited.string());
   }
-  std::error_code error;
-  std::filesystem::create_directories(folders_.edited, error);
-  if (error) {
-    throw Error(ErrorCode::kStorageWrite, "cannot make " + folders_.edited.string() + ": " + error.message());
-  }
+  (void)make_directories(folders_.edited);
   const RecipeVersion wanted{.id = request.id,
                              .sha256 = recipe.sha256,
                              .author = request.author,

@@ -1,10 +1,13 @@
 #include "daemon/recipes/recipe_folder.hpp"
 
 #include <algorithm>
+#include <cerrno>
 
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
+#include "daemon/export/storage_error.hpp"
 #include "daemon/recipes/recipe_document.hpp"
 
 namespace fvd {
@@ -60,13 +63,12 @@ std::optional<std::string> find_recipe_text(const fs::path& folder, const std::s
 
 void write_next_recipe_text(const fs::path& folder, const std::string& id, std::string_view text) {
   const fs::path next = next_of(folder, id);
-  std::error_code error;
-  fs::remove(next, error);  // of a process that died while it wrote
+  remove_file(next);  // of a process that died while it wrote
   write_new_file(next, text);
   try {
     sync_directory(folder);
   } catch (...) {
-    fs::remove(next, error);
+    file_calls().unlink(next);
     throw;
   }
 }
@@ -79,15 +81,10 @@ std::optional<std::string> find_next_recipe_text(const fs::path& folder, const s
 
 void put_next_recipe_text_in_force(const fs::path& folder, const std::string& id) {
   const fs::path file = file_of(folder, id);
-  std::error_code error;
-  fs::rename(next_of(folder, id), file, error);
-  if (error) throw Error(ErrorCode::kStorageWrite, "cannot replace " + file.string() + ": " + error.message());
+  if (file_calls().rename(next_of(folder, id), file) != 0) throw storage_error(errno, "replace", file);
 }
 
-void drop_next_recipe_text(const fs::path& folder, const std::string& id) {
-  std::error_code ignored;
-  fs::remove(next_of(folder, id), ignored);
-}
+void drop_next_recipe_text(const fs::path& folder, const std::string& id) { file_calls().unlink(next_of(folder, id)); }
 
 std::vector<std::string> list_next_recipe_texts(const fs::path& folder) {
   std::vector<std::string> ids;

@@ -7,6 +7,7 @@
 #include "core/base/error.hpp"
 #include "core/scan/autofocus.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/image_png.hpp"
 
 namespace fvd {
@@ -48,7 +49,7 @@ SetupBench::Picture SetupBench::take_picture(const SetupDraft& draft, std::stop_
     write_new_file(file, encode_image_png(image));
     picture_ = file;
   } else {
-    std::filesystem::remove(picture_, none_there);
+    remove_file(picture_);
     write_new_file(picture_, encode_image_png(image));
   }
   return {mean_focus(image, central_region(image.width, image.height)), grey_statistics(image), image.width,

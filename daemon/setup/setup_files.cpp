@@ -1,13 +1,10 @@
 #include "daemon/setup/setup_files.hpp"
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <set>
 #include <system_error>
 #include <vector>
 
-#include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
@@ -16,6 +13,8 @@
 #include "core/base/error.hpp"
 #include "daemon/config/config_file.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
+#include "daemon/export/storage_error.hpp"
 
 namespace fvd {
 
@@ -92,10 +91,6 @@ std::string config_document(const SetupDraft& draft, const fs::path& file) {
   return document.dump(2) + "\n";
 }
 
-[[noreturn]] void fail(const std::string& what, const fs::path& file) {
-  throw Error(ErrorCode::kStorageWrite, what + " " + file.string() + ": " + std::strerror(errno));
-}
-
 /// A copy of the file that is there, under a name that is free. Returns it.
 fs::path keep_older(const fs::path& file) {
   for (int i = 1;; ++i) {
@@ -104,15 +99,6 @@ fs::path keep_older(const fs::path& file) {
     write_new_file(kept, read_text_file(file));
     return kept;
   }
-}
-
-/// By a rename, or under a name that must be free.
-int put_under(const fs::path& made, const fs::path& file, bool replace) {
-  if (replace) return std::rename(made.c_str(), file.c_str());
-  if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL) return -1;  // network file systems know a second name instead
-  if (::link(made.c_str(), file.c_str()) != 0) return -1;
-  return ::unlink(made.c_str());
 }
 
 fs::path write_recipe(const SetupDraft& draft, const fs::path& folder) {
@@ -125,20 +111,13 @@ fs::path write_recipe(const SetupDraft& draft, const fs::path& folder) {
   }
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw Error(ErrorCode::kStorageWrite, "cannot make the folder " + folder.string() + ": " + error.message());
-}
-
 /// Files that are removed again where not all of them could be written.
 struct LeftOver {
   LeftOver() = default;
   LeftOver(const LeftOver&) = delete;
   LeftOver& operator=(const LeftOver&) = delete;
   ~LeftOver() {
-    for (const fs::path& file : files) ::unlink(file.c_str());
+    for (const fs::path& file : files) file_calls().unlink(file);
   }
   std::vector<fs::path> files;
 };
@@ -174,10 +153,10 @@ std::string write_setup(const SetupDraft& draft, const fs::path& named, bool rep
     throw Error(ErrorCode::kBadInput, file.string() + " is there already and stays as it is: 'replace' keeps it as " +
                                           file.filename().string() + ".old-N, or write another");
   }
-  make_folder(file.parent_path());
+  (void)make_directories(file.parent_path());
   const std::string text = config_document(draft, file);
   LoadedConfig loaded = parse_config(text, file.parent_path());
-  if (loaded.problems.empty()) make_folder(loaded.config.paths.recipe_dir);
+  if (loaded.problems.empty()) (void)make_directories(loaded.config.paths.recipe_dir);
   for (Problem& problem : check_config(loaded.config, loaded.problems)) loaded.problems.push_back(std::move(problem));
   throw_if_any(loaded.problems, ErrorCode::kBadConfig, file.string());
 
@@ -186,11 +165,13 @@ std::string write_setup(const SetupDraft& draft, const fs::path& named, bool rep
   fs::path recipe;
   if (draft.trial) left_over.files.push_back(recipe = write_recipe(draft, loaded.config.paths.recipe_dir));
   const fs::path made = file.string() + ".new-" + std::to_string(::getpid());
+  remove_file(made);  // of a try that could not clear up
   write_new_file(made, text);
   left_over.files.push_back(made);
   fs::path kept;
   if (there) left_over.files.push_back(kept = keep_older(file));
-  if (put_under(made, file, there) != 0) fail("cannot write", file);
+  const int put = there ? file_calls().rename(made, file) : file_calls().rename_to_new(made, file);
+  if (put != 0) throw storage_error(errno, "write", file);
   left_over.files.clear();
   sync_directory(file.parent_path());
   std::string told = "the configuration is " + file.string();

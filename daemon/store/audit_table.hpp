@@ -20,7 +20,7 @@ struct AuditEntry {
   std::string client;       ///< what he calls himself
   std::string what;         ///< the method, or an event of the daemon
   std::string detail;       ///< parameters, shortened
-  std::string outcome;      ///< "ok", or the error's name
+  std::string outcome;      ///< "ok", or the error's name; "accepted": it goes on, and a row with its end follows
 };
 
 /// The newest hundred thousand rows are kept. context: thread-safe; a reader waits for other readers, never for a

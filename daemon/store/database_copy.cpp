@@ -42,8 +42,7 @@ void copy_pages(sqlite3* source, Database& copy) {
 
 void copy_to(const fs::path& copy, sqlite3* source) {
   const fs::path temporary = fs::path(copy) += ".tmp";
-  std::error_code ignored;
-  fs::remove(temporary, ignored);  // of a process that was killed
+  remove_file(temporary);  // of a process that was killed
   try {
     {
       Database target(temporary);
@@ -54,7 +53,7 @@ void copy_to(const fs::path& copy, sqlite3* source) {
     if (file_calls().rename(temporary, copy) != 0) throw storage_error(errno, "rename the copy to", copy);
     sync_directory(fs::absolute(copy).parent_path());
   } catch (...) {
-    fs::remove(temporary, ignored);
+    file_calls().unlink(temporary);
     throw;
   }
 }

@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/mutex.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/store/database.hpp"
 #include "daemon/store/job_id.hpp"
 #include "daemon/store/job_rows.hpp"
@@ -21,12 +22,7 @@ namespace fvd {
 namespace {
 
 std::filesystem::path with_folder(const std::filesystem::path& file) {
-  std::error_code error;
-  std::filesystem::create_directories(std::filesystem::absolute(file).parent_path(), error);
-  if (error) {
-    throw Error(ErrorCode::kDatabase,
-                "cannot create the folder of the database " + file.string() + ": " + error.message());
-  }
+  (void)make_directories(std::filesystem::absolute(file).parent_path());
   return file;
 }
 

@@ -2,12 +2,16 @@
 
 #include <array>
 #include <chrono>
+#include <filesystem>
+#include <map>
 #include <string>
+#include <system_error>
 
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
 #include "daemon/base/systemd_notify.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/store/database_copy.hpp"
 
 namespace fvd {
@@ -270,6 +274,26 @@ bool is_copied(const Database& database, const std::filesystem::path& copy) {
   }
 }
 
+/// The one just made is kept and one of the others, of the highest version. What cannot be removed stays.
+void drop_older_copies(const std::filesystem::path& database, const std::filesystem::path& made) {
+  const std::string prefix = database.filename().string() + ".v";
+  std::map<int, std::filesystem::path> copies;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(std::filesystem::absolute(database).parent_path(), error), end;
+       !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const std::string digits = name.starts_with(prefix) ? name.substr(prefix.size()) : "";
+    const bool is_number =
+        !digits.empty() && digits.size() < 6 && digits.find_first_not_of("0123456789") == digits.npos;
+    if (is_number && entry->path().filename() != made.filename()) copies.emplace(std::stoi(digits), entry->path());
+  }
+  for (auto oldest = copies.begin(); copies.size() > 1; oldest = copies.erase(oldest)) {
+    const bool removed = file_calls().unlink(oldest->second) == 0;
+    spdlog::info("database {}: the older copy {} {}: two are kept", database.string(), oldest->second.string(),
+                 removed ? "is removed" : "cannot be removed");
+  }
+}
+
 /// Far more than copying or rewriting a database of its size takes.
 std::chrono::seconds longest_step(const Database& database) {
   constexpr std::uintmax_t kSlowest_bytes_per_s = 2'000'000;
@@ -294,6 +318,7 @@ void migrate(Database& database, int version) {
     notify_extend_timeout(longest_step(database), "copying the database before it is brought up to date");
     if (!is_copied(database, copy)) copy_database(database, copy);
     spdlog::info("database {}: a copy of version {} is kept as {}", database.file().string(), found, copy);
+    drop_older_copies(database.file(), copy);
   }
   database.use_write_ahead_log();
   for (int from = found; from < version; ++from) {

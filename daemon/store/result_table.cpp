@@ -22,10 +22,10 @@ std::vector<StoredJob> ResultTable::on_disk() const {
   return jobs;
 }
 
-std::vector<JobStatus> ResultTable::interrupted() const {
+std::vector<JobStatus> ResultTable::without_result() const {
   const MutexLock lock(reader_.mutex);
-  Statement rows(reader_.database, "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE error = ? AND result_dir = ''");
-  rows.bind(error_name(ErrorCode::kInterrupted));
+  Statement rows(reader_.database,
+                 "SELECT " FVD_JOB_COLUMNS " FROM jobs WHERE state IN ('failed', 'aborted') AND result_dir = ''");
   std::vector<JobStatus> jobs;
   while (rows.step()) jobs.push_back(read_job_row(rows).status);
   return jobs;

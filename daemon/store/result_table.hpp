@@ -24,8 +24,8 @@ class ResultTable {
   /// The jobs whose results are on the disk, the oldest first; without the texts of the results. Throws Error
   /// kDatabase, as the next ones.
   [[nodiscard]] std::vector<StoredJob> on_disk() const;
-  /// The jobs that a stop of the daemon interrupted and that have no result.
-  [[nodiscard]] std::vector<JobStatus> interrupted() const;
+  /// The jobs that ended without a result: interrupted, failed, aborted.
+  [[nodiscard]] std::vector<JobStatus> without_result() const;
   /// Notes, durably, that the job's result is removed, and forgets its text. False, and nothing is noted, unless the
   /// job was acknowledged. Throws Error kStorageFull, too.
   bool mark_removed(const std::string& job_id);

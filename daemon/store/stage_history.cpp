@@ -1,5 +1,6 @@
 #include "daemon/store/stage_history.hpp"
 
+#include <cerrno>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -7,8 +8,10 @@
 
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
-#include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
+#include "daemon/export/replace_file.hpp"
 #include "daemon/export/stage_report_files.hpp"
+#include "daemon/export/storage_error.hpp"
 
 namespace fvd {
 
@@ -105,10 +108,9 @@ StageHistory::StageHistory(std::filesystem::path file) : file_(std::move(file)) 
 void StageHistory::move_aside(const std::string& why) {
   auto aside = file_;
   aside += ".old";
-  std::error_code error;
-  std::filesystem::rename(file_, aside, error);
+  const bool moved = file_calls().rename(file_, aside) == 0;
   spdlog::warn("stage history {}: {}; {}", file_.string(), why,
-               error ? "it could not be moved aside: " + error.message() : "moved to " + aside.string());
+               moved ? "moved to " + aside.string() : storage_error(errno, "move it to", aside).what());
 }
 
 void StageHistory::add(FeedbackSource feedback, const StepLog& log) {
@@ -120,12 +122,7 @@ void StageHistory::add(FeedbackSource feedback, const StepLog& log) {
   if (!history_) history_.emplace(feedback);
   try {
     history_->add(log);
-    auto temporary = file_;
-    temporary += ".tmp";
-    std::filesystem::remove(temporary);  // of a run that was cut off
-    write_new_file(temporary, step_history_json(history_->state()));
-    std::filesystem::rename(temporary, file_);
-    sync_directory(file_.parent_path());
+    replace_file(file_, step_history_json(history_->state()));
   } catch (const std::exception& error) {
     spdlog::error("stage history {} could not be stored: {}", file_.string(), error.what());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <system_error>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -11,6 +12,7 @@
 #include "core/base/error.hpp"
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/durable_file.hpp"
+#include "daemon/export/file_calls.hpp"
 #include "daemon/export/json_values.hpp"
 #include "daemon/study/studies.hpp"
 
@@ -64,11 +66,10 @@ StudyBook::StudyBook(fs::path folder) : folder_(std::move(folder)) {
 
 Study StudyBook::keep(StudyDraft draft, const std::function<std::string(const Study&)>& report) {
   const MutexLock keeping(keeping_);
-  const int number = next_number();
-  std::error_code error;
-  const bool is_new = fs::create_directories(folder_, error);
-  if (error) throw Error(ErrorCode::kStorageWrite, "cannot make " + folder_.string() + ": " + error.message());
-  if (is_new) sync_directory(fs::absolute(folder_).parent_path());
+  int number = next_number();
+  // One that was refused, and that the disk would not take back.
+  for (std::error_code error; fs::exists(folder_ / id_of(number), error);) ++number;
+  if (make_directories(folder_)) sync_directory(fs::absolute(folder_).parent_path());
   Study study = std::move(draft.study);
   study.id = id_of(number);
   study.time = iso8601_utc(std::chrono::system_clock::now());

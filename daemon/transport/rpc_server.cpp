@@ -37,6 +37,8 @@ namespace {
 constexpr std::chrono::milliseconds kShutdownGrace{500};  // for the replies that are owed when the server ends
 constexpr std::chrono::milliseconds kShutdownPollPeriod{5};
 constexpr std::chrono::milliseconds kAcceptPause{100};
+/// Connections beyond the limit that may log in, for one of them may be who has control.
+constexpr std::ptrdiff_t kLogInPlaces = 4;
 constexpr std::chrono::seconds kTickInterval{1};     // of the network thread
 constexpr std::chrono::seconds kLongestHandler{10};  // handlers wait for nothing: one that takes this long hangs
 
@@ -54,10 +56,13 @@ struct RpcServer::Impl {
         host{context,
              dispatcher,
              worker,
+             logins,
              std::chrono::seconds(c.idle_timeout_s),
              std::chrono::seconds(c.first_request_s),
-             [this](const std::shared_ptr<RpcSession>& session) { sessions.erase(session); }},
-        worker("fvd-rpc-work") {
+             [this](const std::shared_ptr<RpcSession>& session) { sessions.erase(session); },
+             [this](const Identity& who) { return has_room(who); }},
+        worker("fvd-rpc-work"),
+        logins("fvd-rpc-login") {
     listen();
     local_socket.emplace(c.socket.empty() ? runtime_dir / "fvd.sock" : c.socket);
     local_acceptor.assign(local::stream_protocol(), local_socket->take_listener());
@@ -123,7 +128,8 @@ struct RpcServer::Impl {
   std::set<std::shared_ptr<RpcSession>> sessions;  // network thread only
   std::uint64_t connections = 0;                   // since the start; network thread only
   RpcSessionHost host;
-  Worker worker;        // after what its tasks refer to
+  Worker worker;  // after what its tasks refer to
+  Worker logins;
   std::jthread thread;  // last
 };
 
@@ -169,9 +175,12 @@ void RpcServer::Impl::admit(RpcSession::Socket socket, Caller caller) {
   const bool allowed = caller.who.role > Role::kNone || services.access.has_tokens();
   const bool room = allowed && has_room(caller.who);
   if (!allowed) spdlog::warn("a connection is refused: {}", text_of(caller));
+  const auto logging_in = std::count_if(sessions.begin(), sessions.end(),
+                                        [](const auto& other) { return other->must_log_in() && !other->is_refused(); });
+  const bool may_log_in = services.access.has_tokens() && logging_in < kLogInPlaces;
   const auto session = std::make_shared<RpcSession>(host, std::move(socket), std::move(caller));
   sessions.insert(session);
-  if (room) return session->start();
+  if (room || (allowed && may_log_in)) return session->start(!room);
   session->refuse(allowed ? Dispatcher::too_many_connections() : Dispatcher::not_allowed_here());
 }
 
@@ -184,7 +193,7 @@ bool RpcServer::Impl::has_room(const Identity& who) {
   std::size_t taken = 0;
   std::size_t by_others = 0;
   for (const auto& session : sessions) {
-    if (session->is_refused()) continue;
+    if (session->is_refused() || session->must_log_in()) continue;
     ++taken;
     if (!may_control(session->caller().who)) ++by_others;
   }
@@ -196,7 +205,7 @@ bool RpcServer::Impl::has_room(const Identity& who) {
   // may an old one of who has control keep him from his.
   const bool holds = controls && services.control.holder();
   const auto leaving = std::find_if(sessions.begin(), sessions.end(), [&](const auto& session) {
-    if (session->is_refused()) return false;
+    if (session->is_refused() || session->must_log_in()) return false;
     return session->is_half_closed() || (holds && session->caller().who.name == who.name);
   });
   if (leaving == sessions.end()) return false;
@@ -216,10 +225,15 @@ void RpcServer::Impl::shut_down(std::chrono::steady_clock::time_point deadline) 
   ErrorCodeOf ignored;
   acceptor.close(ignored);
   local_acceptor.close(ignored);
-  resume_all();
+  const auto all = sessions;  // a copy, as in resume_all()
+  for (const auto& session : all) session->end_waits();
   const bool all_is_said =
       std::all_of(sessions.begin(), sessions.end(), [](const auto& session) { return session->is_answered(); });
-  if (all_is_said || std::chrono::steady_clock::now() >= deadline) return context.stop();
+  if (all_is_said) return context.stop();
+  if (std::chrono::steady_clock::now() >= deadline) {
+    for (const auto& session : all) session->give_up();
+    return context.stop();
+  }
   shutdown_timer.expires_after(kShutdownPollPeriod);
   shutdown_timer.async_wait([this, deadline](ErrorCodeOf) { shut_down(deadline); });
 }

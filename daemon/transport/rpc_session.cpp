@@ -20,14 +20,15 @@ constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
 /// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
 constexpr std::string_view kTerminators("\n\r\0", 3);
-constexpr std::chrono::seconds kRefusalGrace{1};  // for a refused client to read the reason
+constexpr std::chrono::milliseconds kLongestLineEnd{3000};  // from a text to its end: networks repeat what they lose
+constexpr std::chrono::seconds kRefusalGrace{1};            // for a refused client to read the reason
 
 }  // namespace
 
 template <typename Result>
-void RpcSession::work(std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result)) {
+void RpcSession::work(Worker& worker, std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result)) {
   at_work_ = true;
-  host_.worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
+  worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
     Result result = what(self->host_.dispatcher);
     asio::io_context& context = self->host_.context;
     // The session is moved back: its destructor must run on the network thread.
@@ -39,9 +40,15 @@ void RpcSession::work(std::function<Result(const Dispatcher&)> what, void (RpcSe
 }
 
 RpcSession::RpcSession(const RpcSessionHost& host, Socket socket, Caller caller)
-    : host_(host), socket_(std::move(socket)), caller_(std::move(caller)), idle_(host.context), wait_(host.context) {}
+    : host_(host),
+      socket_(std::move(socket)),
+      caller_(std::move(caller)),
+      idle_(host.context),
+      wait_(host.context),
+      line_end_(host.context) {}
 
-void RpcSession::start() {
+void RpcSession::start(bool must_log_in) {
+  must_log_in_ = must_log_in;
   tune(socket_.native_handle());
   watch_idle();
   read();
@@ -58,12 +65,24 @@ void RpcSession::resume(bool timed_out) {
   process();
 }
 
+void RpcSession::end_waits() {
+  ending_ = true;
+  resume(false);
+}
+
+void RpcSession::give_up() {
+  if (!waiting_) return;
+  send(host_.dispatcher.ended(*waiting_));
+  waiting_.reset();
+}
+
 void RpcSession::close() {
   refused_ = true;
   waiting_.reset();
   ErrorCodeOf ignored;
   idle_.cancel();
   wait_.cancel();
+  line_end_.cancel();
   socket_.shutdown(Socket::shutdown_both, ignored);
   socket_.close(ignored);
   host_.on_close(shared_from_this());
@@ -105,9 +124,12 @@ void RpcSession::receive(std::string_view bytes) {
     if (end == std::string::npos) break;
     std::string line = input_.substr(begin, end - begin);
     begin = end + 1;
-    if (line.find_first_not_of(" \t") == std::string::npos) continue;
+    if (line.find_first_not_of(" \t") == std::string::npos) {
+      watch_idle();
+      continue;
+    }
     line_bytes_ += line.size();
-    lines_.push_back({std::move(line), now});
+    lines_.push_back({std::move(line), input_[end] == '\0' ? LineEnd::kNul : LineEnd::kBreak, now});
   }
   input_.erase(0, begin);
 }
@@ -118,7 +140,10 @@ void RpcSession::half_close() {
 }
 
 void RpcSession::close_if_all_is_said() {
-  if (half_closed_ && !refused_ && !has_request() && unsent_.empty()) close();
+  if (!half_closed_ || refused_ || has_request()) return;
+  if (input_.find_first_not_of(" \t") != std::string::npos)
+    return refuse_with(Dispatcher::mistaken(missing_end(input_)));
+  if (unsent_.empty()) close();
 }
 
 void RpcSession::process() {
@@ -129,14 +154,19 @@ void RpcSession::process() {
     if (looked_at_ > 0) --looked_at_;
     if (line.text.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
     if (begins_foreign_protocol(line.text)) return refuse_with(Dispatcher::foreign_protocol());
+    if (const auto mistake = mistake_in(line.text, line.end)) return refuse_with(Dispatcher::mistaken(*mistake));
+    if (must_log_in_ && !host_.dispatcher.is_log_in(line.text)) return refuse_with(Dispatcher::too_many_connections());
     watch_idle();
     caller_.received = line.received;
     if (auto handled = host_.dispatcher.try_handle(line.text, caller_)) {
       take(std::move(*handled));
     } else {
-      work<Handled>([text = line.text,
-                     caller = caller_](const Dispatcher& dispatcher) { return dispatcher.handle(text, caller); },
-                    &RpcSession::take_and_go_on);
+      work<Handled>(
+          host_.dispatcher.is_log_in(line.text) ? host_.logins : host_.worker,
+          [text = line.text, caller = caller_](const Dispatcher& dispatcher) {
+            return dispatcher.handle(text, caller);
+          },
+          &RpcSession::take_and_go_on);
     }
   }
   if (refused_) return;
@@ -144,17 +174,34 @@ void RpcSession::process() {
   if (refused_) return;
   // Also limits the input that collects behind an open request.
   if (line_bytes_ + input_.size() > Dispatcher::kMaxLineBytes) return refuse_with(Dispatcher::too_long());
+  if (has_request()) return;
+  // What has a length has no end.
+  if (const auto mistake = mistake_in(input_, LineEnd::kNone)) return refuse_with(Dispatcher::mistaken(*mistake));
+  watch_line_end();
   close_if_all_is_said();
 }
 
+void RpcSession::watch_line_end() {
+  line_end_.cancel();
+  if (input_.empty() || half_closed_) return;
+  // Before a connection without a valid request is closed without a word.
+  line_end_.expires_after(std::min(kLongestLineEnd, std::chrono::milliseconds(host_.first_request) / 2));
+  line_end_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+    if (error || self->refused_ || self->has_request() || self->input_.empty()) return;
+    if (self->line_end_.expiry() > std::chrono::steady_clock::now()) return;
+    if (nlohmann::json::accept(self->input_)) self->refuse_with(Dispatcher::mistaken(missing_end(self->input_)));
+  });
+}
+
 void RpcSession::overtake() {
+  const auto behind = waiting_ ? Dispatcher::Behind::kWait : Dispatcher::Behind::kWork;
   while (!refused_ && looked_at_ < lines_.size()) {
     const auto line = lines_.begin() + static_cast<std::ptrdiff_t>(looked_at_);
     // A line of another protocol is refused when its turn comes, and nothing behind it is read.
-    if (begins_foreign_protocol(line->text)) return;
+    if (begins_foreign_protocol(line->text) || mistake_in(line->text, line->end)) return;
     Caller caller = caller_;
     caller.received = line->received;
-    auto handled = host_.dispatcher.try_urgent(line->text, caller);
+    auto handled = host_.dispatcher.try_overtake(line->text, caller, behind);
     if (!handled) {
       ++looked_at_;
       continue;
@@ -166,7 +213,13 @@ void RpcSession::overtake() {
 }
 
 void RpcSession::take(Handled handled) {
-  if (handled.log_in) caller_.who = *std::move(handled.log_in);
+  const bool has_logged_in = handled.log_in.has_value();
+  if (has_logged_in) caller_.who = *std::move(handled.log_in);
+  if (must_log_in_) {
+    if (!has_logged_in && handled.reply) send(std::move(*handled.reply));
+    if (!has_logged_in || !host_.has_room(caller_.who)) return refuse_with(Dispatcher::too_many_connections());
+    must_log_in_ = false;
+  }
   is_accepted_ = is_accepted_ || handled.is_accepted;
   watch_idle();
   parse_errors_in_a_row_ = handled.is_parse_error ? parse_errors_in_a_row_ + 1 : 0;
@@ -182,6 +235,7 @@ void RpcSession::take_and_go_on(Handled handled) {
 
 void RpcSession::begin_wait(WaitingRequest waiting) {
   timed_out_ = false;
+  looked_at_ = 0;  // more may overtake a wait
   wait_.expires_after(waiting.until.timeout);
   waiting_ = std::move(waiting);
   wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
@@ -198,14 +252,21 @@ void RpcSession::check_wait(bool timed_out) {
     check_again_ = true;
     return;
   }
-  if (!timed_out_ && !host_.dispatcher.may_have_come(*waiting_)) return;
+  if (!timed_out_ && !host_.dispatcher.may_have_come(*waiting_)) {
+    if (ending_) end_wait(std::nullopt);
+    return;
+  }
   check_again_ = false;
-  work<std::optional<std::string>>([waiting = *waiting_, late = timed_out_](
-                                       const Dispatcher& dispatcher) { return dispatcher.resume(waiting, late); },
-                                   &RpcSession::end_wait);
+  work<std::optional<std::string>>(
+      host_.worker,
+      [waiting = *waiting_, late = timed_out_](const Dispatcher& dispatcher) {
+        return dispatcher.resume(waiting, late);
+      },
+      &RpcSession::end_wait);
 }
 
 void RpcSession::end_wait(std::optional<std::string> reply) {
+  if (!reply && ending_) reply = host_.dispatcher.ended(*waiting_);
   if (!reply) {
     if (check_again_) check_wait(false);
     return;
@@ -243,6 +304,7 @@ void RpcSession::write() {
                       self->unsent_bytes_ -= count;
                       self->unsent_.pop_front();
                       if (!self->unsent_.empty()) return self->write();
+                      if (self->refused_ && self->half_closed_) return self->close();
                       ErrorCodeOf ignored;
                       if (self->refused_) self->socket_.shutdown(Socket::shutdown_send, ignored);
                       self->close_if_all_is_said();

@@ -16,6 +16,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "daemon/api/dispatcher.hpp"
+#include "daemon/transport/line_mistakes.hpp"
 #include "daemon/transport/worker.hpp"
 
 namespace fvd {
@@ -27,9 +28,11 @@ struct RpcSessionHost {
   boost::asio::io_context& context;  ///< run by the network thread
   const Dispatcher& dispatcher;
   Worker& worker;
+  Worker& logins;  ///< nobody waits behind a slow call to be recognised
   std::chrono::seconds idle_timeout;
   std::chrono::seconds first_request;  ///< a connection without a valid request is closed after it
   std::function<void(const std::shared_ptr<RpcSession>&)> on_close;
+  std::function<bool(const Identity&)> has_room;  ///< for a connection that has just logged in
 };
 
 /// Held by shared_ptr: handlers that are still queued keep it alive. context: the network thread only.
@@ -40,10 +43,15 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   /// caller: who is at the other end, as the connection tells.
   RpcSession(const RpcSessionHost& host, Socket socket, Caller caller);
 
-  /// Serves the client from now on.
-  void start();
+  /// Serves the client from now on. must_log_in: there is no place but for who may control, which it has to show by its
+  /// first request.
+  void start(bool must_log_in);
   /// Tells the client a reason, a whole reply, and closes after it.
   void refuse(std::string reason);
+  /// The daemon ends: what waits is answered, with an error where nothing else is to be said.
+  void end_waits();
+  /// Answers what waits for the worker too, which does not come back in time.
+  void give_up();
   /// Checks the waiting request again: a job changed, or the waiting time is over.
   void resume(bool timed_out);
   /// True if every request was answered and every reply was sent.
@@ -51,6 +59,8 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   [[nodiscard]] const Caller& caller() const noexcept { return caller_; }
   /// True if nothing is answered any more.
   [[nodiscard]] bool is_refused() const noexcept { return refused_; }
+  /// True if it takes no place yet.
+  [[nodiscard]] bool must_log_in() const noexcept { return must_log_in_; }
   /// True if the client closed its sending side.
   [[nodiscard]] bool is_half_closed() const noexcept { return half_closed_; }
   /// Closes at once and calls the host's on_close.
@@ -61,10 +71,11 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
 
   struct Line {
     std::string text;
+    LineEnd end = LineEnd::kBreak;
     HostTime received;  ///< when its end came, however long it waits then
   };
 
-  /// Restarts the idle timeout; an unfinished line does not restart it.
+  /// Restarts the idle timeout; an unfinished line does not restart it, an empty one does.
   void watch_idle();
   void read();
   /// Cuts what has come into lines.
@@ -74,12 +85,14 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   void close_if_all_is_said();
   /// True while a request is open: on the worker, or waiting for a job or the devices.
   [[nodiscard]] bool has_request() const noexcept { return at_work_ || waiting_.has_value(); }
-  /// Runs `what`, which may block, on the worker, then the member `then` with its result on the network thread.
+  /// Runs `what`, which may block, on a worker, then the member `then` with its result on the network thread.
   template <typename Result>
-  void work(std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result));
+  void work(Worker& worker, std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result));
   /// Handles the whole lines at hand, in order; stops at a request that cannot be answered at once.
   void process();
-  /// Answers urgent requests that stand behind an open one.
+  /// A whole text whose end does not come gets a line that says so.
+  void watch_line_end();
+  /// Answers requests that stand behind an open one and may overtake it.
   void overtake();
   void take(Handled handled);
   void take_and_go_on(Handled handled);
@@ -98,18 +111,21 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   boost::asio::steady_timer idle_;
   boost::asio::steady_timer wait_;
+  boost::asio::steady_timer line_end_;
   std::array<char, 4096> chunk_{};
   std::string input_;           // the beginning of a line whose end has not come
   std::deque<Line> lines_;      // that wait for their turn; none is blank
   std::size_t line_bytes_ = 0;  // of lines_
-  std::size_t looked_at_ = 0;   // so many of lines_ hold no urgent request
+  std::size_t looked_at_ = 0;   // so many of lines_ hold no request that may overtake
   std::deque<std::string> unsent_;
   std::size_t unsent_bytes_ = 0;
   std::optional<WaitingRequest> waiting_;
-  bool at_work_ = false;      // the worker runs a task of this session, one at a time
+  bool at_work_ = false;      // a worker runs a task of this session, one at a time
   bool timed_out_ = false;    // of waiting_
   bool check_again_ = false;  // a check was asked for during a check
   bool half_closed_ = false;
+  bool ending_ = false;       // the daemon ends: nothing waits any more
+  bool must_log_in_ = false;
   bool is_accepted_ = false;  // it has made a valid request
   bool refused_ = false;
   int parse_errors_in_a_row_ = 0;

@@ -1,10 +1,12 @@
 #include "daemon/transport/unix_socket.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <utility>
 
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -17,6 +19,7 @@ namespace fvd {
 namespace {
 
 constexpr mode_t kEverybody = 0666;
+constexpr char kBeingMade = '~';  // behind the name
 constexpr std::size_t kGroupsAtFirst = 64;
 
 [[noreturn]] void refuse(ErrorCode code, const std::filesystem::path& file, const std::string& why) {
@@ -27,8 +30,9 @@ sockaddr_un address_of(const std::filesystem::path& file) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string text = file.string();
-  if (text.empty() || text.size() >= sizeof address.sun_path) {
-    refuse(ErrorCode::kBadConfig, file, "a socket's path has 1 to 107 characters");
+  if (text.empty() || text.size() > kLongestSocketPath) {
+    refuse(ErrorCode::kBadConfig, file,
+           "a socket's path has 1 to " + std::to_string(kLongestSocketPath) + " characters");
   }
   std::memcpy(address.sun_path, text.c_str(), text.size() + 1);
   return address;
@@ -60,15 +64,19 @@ UnixSocket::UnixSocket(std::filesystem::path file) : file_(std::move(file)) {
   std::filesystem::create_directories(file_.parent_path(), ignored);
   clear_the_way(file_, address);
   listener_ = new_socket(file_);
-  if (::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    refuse(errno == EADDRINUSE ? ErrorCode::kNotReady : ErrorCode::kStorageWrite, file_, std::strerror(errno));
-  }
+  // Under its own name it is there when it listens and everybody may connect, not before.
+  const std::string made = file_.string() + kBeingMade;
+  sockaddr_un made_address = address;
+  std::memcpy(made_address.sun_path, made.c_str(), made.size() + 1);
+  ::unlink(made.c_str());
   struct stat status {};
-  if (::chmod(file_.c_str(), kEverybody) != 0 || ::lstat(file_.c_str(), &status) != 0 ||
-      ::listen(listener_.get(), SOMAXCONN) != 0) {
-    const std::string why = std::strerror(errno);
-    ::unlink(file_.c_str());
-    refuse(ErrorCode::kStorageWrite, file_, why);
+  if (::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&made_address), sizeof made_address) != 0 ||
+      ::chmod(made.c_str(), kEverybody) != 0 || ::lstat(made.c_str(), &status) != 0 ||
+      ::listen(listener_.get(), SOMAXCONN) != 0 ||
+      ::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, file_.c_str(), RENAME_NOREPLACE) != 0) {
+    const int failure = errno;
+    ::unlink(made.c_str());
+    refuse(failure == EEXIST ? ErrorCode::kNotReady : ErrorCode::kStorageWrite, file_, std::strerror(failure));
   }
   device_ = status.st_dev;
   inode_ = status.st_ino;

@@ -5,17 +5,22 @@
 #include <filesystem>
 
 #include <sys/types.h>
+#include <sys/un.h>
 
 #include "daemon/access/access_rules.hpp"
 #include "daemon/base/unique_fd.hpp"
 
 namespace fvd {
 
+/// One less than a socket's address can hold: while it is made its name is longer.
+inline constexpr std::size_t kLongestSocketPath = sizeof sockaddr_un::sun_path - 2;
+
 /// A listening socket with a file that everybody may connect to: who may do what is decided by the peer's credentials.
 class UnixSocket {
  public:
-  /// Makes the folder. A file that a killed daemon left is replaced. Throws Error kNotReady if a living program listens
-  /// there, kBadConfig if the path is something else or too long, kStorageWrite.
+  /// Makes the folder; the file appears once everybody may connect. A file that a killed daemon left is replaced.
+  /// Throws Error kNotReady if a living program listens there, kBadConfig if the path is something else or too long,
+  /// kStorageWrite.
   explicit UnixSocket(std::filesystem::path file);
   /// Removes the file, unless another program has put its own there.
   ~UnixSocket();

@@ -58,23 +58,6 @@ std::string mac_text(std::span<const std::uint8_t> bytes) {
   return text.data();
 }
 
-/// The camera that a discovery's acknowledge tells of; nothing for an answer that is too short.
-std::optional<FoundCamera> camera_of(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kAnswerBytes) return std::nullopt;
-  FoundCamera camera;
-  camera.mac = mac_text(bytes);
-  camera.ip_configuration = gvcp::get32(bytes, 0x14) & 0x7U;
-  camera.address = gvcp::address_text(gvcp::get32(bytes, 0x24));
-  camera.mask = gvcp::address_text(gvcp::get32(bytes, 0x34));
-  camera.gateway = gvcp::address_text(gvcp::get32(bytes, 0x44));
-  camera.vendor = text_at(bytes, 0x48, 32);
-  camera.model = text_at(bytes, 0x68, 32);
-  camera.firmware = text_at(bytes, 0x88, 32);
-  camera.serial = text_at(bytes, 0xD8, 16);
-  camera.user_name = text_at(bytes, 0xE8, 16);
-  return camera;
-}
-
 void ask_control(GvcpSocket& socket, FoundCamera& camera) {
   const auto address = gvcp::address_of(camera.address);
   const auto privilege = address ? socket.read_register(*address, gvcp::kControlPrivilege) : std::nullopt;
@@ -132,7 +115,7 @@ void collect(Asked& asked, std::uint16_t request, SteadyClock::time_point until,
   for (int answers = 0; answers < kMostAnswers; ++answers) {
     const auto ack = asked.socket.receive(gvcp::kDiscovery, request, until);
     if (!ack) return;
-    auto camera = ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
+    auto camera = ack->status == 0 ? camera_of_answer(ack->payload) : std::nullopt;
     if (!camera) continue;
     if (asked.interface.address != 0) {
       camera->interface = asked.interface.name;
@@ -171,6 +154,22 @@ std::list<Asked> ask_at(std::uint32_t address) {
 }
 
 }  // namespace
+
+std::optional<FoundCamera> camera_of_answer(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kAnswerBytes) return std::nullopt;
+  FoundCamera camera;
+  camera.mac = mac_text(bytes);
+  camera.ip_configuration = gvcp::get32(bytes, 0x14) & 0x7U;
+  camera.address = gvcp::address_text(gvcp::get32(bytes, 0x24));
+  camera.mask = gvcp::address_text(gvcp::get32(bytes, 0x34));
+  camera.gateway = gvcp::address_text(gvcp::get32(bytes, 0x44));
+  camera.vendor = text_at(bytes, 0x48, 32);
+  camera.model = text_at(bytes, 0x68, 32);
+  camera.firmware = text_at(bytes, 0x88, 32);
+  camera.serial = text_at(bytes, 0xD8, 16);
+  camera.user_name = text_at(bytes, 0xE8, 16);
+  return camera;
+}
 
 std::vector<NetworkInterface> network_interfaces(const std::string& named) {
   auto interfaces = interfaces_that([&named](const NetworkInterface& interface, bool loopback) {
@@ -214,7 +213,7 @@ std::optional<FoundCamera> identify_camera(std::uint32_t address, milliseconds p
   while (found.empty() && SteadyClock::now() < end) {
     Asked& one = asked.front();
     const auto ack = one.socket.receive(gvcp::kDiscovery, one.request, std::min(end, SteadyClock::now() + kRepeat));
-    auto camera = ack && ack->status == 0 ? camera_of(ack->payload) : std::nullopt;
+    auto camera = ack && ack->status == 0 ? camera_of_answer(ack->payload) : std::nullopt;
     if (camera) return camera;
     one.ask(address);
   }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct NetworkInterface {
   std::uint32_t address = 0;
   std::uint32_t mask = 0;
 };
+
+/// The camera that the payload of a discovery's acknowledge tells of: bootstrap registers from 0 on. Nothing for one
+/// that is too short.
+[[nodiscard]] std::optional<FoundCamera> camera_of_answer(std::span<const std::uint8_t> payload);
 
 /// Those that are up. named: only the interface of this name, or of this address; empty = all but the loopback.
 /// Throws Error kBadInput if there is none of that name.

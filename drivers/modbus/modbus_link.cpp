@@ -13,6 +13,7 @@
 #include "core/base/exception_text.hpp"
 #include "core/base/mutex.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "drivers/modbus/modbus_queue.hpp"
 #include "drivers/modbus/pause.hpp"
 #include "drivers/modbus/rtu_over_tcp.hpp"
@@ -28,6 +29,8 @@ constexpr std::size_t kLatencySamples = 1024;
 /// Between two attempts of a request that the device puts off.
 constexpr std::chrono::milliseconds kFirstPause{4};
 constexpr std::chrono::milliseconds kLongestPause{200};
+/// With a new connection before it and the line's silence after it: each has a timeout of its own.
+constexpr std::chrono::seconds kLongestRequest{60};
 
 }  // namespace
 
@@ -45,10 +48,13 @@ struct ModbusLink::Impl {
   }
 
   void run(const std::stop_token& stop) {
+    ThreadTicks ticks("fvd-modbus", kLongestRequest);
     for (;;) {
       resolve_doubt(stop);
+      ticks.rest();
       auto request = queue.next(stop);
       if (!request) break;
+      ticks.tick(HostClock::now());
       ModbusReply reply = attempt(*request);
       const bool is_doubt = reply.outcome == ModbusOutcome::kUnknown && !reply.later;
       if (is_doubt && --request->attempts_left > 0 && !stop.stop_requested()) {

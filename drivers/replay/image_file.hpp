@@ -19,8 +19,10 @@ struct ImageFile {
   int max_level = 0;               ///< largest grey level that the file declares; 0: it declares none
   std::vector<std::byte> samples;  ///< shape [height][width][channels], rows contiguous; memory is reused
 
-  /// Allocates the samples. Throws ImageFileError for a size that no camera has: a side below 1 or above 65 535 pixels,
-  /// or more than 2^28 pixels.
+  /// Throws ImageFileError for a size that no camera has: a side below 1 or above 65 535 pixels, or more than 2^28
+  /// pixels.
+  static void check_size(std::int64_t width, std::int64_t height);
+  /// Allocates the samples. Throws as check_size().
   void resize(std::int64_t new_width, std::int64_t new_height, int new_channels, int new_bytes_per_sample);
 
   [[nodiscard]] std::size_t row_bytes() const {

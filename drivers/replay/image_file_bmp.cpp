@@ -91,11 +91,13 @@ void read_bmp(const std::filesystem::path& path, ImageFile& image) {
   const Header header = read_header(file);
   bool grey = false;
   const std::vector<Colour> palette = read_palette(file, header, grey);
-  image.resize(header.width, std::abs(header.height), header.bits <= 8 && grey ? 1 : 3, 1);
+  const std::int64_t height = std::abs(header.height);
+  ImageFile::check_size(header.width, height);
   const std::size_t row_bytes = (static_cast<std::size_t>(header.width) * header.bits + 31) / 32 * 4;
-  if (header.pixels + row_bytes * static_cast<std::size_t>(image.height) > file.size()) {
+  if (header.pixels + row_bytes * static_cast<std::size_t>(height) > file.size()) {
     throw ImageFileError("it ends before its last row of pixels");
   }
+  image.resize(header.width, height, header.bits <= 8 && grey ? 1 : 3, 1);
   for (int y = 0; y < image.height; ++y) {
     const int stored = header.height < 0 ? y : image.height - 1 - y;
     const std::size_t row = header.pixels + row_bytes * static_cast<std::size_t>(stored);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -16,6 +17,21 @@ int header_number(std::istream& stream) {
   int value = 0;
   if (!(stream >> value)) throw ImageFileError("the header of a PGM was expected");
   return value;
+}
+
+/// Before memory is asked for: a damaged header may tell of pixels that are not there. decimal: in numbers, which take
+/// a byte at least.
+void check_length(std::istream& stream, std::int64_t pixels, int bytes_per_sample, bool decimal) {
+  stream.clear();  // a file may end with its header
+  const auto begin = stream.tellg();
+  stream.seekg(0, std::ios::end);
+  const std::int64_t there = std::max<std::int64_t>(stream.tellg() - begin - 1, 0);  // behind the one blank
+  stream.seekg(begin);
+  const std::int64_t wanted = decimal ? pixels : pixels * bytes_per_sample;
+  if (there < wanted) {
+    throw ImageFileError("it ends after " + std::to_string(there) + " of " + std::to_string(wanted) +
+                         " bytes of pixels");
+  }
 }
 
 void read_binary(std::istream& stream, ImageFile& image) {
@@ -56,7 +72,10 @@ void read_pgm(const std::filesystem::path& file, ImageFile& image) {
   if (max_level < 1 || max_level > std::numeric_limits<std::uint16_t>::max()) {
     throw ImageFileError("a largest level of " + std::to_string(max_level) + " is not one of a PGM");
   }
-  image.resize(width, height, 1, max_level > std::numeric_limits<std::uint8_t>::max() ? 2 : 1);
+  const int bytes_per_sample = max_level > std::numeric_limits<std::uint8_t>::max() ? 2 : 1;
+  ImageFile::check_size(width, height);
+  check_length(stream, std::int64_t{width} * height, bytes_per_sample, magic == "P2");
+  image.resize(width, height, 1, bytes_per_sample);
   image.max_level = max_level;
   if (magic == "P5") {
     read_binary(stream, image);

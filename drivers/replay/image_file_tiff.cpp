@@ -50,8 +50,18 @@ struct Plane {
   }
 };
 
+/// Memory for a row or a tile of the file; 0 bytes is libtiff's word for a size beyond all numbers. Throws
+/// ImageFileError for more than a picture has: a damaged tag must not ask for all memory.
+std::vector<std::byte> buffer_of(std::uint64_t bytes) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28U;
+  if (bytes == 0 || bytes > kMostBytes) {
+    throw ImageFileError("its rows or tiles of " + std::to_string(bytes) + " bytes are not those of a picture");
+  }
+  return std::vector<std::byte>(static_cast<std::size_t>(bytes));
+}
+
 bool read_strips(TIFF* tiff, const Plane& plane, ImageFile& image) {
-  std::vector<std::byte> line(static_cast<std::size_t>(TIFFScanlineSize64(tiff)));
+  std::vector<std::byte> line = buffer_of(TIFFScanlineSize64(tiff));
   std::vector<std::byte> spread;
   for (int y = 0; y < image.height; ++y) {
     if (TIFFReadScanline(tiff, line.data(), static_cast<std::uint32_t>(y), plane.index) != 1) return false;
@@ -65,7 +75,7 @@ bool read_tiles(TIFF* tiff, const Plane& plane, ImageFile& image) {
   std::uint32_t height = 0;
   TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
   TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
-  std::vector<std::byte> tile(static_cast<std::size_t>(TIFFTileSize64(tiff)));
+  std::vector<std::byte> tile = buffer_of(TIFFTileSize64(tiff));
   std::vector<std::byte> spread;
   const std::size_t row_bytes = static_cast<std::size_t>(TIFFTileRowSize64(tiff));
   const auto pixel_bytes = static_cast<std::size_t>(image.channels) * static_cast<std::size_t>(image.bytes_per_sample);
@@ -173,7 +183,7 @@ void read_contiguous_tiff(const std::filesystem::path& file, int index, ImageFil
   image.resize(page.width, page.height, page.channels(), samples.bytes());
   const Plane plane{0, 0, image.channels, page.samples, samples};
   const std::size_t row_samples = std::size_t{page.width} * page.samples;
-  std::vector<std::byte> line(row_samples * (page.bits / 8U));
+  std::vector<std::byte> line = buffer_of(row_samples * (page.bits / 8U));
   std::vector<std::byte> spread;
   std::ifstream stream(file, std::ios::binary);
   const std::uint64_t image_bytes = std::uint64_t{line.size()} * page.height;

@@ -9,6 +9,9 @@
 
 namespace fvd {
 
+/// More pages than any stack has: a damaged description must not ask for all memory.
+inline constexpr int kMaxPages = 1'000'000;
+
 /// One page's place in the stack; all numbers 0-based.
 struct PagePlace {
   int page = 0;  ///< see PageDescription::by_directory

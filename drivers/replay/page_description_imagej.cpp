@@ -83,6 +83,10 @@ std::optional<PageDescription> read_imagej_description(std::string_view text) {
   description.slices = count_of(values, "slices");
   description.times = count_of(values, "frames");
   description.spacing_um = spacing_um(values);
+  if (std::max({images, description.channels, description.slices, description.times}) > kMaxPages) {
+    description.problem = "it tells of more than a million images";
+    return description;
+  }
   const long long told = 1LL * description.channels * description.slices * description.times;
   if (told == 1) description.slices = images;
   if (told != 1 && told != images) {

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include <tinyxml2.h>
 
@@ -12,9 +15,6 @@ namespace fvd {
 namespace {
 
 using tinyxml2::XMLElement;
-
-/// More pages than any stack has: a damaged description must not ask for all memory.
-constexpr int kMaxPages = 1'000'000;
 
 /// The name without its namespace.
 bool is_named(const XMLElement& element, const char* name) {
@@ -79,7 +79,7 @@ class Pixels {
 
   /// Samples of one page are one channel, whatever SizeC counts.
   void read_channels(int samples_per_page) {
-    int samples = 0;
+    std::int64_t samples = 0;
     const auto channels = children(element_, "Channel");
     for (const XMLElement* channel : channels) {
       samples += std::max(1, channel->IntAttribute("SamplesPerPixel", 1));
@@ -141,6 +141,10 @@ class Pixels {
       const int directory = std::clamp(block->IntAttribute("IFD", 0), 0, kMaxPages);
       const bool whole = block->Attribute("IFD") == nullptr && block->Attribute("PlaneCount") == nullptr;
       const int pages = std::clamp(block->IntAttribute("PlaneCount", whole ? all : 1), 0, all - begin);
+      if (description_.pages.size() + static_cast<std::size_t>(pages) > kMaxPages) {
+        description_.problem = "its TiffData elements tell of more than a million pages";
+        return;
+      }
       for (int i = 0; i < pages; ++i) {
         PagePlace place = place_at(begin + i);
         place.page = directory + i;
@@ -155,16 +159,17 @@ class Pixels {
 
   /// Positions count only in a unit of length; the schema's default is an unknown one of the microscope's.
   void read_positions() {
+    std::map<std::tuple<int, int, int>, double> positions_um;
     for (const XMLElement* plane : children(element_, "Plane")) {
       const double unit_um = described_unit_um(text_of(*plane, "PositionZUnit"));
-      if (unit_um == 0.0 || plane->Attribute("PositionZ") == nullptr) continue;
-      const int z = plane->IntAttribute("TheZ", -1);
-      const int channel = plane->IntAttribute("TheC", -1);
-      const int time = plane->IntAttribute("TheT", -1);
-      for (PagePlace& place : description_.pages) {
-        if (place.z != z || place.channel != channel || place.time != time) continue;
-        place.z_um = plane->DoubleAttribute("PositionZ") * unit_um;
-      }
+      const double position_um = plane->DoubleAttribute("PositionZ") * unit_um;
+      if (unit_um == 0.0 || plane->Attribute("PositionZ") == nullptr || !std::isfinite(position_um)) continue;
+      positions_um[{plane->IntAttribute("TheZ", -1), plane->IntAttribute("TheC", -1),
+                    plane->IntAttribute("TheT", -1)}] = position_um;
+    }
+    for (PagePlace& place : description_.pages) {
+      const auto found = positions_um.find({place.z, place.channel, place.time});
+      if (found != positions_um.end()) place.z_um = found->second;
     }
   }
 

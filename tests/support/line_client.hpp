@@ -67,6 +67,17 @@ class LineClient {
     }
   }
 
+  /// The next so many bytes; nothing after the deadline or when the server closed before.
+  std::optional<std::string> bytes(std::size_t count, std::chrono::milliseconds within = std::chrono::seconds(5)) {
+    const auto deadline = std::chrono::steady_clock::now() + within;
+    while (input_.size() < count) {
+      if (closed_ || !receive(deadline)) return std::nullopt;
+    }
+    std::string text = input_.substr(0, count);
+    input_.erase(0, count);
+    return text;
+  }
+
   /// True when the server closes the connection in time.
   bool closes(std::chrono::milliseconds within = std::chrono::seconds(5)) {
     const auto deadline = std::chrono::steady_clock::now() + within;

@@ -5,6 +5,7 @@
 # FVD_CXX         compiler in place of the system's
 # FVD_FLAGS       flags of the compiler in place of those of the build type RelWithDebInfo (assertions stay on)
 # FVD_TEST_FLAGS  flags of what lies below tests, after those
+# FVD_UNITY       ON: the test sources of one program compile together
 
 FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
@@ -76,6 +77,7 @@ fvd_cmake() {
   [ -z "${FVD_CXX:-}" ] || flags=(-DCMAKE_CXX_COMPILER="$FVD_CXX")
   [ -z "${FVD_FLAGS:-}" ] || flags+=(-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$FVD_FLAGS")
   [ -z "${FVD_TEST_FLAGS:-}" ] || flags+=(-DFVD_TEST_FLAGS="$FVD_TEST_FLAGS")
+  flags+=(-DFVD_UNITY="${FVD_UNITY:-OFF}")  # off again for the checks, which look at every source
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
     -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" "${flags[@]}"
 }

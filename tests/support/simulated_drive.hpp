@@ -3,6 +3,7 @@
 /// A simulated drive of any kind on either line, and the stage that drives it by the shipped profile.
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <ostream>
@@ -26,6 +27,14 @@ inline constexpr DriveCase kDriveCases[] = {{sim::DriveKind::kAz, "oriental-az.j
                                             {sim::DriveKind::kLeadshine, "leadshine-pr.json", "Leadshine"},
                                             {sim::DriveKind::kScl, "applied-motion-scl.json", "Scl"},
                                             {sim::DriveKind::kCia402, "nanotec-cia402.json", "Cia402"}};
+inline constexpr DriveCase kCia402 = kDriveCases[4];
+inline constexpr int kCia402Controlword = 6000;
+
+/// Standstill as most of the tests ask for it.
+inline constexpr SettleCriterion kCriterion{.window = Micrometers{0.5},
+                                            .samples = 3,
+                                            .dwell = std::chrono::milliseconds(10),
+                                            .timeout = std::chrono::milliseconds(5000)};
 
 inline std::ostream& operator<<(std::ostream& out, const DriveCase& drive) { return out << drive.name; }
 

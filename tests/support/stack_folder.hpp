@@ -53,4 +53,7 @@ inline void write_pages(const std::filesystem::path& file, int count, double foc
   cv::imwritemulti(file.string(), pages);
 }
 
+/// A map of floating point numbers; empty where there is none.
+inline cv::Mat read_float(const std::filesystem::path& path) { return cv::imread(path.string(), cv::IMREAD_UNCHANGED); }
+
 }  // namespace fvd::test

@@ -4,7 +4,7 @@
 package_test.py --build FOLDER [--old-build FOLDER] [--cache FOLDER]
   --build      a build with fvd, fvdctl, fvd-sim and man
   --old-build  the folder "build" in the sources of version 0.4.0, whose programs and configuration are in the package
-               that is upgraded; without it the new ones are. Its unit is that of 0.4.0 (DynamicUser) either way, and it has nothing that came since
+               that is upgraded; without it the new ones are, and their database is made one of version 10. Its unit is that of 0.4.0 (DynamicUser) either way, and it has nothing that came since
 Prints a line for each step, and as its last line one JSON object of what holds. Exit code 77: not possible here, as the
 line before says.
 """
@@ -14,6 +14,7 @@ import os
 import pathlib
 import re
 import shutil
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -69,8 +70,9 @@ def depends_of(deb):
 class Life:
     """The steps, in their order; each proves its claims and notes what holds."""
 
-    def __init__(self, machine, old, new):
+    def __init__(self, machine, old, new, has_old_programs):
         self.machine, self.old, self.new, self.holds = machine, old, new, {}
+        self.has_old_programs = has_old_programs
 
     # --- questions ---
 
@@ -115,11 +117,34 @@ class Life:
         self.wait_ready()
         self.machine.run("fvdctl", "start", "--part", "part-1", "--recipe", "mine", "--watch")
 
+    def make_database_older(self):
+        """As 0.5.0 left it (version 10), where today's programs stood in for those of the old package."""
+        self.machine.run("systemctl", "stop", "fvd")
+        found = [path for path in (self.machine.root / "var/lib/private/fvd", self.machine.root / "var/lib/fvd")
+                 if (path / "fvd.sqlite").exists()]
+        assert found, "no database"
+        database = sqlite3.connect(found[0] / "fvd.sqlite")
+        for index in ("jobs_with_results", "jobs_with_removed_results"):
+            database.execute(f"DROP INDEX {index}")
+        for column in ("session", "verdict", "reason_codes", "removed_utc"):
+            database.execute(f"ALTER TABLE jobs DROP COLUMN {column}")
+        for table in ("audit", "seq_floors", "prepared_recipe"):
+            database.execute(f"DROP TABLE {table}")
+        database.execute("PRAGMA user_version = 10")
+        database.commit()
+        database.close()
+        for name in ("fvd.epoch", "fvd.sqlite-shm", "fvd.sqlite-wal"):
+            (found[0] / name).unlink(missing_ok=True)
+
     def upgrade(self):
         before = self.state()
+        if not self.has_old_programs:
+            self.make_database_older()
         self.dpkg("-i", "/packages/new.deb")
         self.wait("the new daemon is ready", lambda: self.state().get("epoch", 0) > before["epoch"] and self.state()["ready"])
         assert self.show("User") == "fvd"
+        if not self.has_old_programs:
+            assert (self.machine.root / "var/lib/fvd/fvd.sqlite.v10").exists(), "no copy was kept before the upgrade"
         latest = json.loads(self.machine.run("fvdctl", "rpc", "job.latest", '{"client": "fvdctl"}'))
         assert latest["seq"] >= 1, latest
         result = json.loads(self.machine.run("fvdctl", "result", "--format", "full"))
@@ -164,7 +189,8 @@ class Life:
 
     def take_port(self):
         self.machine.run("systemctl", "stop", "fvd")
-        self.configure("/etc/fvd/conf.d/60-late.json", '{"rpc": {"address": "192.0.2.7"}}')
+        rpc = {"address": "192.0.2.7", "allow": [{"address": "192.0.2.0/24", "role": "operate"}]}
+        self.configure("/etc/fvd/conf.d/60-late.json", json.dumps({"rpc": rpc}))
         self.machine.run("systemctl", "start", "--no-block", "fvd")
         self.wait("it waits", lambda: "no network card has this address" in self.show("StatusText"))
         pid = self.show("MainPID")
@@ -200,10 +226,10 @@ class Life:
 
     def purge(self):
         self.machine.shell("rm -rf /var/lib/fvd/results/* && mkdir -p /var/lib/fvd/calibration && "
-                           "echo '{}' > /var/lib/fvd/calibration/calibration.json")
+                           "echo '{\"format\": 1, \"versions\": []}' > /var/lib/fvd/calibration/calibration.json")
         said = self.dpkg("-P", "fvd")
         assert self.machine.try_run("test", "-e", "/etc/fvd/fvd.json")[0] != 0
-        assert "results stay in /var/lib/fvd" in said, said
+        assert "stay in /var/lib/fvd" in said, said
         for kept in ("calibration/calibration.json", "fvd.sqlite"):
             self.machine.run("test", "-e", f"/var/lib/fvd/{kept}")
         assert self.machine.try_run("systemctl", "cat", "fvd")[0] != 0
@@ -248,7 +274,7 @@ def main():
         shutil.copy(old, machine.root / "packages/old.deb")
         shutil.copy(new, machine.root / "packages/new.deb")
         machine.boot()
-        life = Life(machine, old, new)
+        life = Life(machine, old, new, options.old_build is not None)
         for step in (life.install_old, life.upgrade, life.kill, life.hang, life.reload, life.take_port, life.break_file,
                      life.remove, life.purge, life.install_new):
             begun = time.monotonic()

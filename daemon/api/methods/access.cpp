@@ -152,6 +152,7 @@ void add_access_methods(MethodTable& methods, const Services& services) {
                 .params = described<LoginParams>(),
                 .result = describe_identity,
                 .errors = {ErrorCode::kBadConfig},
+                .is_log_in = true,
                 .needs_id = true},
       .run = with<LoginParams>([&access = services.access](const Call& call, const LoginParams& params) {
         return log_in(access, call, params);

@@ -44,12 +44,14 @@ struct WaitParams {
   std::string until = "done";
   std::int64_t timeout_ms = kLongestWait_ms;
   ClientParam client;
+  ReplyFormParams form;
 
   void describe(Fields& fields) {
     job.describe(fields);
     fields.choice("until", until, {"acquired", "done"}, "acquired = the part may be moved");
     fields.integer64("timeout_ms", timeout_ms, {0, kLongestWait_ms}, "then the job's status comes as it is");
     client.describe(fields);
+    form.describe(fields, describe_job_status);
   }
 };
 
@@ -100,8 +102,9 @@ Answer wait_for_job(const Services& services, const Call& call, const WaitParams
   const auto latest = latest_job(services.machine, key);
   const JobStatus job = latest ? *latest : services.jobs.job(key);
   // In a batch a wait is out of place: there it answers at once.
-  if (!call.may_wait) return job_status_json(job);
-  return Deferred{JobWait{job.job_id, params.until == "acquired"}, std::chrono::milliseconds(params.timeout_ms)};
+  if (!call.may_wait) return job_status_reply(job, params.form.form(), call.envelope_bytes);
+  return Deferred{JobWait{job.job_id, params.until == "acquired", params.form.form()},
+                  std::chrono::milliseconds(params.timeout_ms)};
 }
 
 }  // namespace
@@ -118,6 +121,7 @@ void add_job_methods(MethodTable& methods, const Services& services) {
                 .moves_stage = true,
                 .needs_control = true,
                 .is_audited = true,
+                .is_brief = true,
                 .needs_id = true},
       .run = with<StartParams>([&jobs = services.jobs](const Call& call, const StartParams& params) {
         return start_job(jobs, call, params);
@@ -125,47 +129,55 @@ void add_job_methods(MethodTable& methods, const Services& services) {
   methods["job.status"] = {
       .about = {.summary = "What a job is doing",
                 .role = Role::kView,
-                .params = described<OneJobParams>(),
+                .params = described<JobStatusParams>(),
                 .result = describe_job_status,
-                .errors = {kUnknownJob}},
-      .peek = with<OneJobParams>(
-          [&machine = services.machine](const Call&, const OneJobParams& params) -> std::optional<Answer> {
+                .errors = {kUnknownJob},
+                .is_brief = true},
+      .peek = with<JobStatusParams>(
+          [&machine = services.machine](const Call& call, const JobStatusParams& params) -> std::optional<Answer> {
             const auto job = latest_job(machine, params.key());
-            return job ? std::optional<Answer>(job_status_json(*job)) : std::nullopt;
+            return job ? std::optional<Answer>(job_status_reply(*job, params.form.form(), call.envelope_bytes))
+                       : std::nullopt;
           }),
-      .run = with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) {
-        return job_status_json(jobs.job(params.key()));
+      .run = with<JobStatusParams>([&jobs = services.jobs](const Call& call, const JobStatusParams& params) {
+        return job_status_reply(jobs.job(params.key()), params.form.form(), call.envelope_bytes);
       })};
-  methods["job.wait"] = {.about = {.summary = "Answers when the job is acquired or done",
-                                   .role = Role::kView,
-                                   .params = described<WaitParams>(),
-                                   .result = describe_job_status,
-                                   .errors = {kUnknownJob},
-                                   .may_wait = true},
-                         .run = with<WaitParams>([services](const Call& call, const WaitParams& params) {
-                           return wait_for_job(services, call, params);
-                         })};
+  methods["job.wait"] = {
+      .about = {.summary =
+                    "Answers when the job is acquired or done; until then its connection holds up what needs the disk, "
+                    "and answers everything else",
+                .role = Role::kView,
+                .params = described<WaitParams>(),
+                .result = describe_job_status,
+                .errors = {kUnknownJob},
+                .may_wait = true,
+                .is_brief = true},
+      .run = with<WaitParams>(
+          [services](const Call& call, const WaitParams& params) { return wait_for_job(services, call, params); })};
   methods["job.abort"] = {
       .about = {.summary = "Ends a job; no effect on one that has ended",
                 .role = Role::kOperate,
-                .params = described<OneJobParams>(),
+                .params = described<JobStatusParams>(),
                 .result = describe_job_status,
                 .errors = {kUnknownJob},
                 .is_urgent = true,
-                .is_audited = true},
-      .peek =
-          with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) -> std::optional<Answer> {
+                .is_audited = true,
+                .is_brief = true},
+      .peek = with<JobStatusParams>(
+          [&jobs = services.jobs](const Call& call, const JobStatusParams& params) -> std::optional<Answer> {
             const auto job = jobs.try_abort(params.key());
-            return job ? std::optional<Answer>(job_status_json(*job)) : std::nullopt;
+            return job ? std::optional<Answer>(job_status_reply(*job, params.form.form(), call.envelope_bytes))
+                       : std::nullopt;
           }),
-      .run = with<OneJobParams>([&jobs = services.jobs](const Call&, const OneJobParams& params) {
-        return job_status_json(jobs.abort(params.key()));
+      .run = with<JobStatusParams>([&jobs = services.jobs](const Call& call, const JobStatusParams& params) {
+        return job_status_reply(jobs.abort(params.key()), params.form.form(), call.envelope_bytes);
       })};
   methods["job.latest"] = {
       .about = {.summary = "A client's job with the highest seq; its next number is one more than newest_seq",
                 .role = Role::kView,
                 .params = described<ClientParam>(),
-                .result = describe_latest},
+                .result = describe_latest,
+                .is_brief = true},
       .run = with<ClientParam>([services](const Call&, const ClientParam& params) -> Answer {
         const auto job = services.jobs.highest(params.checked());
         const std::int64_t seq = job ? job->request.seq : 0;

@@ -1,6 +1,7 @@
 #include "daemon/api/methods/job_key_params.hpp"
 
 #include "daemon/api/caller.hpp"
+#include "daemon/api/json_shapes.hpp"
 #include "daemon/api/params.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/rpc_errors.hpp"
@@ -38,6 +39,12 @@ JobKey JobKeyParams::key(const ClientParam& client) const {
   const std::string& whose = client.checked();
   if (job_id) return *job_id;
   return ClientSeq{*seq, whose};
+}
+
+void JobStatusParams::describe(Fields& fields) {
+  job.describe(fields);
+  client.describe(fields);
+  form.describe(fields, describe_job_status);
 }
 
 void OneJobParams::describe(Fields& fields) {

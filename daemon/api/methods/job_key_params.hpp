@@ -7,6 +7,7 @@
 #include <string>
 
 #include "config/fields.hpp"
+#include "daemon/api/reply_form.hpp"
 #include "daemon/store/job_status.hpp"
 
 namespace fvd {
@@ -32,6 +33,15 @@ struct JobKeyParams {
 struct OneJobParams {
   JobKeyParams job;
   ClientParam client;
+  void describe(Fields& fields);
+  [[nodiscard]] JobKey key() const { return job.key(client); }
+};
+
+/// The same for methods that tell a job's status.
+struct JobStatusParams {
+  JobKeyParams job;
+  ClientParam client;
+  ReplyFormParams form;
   void describe(Fields& fields);
   [[nodiscard]] JobKey key() const { return job.key(client); }
 };

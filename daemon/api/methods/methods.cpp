@@ -14,6 +14,8 @@ void describe_openrpc(Fields& fields) {
   result.text("openrpc", "version of OpenRPC");
   result.any("info", "an object: title, version");
   result.any("methods", "a list of objects, one per method");
+  result.any("x-errors", "a list of objects: code, name, retry, meaning of every error");
+  result.any("x-line", "an object: in which order and how patiently the program of a line asks");
 }
 
 }  // namespace

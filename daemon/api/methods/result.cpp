@@ -1,11 +1,11 @@
 /// Results of jobs that ended.
 
-#include "daemon/api/json_shapes.hpp"
 #include "daemon/api/methods/device_task.hpp"
 #include "daemon/api/methods/job_key_params.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/result_fields.hpp"
+#include "daemon/api/result_shapes.hpp"
 
 namespace fvd {
 
@@ -15,13 +15,15 @@ struct GetParams {
   JobKeyParams job;
   std::string format = "compact";
   ClientParam client;
+  std::vector<std::string> fields;
 
-  void describe(Fields& fields) {
-    job.describe(fields);
-    fields.choice("format", format, {"compact", "full", "complete"},
-                  "compact: at most 512 bytes, 440 with an evaluation; full: at most 2560 bytes, and the warnings; "
-                  "complete: result.json, of any length");
-    client.describe(fields);
+  void describe(Fields& described) {
+    job.describe(described);
+    described.choice("format", format, {"compact", "full", "complete"},
+                     "compact: at most 440 bytes; full: at most 1400 bytes, and the warnings; complete: result.json, "
+                     "of any length");
+    client.describe(described);
+    describe_fields_param(described, fields, describe_result);
   }
 };
 
@@ -51,17 +53,15 @@ void describe_acknowledged(Fields& fields) {
   ResultFields(fields).integer("remaining", "results that are not acknowledged yet");
 }
 
-Reply result_of(const Services& services, const JobKey& key, const std::string& format) {
+Reply result_of(const Services& services, const JobKey& key, const ReplyForm& form, std::size_t envelope_bytes) {
   const StoredJob stored = services.results.stored(key);
   if (!stored.status.removed_utc.empty()) {
-    throw Error(ErrorCode::kUnknownJob, "the result of job " + stored.status.job_id + " was removed at " +
-                                            stored.status.removed_utc +
-                                            " to make room, as the configuration's group store says: job.status " +
-                                            "tells what the job came to");
+    throw Error(ErrorCode::kResultRemoved, "the result of job " + stored.status.job_id + " was removed at " +
+                                               stored.status.removed_utc +
+                                               " to make room, as the configuration's group store says: job.status " +
+                                               "tells what the job came to");
   }
-  if (format == "compact") return compact_result_json(stored.status, stored.result_json);
-  if (format == "complete") return complete_result_json(stored.status, stored.result_json, stored.result_dir);
-  return full_result_json(stored.status, stored.result_json, stored.result_dir);
+  return result_reply(stored, form, envelope_bytes);
 }
 
 }  // namespace
@@ -72,9 +72,11 @@ void add_result_methods(MethodTable& methods, const Services& services) {
                                      .role = Role::kView,
                                      .params = described<GetParams>(),
                                      .result = describe_result,
-                                     .errors = {kUnknownJob}},
-                           .run = with<GetParams>([services](const Call&, const GetParams& params) {
-                             return result_of(services, params.job.key(params.client), params.format);
+                                     .errors = {kUnknownJob, kResultRemoved},
+                                     .is_brief = true},
+                           .run = with<GetParams>([services](const Call& call, const GetParams& params) {
+                             return result_of(services, params.job.key(params.client),
+                                              {reply_format(params.format), params.fields}, call.envelope_bytes);
                            })};
   methods["result.evaluate"] = {
       .about = {.summary =
@@ -95,17 +97,20 @@ void add_result_methods(MethodTable& methods, const Services& services) {
                     "The oldest result that was not acknowledged, of any client; job_id is empty if there is none",
                 .role = Role::kView,
                 .params = described<NoParams>(),
-                .result = describe_next_result},
-      .run = [services](const Call&) -> Answer {
+                .result = describe_next_result,
+                .is_brief = true},
+      .run = [services](const Call& call) -> Answer {
         const auto job = services.results.next_unacknowledged();
-        return job ? result_of(services, job->job_id, "compact") : Reply{{"job_id", ""}};
+        return job ? result_of(services, job->job_id, {ReplyFormat::kCompact}, call.envelope_bytes)
+                   : Reply{{"job_id", ""}};
       }};
   methods["result.ack"] = {
       .about = {.summary = "Acknowledges a result; nothing is deleted",
                 .role = Role::kOperate,
                 .params = described<OneJobParams>(),
                 .result = describe_acknowledged,
-                .errors = {kBusy, kUnknownJob, kDatabase, kStorageFull}},
+                .errors = {kBusy, kUnknownJob, kDatabase, kStorageFull},
+                .is_brief = true},
       .run = with<OneJobParams>([&results = services.results](const Call&, const OneJobParams& params) {
         return Reply{{"remaining", results.acknowledge(params.key())}};
       })};

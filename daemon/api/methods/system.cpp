@@ -19,6 +19,16 @@ struct PingParams {
   void describe(Fields& fields) { fields.any("t", t_json, kMaxForeignText_bytes, "returned as it came"); }
 };
 
+struct StateParams {
+  ClientParam client;
+  ReplyFormParams form;
+
+  void describe(Fields& fields) {
+    client.describe(fields);
+    form.describe(fields, describe_machine_status);
+  }
+};
+
 void describe_ping(Fields& fields) {
   const ResultFields result(fields);
   result.integer("hb", "heartbeat: counts up once a second");
@@ -63,7 +73,8 @@ void add_system_methods(MethodTable& methods, const Services& services, std::chr
   methods["system.ping"] = {.about = {.summary = "Heartbeat",
                                       .role = Role::kView,
                                       .params = described<PingParams>(),
-                                      .result = describe_ping},
+                                      .result = describe_ping,
+                                      .is_brief = true},
                             .peek = [&machine = services.machine, heartbeat](const Call& call) -> Answer {
                               Reply reply{{"hb", heartbeat()}, {"epoch", machine.snapshot()->epoch}};
                               if (call.params.contains("t")) reply["t"] = call.params["t"];
@@ -78,12 +89,14 @@ void add_system_methods(MethodTable& methods, const Services& services, std::chr
   methods["system.state"] = {
       .about = {.summary = "The machine's state, flat and cheap to poll",
                 .role = Role::kView,
-                .params = described<ClientParam>(),
-                .result = describe_machine_status},
-      .peek = with<ClientParam>(
-          [&machine = services.machine, heartbeat](const Call&, const ClientParam& params) -> std::optional<Answer> {
-            return Answer(machine_status_json(*machine.snapshot(), params.checked(), heartbeat()));
-          })};
+                .params = described<StateParams>(),
+                .result = describe_machine_status,
+                .is_brief = true},
+      .peek = with<StateParams>([&machine = services.machine, heartbeat](
+                                    const Call& call, const StateParams& params) -> std::optional<Answer> {
+        return Answer(machine_status_reply(*machine.snapshot(), params.client.checked(), heartbeat(),
+                                           params.form.form(), call.envelope_bytes));
+      })};
   MethodDescription reset = task_description(
       "Asks the devices whether the cause of an error is gone; an error ends with its cause, and with nothing else",
       Role::kOperate, described<NoParams>(), describe_reset, {ErrorCode::kStageAlarm, ErrorCode::kStageDisconnected},

@@ -24,6 +24,16 @@ TEST(ThreadTicks, StallsOnceItsLastTickIsOlderThanAllowed) {
   EXPECT_THAT(stalled_threads(kStart + milliseconds(1101)), testing::SizeIs(1));
 }
 
+TEST(ThreadTicks, MayTakeAsLongAsItSaidBeforeAStep) {
+  ThreadTicks ticks("machine", milliseconds(500));
+  ticks.tick(kStart, milliseconds(9000));
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(9000)), IsEmpty());
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(9001)),
+              ElementsAre(StalledThread{"machine", milliseconds(9001), milliseconds(9000)}));
+  ticks.tick(kStart + milliseconds(10000));
+  EXPECT_THAT(stalled_threads(kStart + milliseconds(10501)), testing::SizeIs(1)) << "of that step alone";
+}
+
 TEST(ThreadTicks, DoesNotStallWhileItRests) {
   ThreadTicks ticks("camera", milliseconds(500));
   EXPECT_THAT(stalled_threads(kStart + std::chrono::hours(24)), IsEmpty()) << "before its first work";

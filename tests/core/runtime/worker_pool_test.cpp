@@ -1,10 +1,13 @@
 #include "core/runtime/worker_pool.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include "core/base/clock.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "gtest/gtest.h"
 
 namespace fvd {
@@ -32,6 +35,23 @@ TEST(WorkerPool, ForwardsAnExceptionAndStaysUsable) {
   std::atomic<int> calls{0};
   pool.run(10, [&](int) { ++calls; });
   EXPECT_EQ(calls, 10);
+}
+
+TEST(WorkerPool, HasThreadsThatAreSeenToHang) {
+  WorkerPool pool(2);
+  std::atomic<int> begun{0};
+  std::atomic<bool> seen{false};
+  pool.run(2, [&](int index) {
+    for (++begun; begun < 2;) std::this_thread::yield();  // one index on each thread
+    if (index == 1) {
+      const auto stalled = stalled_threads(HostClock::now() + std::chrono::minutes(11));
+      seen = stalled.size() == 1 && stalled.front().name == "fvd-worker";
+      ++begun;
+    }
+    while (begun < 3) std::this_thread::yield();
+  });
+  EXPECT_TRUE(seen);
+  EXPECT_TRUE(stalled_threads(HostClock::now()).empty());
 }
 
 TEST(WorkerPool, RunsLoopsInsideOfItsLoops) {

@@ -70,19 +70,23 @@ TEST_F(AnInstrumentWithSeveralCallers, StopsWithoutAWorker) {
   service_.current = JobStatus{};
   service_.current->job_id = "J1";
   for (const std::string& line : {call("stage.stop"), call("job.abort", {{"job_id", "J1"}})}) {
-    const auto handled = dispatcher_.try_urgent(line, plc_);
+    const auto handled = dispatcher_.try_overtake(line, plc_, Dispatcher::Behind::kWork);
     ASSERT_TRUE(handled) << line;
     EXPECT_TRUE(json::parse(handled->reply.value()).contains("result")) << *handled->reply;
   }
   EXPECT_EQ(service_.stops, 1);
   EXPECT_EQ(service_.aborts, 1);
-  EXPECT_FALSE(dispatcher_.try_urgent(call("job.abort", {{"job_id", "J0"}}), plc_)) << "it waits for its turn";
+  EXPECT_FALSE(dispatcher_.try_overtake(call("job.abort", {{"job_id", "J0"}}), plc_, Dispatcher::Behind::kWork))
+      << "it waits for its turn";
   for (const std::string& line : {call("system.ping"), start_, std::string("[") + call("stage.stop") + "]",
                                   std::string("{\"method\": 1}"), std::string("nonsense"), std::string("7")}) {
-    EXPECT_FALSE(dispatcher_.try_urgent(line, plc_)) << line;
+    EXPECT_FALSE(dispatcher_.try_overtake(line, plc_, Dispatcher::Behind::kWork)) << line;
   }
+  EXPECT_TRUE(dispatcher_.try_overtake(call("system.ping"), plc_, Dispatcher::Behind::kWait));
+  EXPECT_FALSE(dispatcher_.try_overtake(start_, plc_, Dispatcher::Behind::kWait));
   EXPECT_EQ(code_of({.who = {"viewer", Role::kView}}, call("stage.stop")), 1004);
-  EXPECT_FALSE(dispatcher_.try_urgent(call("stage.stop"), {.who = {"viewer", Role::kView}}))
+  EXPECT_FALSE(
+      dispatcher_.try_overtake(call("stage.stop"), {.who = {"viewer", Role::kView}}, Dispatcher::Behind::kWork))
       << "a log-in before it may give it the role";
   const json batch = answer_to(plc_, "[" + call("system.ping") + "," + call("stage.stop") + "]");
   EXPECT_EQ(batch[1]["error"]["code"], -32600) << "nothing is to hold it back, and nothing to do it twice";
@@ -117,6 +121,23 @@ TEST_F(AnInstrumentWithSeveralCallers, JogsAsLongAsItIsAskedTo) {
     EXPECT_EQ(code_of(page, call("stage.jog", params)), -32602) << params;
   }
   EXPECT_EQ(service_.jogs.size(), 2U);
+}
+
+TEST_F(AnInstrumentWithSeveralCallers, WritesDownHowItEndedWhereTheReplyComesLater) {
+  Caller page = page_;
+  page.received = HostClock::now();
+  (void)dispatcher_.handle(call("stage.move", {{"z_um", 1}}), page);
+  ASSERT_TRUE(service_.task);
+  json entries = answer_to(page_, call("audit.list"))["result"]["entries"];
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0]["outcome"], "accepted") << "nobody knows yet how it ends";
+
+  service_.task->fail(ErrorCode::kStageAlarm, "the drive has an alarm");
+  entries = answer_to(page_, call("audit.list"))["result"]["entries"];
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[0]["what"], "stage.move");
+  EXPECT_EQ(entries[0]["who"], "token page");
+  EXPECT_EQ(entries[0]["outcome"], "stage_alarm");
 }
 
 TEST_F(AnInstrumentWithSeveralCallers, WritesDownWhoAskedForWhat) {

@@ -1,9 +1,10 @@
 #pragma once
 
-/// A dispatcher on a job service without devices, and one caller.
+/// A dispatcher on a job service without devices, one caller, and a look at every reply.
 
 #include <string>
 
+#include "config/field_reader.hpp"
 #include "daemon/api/dispatcher.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "gtest/gtest.h"
@@ -16,7 +17,23 @@ class ADispatcher : public testing::Test {
   /// The reply to a line as JSON; a discarded value where there is none.
   nlohmann::json reply(const std::string& line) {
     const Handled handled = dispatcher_.handle(line, caller_);
-    return handled.reply ? nlohmann::json::parse(*handled.reply) : nlohmann::json(nlohmann::json::value_t::discarded);
+    if (!handled.reply) return nlohmann::json(nlohmann::json::value_t::discarded);
+    auto answer = nlohmann::json::parse(*handled.reply);
+    expect_as_described(nlohmann::json::parse(line, nullptr, false), answer);
+    return answer;
+  }
+  /// Every result that a test gets is as its method is described, and every error of a code that is.
+  void expect_as_described(const nlohmann::json& request, const nlohmann::json& answer) {
+    if (!request.is_object() || !answer.is_object() || !request.contains("method")) return;
+    const auto method = dispatcher_.methods().find(request["method"].is_string() ? request["method"] : "");
+    if (method == dispatcher_.methods().end()) return;
+    const bool picked = request.contains("params") && request["params"].contains("fields");
+    if (!answer.contains("result") || picked) return;
+    Problems problems;
+    FieldReader reader(answer["result"], problems, "/result");
+    method->second.about.result(reader);
+    reader.finish();
+    EXPECT_TRUE(problems.empty()) << to_text(problems, method->first) << answer.dump();
   }
   int error_of(const std::string& line) {
     const nlohmann::json answer = reply(line);

@@ -336,9 +336,9 @@ TEST_F(ADispatcher, KeepsRepliesWithinWhatPlcsCanTake) {
         .handle(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump(), caller_)
         .reply->size();
   };
-  EXPECT_LE(size("result.get", {{"seq", 3}, {"client", client}}), 512U);
-  EXPECT_LE(size("result.next", json::object()), 512U);
-  EXPECT_LE(size("result.get", {{"seq", 3}, {"format", "full"}, {"client", client}}), 2560U);
+  EXPECT_LE(size("result.get", {{"seq", 3}, {"client", client}}), 440U);
+  EXPECT_LE(size("result.next", json::object()), 440U);
+  EXPECT_LE(size("result.get", {{"seq", 3}, {"format", "full"}, {"client", client}}), 1400U);
   EXPECT_LE(size("job.status", {{"seq", 3}, {"client", client}}), 1400U);
   EXPECT_LE(size("system.state", json::object()), 1400U);
 }

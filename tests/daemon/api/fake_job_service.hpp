@@ -137,6 +137,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     if (before_start) before_start();
     const std::lock_guard lock(mutex_);
     if (refusal) throw Error(*refusal, "refused by the test");
+    require_works();
     ++starts;
     const Key key{request.client, request.seq};
     if (const auto known = jobs_.find(key); known != jobs_.end()) return {known->second, true};
@@ -147,6 +148,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return {jobs_[key] = job, false};
   }
   [[nodiscard]] JobStatus job(const JobKey& key) const override {
+    require_works();
     const std::lock_guard lock(mutex_);
     for (const auto& [unused, job] : jobs_) {
       if (names(key, job)) return job;
@@ -154,6 +156,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     throw Error(ErrorCode::kUnknownJob, "no such job");
   }
   [[nodiscard]] std::optional<JobStatus> highest(const std::string& client) const override {
+    require_works();
     const std::lock_guard lock(mutex_);
     std::optional<JobStatus> found;
     for (const auto& [key, job] : jobs_) {
@@ -163,6 +166,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   }
   JobStatus abort(const JobKey& key) override { return job(key); }
   std::optional<JobStatus> try_abort(const JobKey& key) override {
+    require_works();
     if (!current || !names(key, *current)) return std::nullopt;
     ++aborts;
     return current;
@@ -189,7 +193,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   [[nodiscard]] StoredJob stored(const JobKey& key) const override {
     const JobStatus found = job(key);
     if (found.state != JobState::kCompleted) return {found, "", ""};
-    return {found, "/results/x", result};
+    return {found, result_dir, result};
   }
   /// Done only when a test ends it.
   std::shared_ptr<DeviceTask> evaluate(const JobKey& key, const std::string& recipe_id) override {
@@ -202,6 +206,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return history; }
   std::optional<StepHistorySummary> history;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override {
+    require_works();
     const std::lock_guard lock(mutex_);
     for (const auto& [unused, job] : jobs_) {
       if (job.state != JobState::kProcessing && !job.acknowledged) return job;
@@ -212,12 +217,13 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     const JobStatus found = job(key);
     const std::lock_guard lock(mutex_);
     jobs_[{found.request.client, found.request.seq}].acknowledged = true;
-    return 0;
+    return remaining;
   }
   void prepare(const std::string& recipe_id) override {
     if (recipe_id != "chapter") throw Error(ErrorCode::kUnknownRecipe, "no recipe '" + recipe_id + "'");
   }
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
+    if (machine) return std::make_shared<const MachineStatus>(*machine);
     MachineStatus status;
     status.state = ScanState::kReady;
     status.signals = {.ready = true, .part_release = true};
@@ -243,20 +249,24 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   std::optional<CameraSettings> previewed;
   bool refuse_tasks = false;
 
-  void on_change(std::function<void()> listener) override {
+  void on_change(std::function<void()> listener, const void* whose) override {
     const std::lock_guard lock(mutex_);
-    listener_ = std::move(listener);
+    if (listener) {
+      listeners_[whose] = std::move(listener);
+    } else {
+      listeners_.erase(whose);
+    }
   }
 
   /// Changes a job and tells the listener, as the machine's thread would.
   void change(const ClientSeq& number, const std::function<void(JobStatus&)>& how) {
-    std::function<void()> listener;
+    std::map<const void*, std::function<void()>> listeners;
     {
       const std::lock_guard lock(mutex_);
       how(jobs_.at({number.client, number.seq}));
-      listener = listener_;
+      listeners = listeners_;
     }
-    if (listener) listener();
+    for (const auto& [whose, listener] : listeners) listener();
   }
 
   /// In a test that has start() block.
@@ -267,16 +277,26 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   std::optional<JobStatus> current;
   int starts = 0;
   std::optional<ErrorCode> refusal;
+  /// What every question for jobs and results fails with.
+  std::optional<Error> failure;
+  /// In place of a machine that is ready.
+  std::optional<MachineStatus> machine;
+  std::string result_dir = "/results/x";
+  int remaining = 0;
   std::string result =
       R"({"values":{"height":{"min_um":-1.25,"max_um":100.5,"mean_um":50.0,"median_um":49.0},"valid_fraction":0.97},)"
       R"("focus":{"peak":"parabola","extra_peaks":[]},"frames":{"expected":21,"ok":21},"slices":{"planned":21},)"
       R"("steps":{"steps":21},"times":{"scan_ms":1700.0},"provenance":{"simulated":true}})";
 
  private:
+  void require_works() const {
+    if (failure) throw Error(*failure);
+  }
+
   mutable std::mutex mutex_;
   using Key = std::pair<std::string, std::int64_t>;
   std::map<Key, JobStatus> jobs_;
-  std::function<void()> listener_;
+  std::map<const void*, std::function<void()>> listeners_;
 };
 
 }  // namespace fvd

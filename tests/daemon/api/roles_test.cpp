@@ -5,11 +5,13 @@
 #include <string>
 
 #include "tests/daemon/api/dispatcher_fixture.hpp"
+#include "tests/daemon/api/working_params.hpp"
 
 namespace fvd {
 namespace {
 
 using nlohmann::json;
+using test::working_params;
 
 /// The least role of every method, typed a second time: a method that gets another one by mistake is seen here.
 const std::map<std::string, Role>& expected_roles() {
@@ -74,22 +76,6 @@ const std::map<std::string, Role>& expected_roles() {
                                                   {"verify.step", kSetUp},
                                                   {"verify.texture", kSetUp}};
   return kRoles;
-}
-
-/// Parameters with which a call of the method would do something.
-json working_params(const std::string& method) {
-  if (method == "job.start") return {{"seq", 1}, {"part_id", "p"}};
-  if (method == "stage.jog") return {{"direction", "up"}, {"speed_um_per_s", 10}};
-  if (method == "control.acquire") return {{"owner", "test"}};
-  if (method == "stage.move") return {{"z_um", 1}};
-  if (method == "stage.autofocus") return {{"from_um", 0}, {"to_um", 10}};
-  if (method == "recipe.prepare") return {{"id", "chapter"}};
-  if (method == "recipe.save") return {{"id", "c"}, {"text", "{}"}, {"base_version", 3}, {"author", "a"}};
-  if (method == "recipe.restore") return {{"id", "c"}, {"version", 1}, {"base_version", 3}, {"author", "a"}};
-  if (method == "objective.confirm") return {{"name", "20x"}};
-  if (method == "calibrate.accept") return {{"study", "study-0001"}, {"person", "a"}, {"renew_by", "2027-11-29"}};
-  if (method == "verify.noise") return {{"jobs", {"a", "b"}}};
-  return json::object();
 }
 
 class ARole : public ADispatcher, public testing::WithParamInterface<Role> {};

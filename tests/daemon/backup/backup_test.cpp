@@ -204,5 +204,16 @@ TEST_F(AnInstrument, IsNotRestoredFromAFolderThatIsNoBackup) {
   EXPECT_NO_THROW(measure(1)) << "nothing was touched";
 }
 
+TEST_F(AnInstrument, KeepsWhatTheLastTwoRestorationsReplaced) {
+  (void)make_backup(paths_, backup_, false);
+  store_.reset();
+  Restored restored;
+  for (int i = 1; i <= 4; ++i) restored = restore_backup(backup_, paths_);
+  EXPECT_EQ(restored.replaced, paths_.state_dir / "replaced-4");
+  EXPECT_EQ(restored.dropped, std::vector<fs::path>{paths_.state_dir / "replaced-2"});
+  EXPECT_FALSE(fs::exists(paths_.state_dir / "replaced-1"));
+  EXPECT_TRUE(fs::exists(paths_.state_dir / "replaced-3"));
+}
+
 }  // namespace
 }  // namespace fvd

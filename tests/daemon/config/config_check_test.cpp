@@ -6,22 +6,18 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config/config_file.hpp"
+#include "tests/daemon/config/problem_matcher.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
 namespace {
 
-using ::testing::AllOf;
+using test::problem;
 using ::testing::Contains;
 using ::testing::ElementsAre;
-using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-auto problem(const std::string& pointer, const std::string& says = "") {
-  return AllOf(Field("pointer", &Problem::pointer, pointer), Field("message", &Problem::message, HasSubstr(says)));
-}
 
 /// A configuration to which check_config has nothing to say.
 class AUsableConfig : public ::testing::Test {
@@ -70,6 +66,34 @@ TEST_F(AUsableConfig, NeedsToKnowWhoMayWhatFromTheNetwork) {
     EXPECT_THAT(check_config(config_), ElementsAre(problem("/rpc/token_file", "line 1")));
     std::filesystem::remove(folder_ / "tokens");
   }
+}
+
+TEST_F(AUsableConfig, NeedsTokensForHttpFromTheNetwork) {
+  for (const char* address : {"0.0.0.0", "::", "192.168.1.5"}) {
+    config_.http.address = address;
+    config_.http.port = 7413;
+    config_.rpc.access = {};
+    config_.rpc.access.allow = {{"192.168.1.0/24", Role::kOperate}};
+    EXPECT_THAT(check_config(config_), ElementsAre(problem("/http/address", "a token alone")));
+    test::write_text(folder_ / "tokens", "");
+    config_.rpc.access.token_file = folder_ / "tokens";
+    EXPECT_THAT(check_config(config_), IsEmpty());
+    config_.http.port.reset();
+    config_.rpc.access = {};
+    EXPECT_THAT(check_config(config_), IsEmpty()) << "nobody listens";
+  }
+}
+
+TEST_F(AUsableConfig, NeedsAPortAndNamesForHttp) {
+  config_.http.port = config_.rpc.port;
+  config_.http.hosts = {{"fvd.line3.example"}, {"http://fvd"}, {"fvd:7413"}, {""}};
+  EXPECT_THAT(check_config(config_),
+              ElementsAre(problem("/http/port", "speaks no HTTP"), problem("/http/hosts/1/name", "is no name"),
+                          problem("/http/hosts/2/name"), problem("/http/hosts/3/name")));
+  config_.http = {};
+  config_.http.address = "localhost";
+  config_.http.port = 0;
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/http/address", "'localhost'")));
 }
 
 TEST_F(AUsableConfig, NeedsRangesOfAddresses) {

@@ -5,23 +5,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/daemon/config/problem_matcher.hpp"
 #include "tests/support/readable_name.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
 namespace {
 
-using ::testing::AllOf;
+using test::problem;
 using ::testing::Contains;
 using ::testing::ElementsAre;
-using ::testing::Field;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-auto problem(const std::string& pointer, const std::string& says = "") {
-  return AllOf(Field("pointer", &Problem::pointer, pointer), Field("message", &Problem::message, HasSubstr(says)));
-}
 
 Problems problems_of(const std::string& text, const Overrides& overrides = {}) {
   return parse_config(text, "/etc/fvd", overrides).problems;

@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-constexpr int kSlices = 11;
+constexpr int kPages = 11;
 constexpr double kStep_um = 10.0;
 /// In focus at slice 4.
 constexpr double kFocus = 4.0;
@@ -58,7 +58,7 @@ constexpr double kTolerance_um = 0.5;
 
 TEST_F(ARecordedStack, OfTwoChannelsAsksWhichOne) {
   std::vector<test::TiffPageSpec> pages;
-  for (int i = 0; i < kSlices; ++i) {
+  for (int i = 0; i < kPages; ++i) {
     pages.push_back(
         {slice(i), i == 0 ? "ImageJ=1.53t\nimages=22\nchannels=2\nslices=11\nspacing=10.0\nunit=um\n" : "", 0, 0});
     pages.push_back({cv::Mat(slice(i) / 3), "", 0, 0});
@@ -75,7 +75,7 @@ TEST_F(ARecordedStack, OfTwoChannelsAsksWhichOne) {
 
 TEST_F(ARecordedStack, Of12BitsIn16SaturatesAt4095) {
   fs::create_directories(scratch_ / "in");
-  for (int i = 0; i < kSlices; ++i) {
+  for (int i = 0; i < kPages; ++i) {
     cv::Mat image = slice(i) / 16;
     image(cv::Rect(10, 10, 12, 12)).setTo(4095);
     cv::imwrite((scratch_ / "in" / ("s" + std::to_string(i) + ".png")).string(), image);
@@ -88,7 +88,7 @@ TEST_F(ARecordedStack, Of12BitsIn16SaturatesAt4095) {
 }
 
 TEST_F(ARecordedStack, Of8BitsHasNoMoreWhateverTheOptionSays) {
-  test::write_stack(scratch_ / "in", "s", ".png", kSlices, kFocus);
+  test::write_stack(scratch_ / "in", "s", ".png", kPages, kFocus);
   EXPECT_EQ(process({"--z-step-um", "10", "--significant-bits", "12"}), kExitBadData);
   EXPECT_THAT(err_, HasSubstr("s0.png in " + (scratch_ / "in").string() + " does not fit --significant-bits 12"));
   EXPECT_THAT(err_, testing::Not(HasSubstr("damaged")));
@@ -105,7 +105,7 @@ TEST_F(ARecordedStack, OfOmeHasItsPixelPitch) {
       "<OME><Image><Pixels DimensionOrder=\"XYZCT\" SizeZ=\"11\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"2.5\" "
       "PhysicalSizeY=\"2.5\" PhysicalSizeZ=\"10\"><TiffData/></Pixels></Image></OME>";
   std::vector<test::TiffPageSpec> pages;
-  for (int i = 0; i < kSlices; ++i) pages.push_back({slice(i), i == 0 ? ome : "", 0, 0});
+  for (int i = 0; i < kPages; ++i) pages.push_back({slice(i), i == 0 ? ome : "", 0, 0});
   test::write_tiff(scratch_ / "ome.tif", pages);
   ASSERT_EQ(process({}, "ome.tif"), kExitOk) << err_;
   EXPECT_EQ(result()["focus"]["pixel_pitch_x_um"], 2.5);
@@ -115,7 +115,7 @@ TEST_F(ARecordedStack, OfOmeHasItsPixelPitch) {
 
 TEST_F(ARecordedStack, OfImageJBehindOneDirectoryIsRead) {
   std::vector<cv::Mat> images;
-  for (int i = 0; i < kSlices; ++i) images.push_back(slice(i));
+  for (int i = 0; i < kPages; ++i) images.push_back(slice(i));
   test::write_text(
       scratch_ / "big.tif",
       test::imagej_contiguous_tiff(images, "ImageJ=1.53t\nimages=11\nslices=11\nunit=micron\nspacing=10.0\n"));
@@ -125,10 +125,10 @@ TEST_F(ARecordedStack, OfImageJBehindOneDirectoryIsRead) {
 
 TEST_F(ARecordedStack, WithReducedPagesUsesTheFullOnes) {
   std::vector<test::TiffPageSpec> pages;
-  for (int i = 0; i < kSlices; ++i) pages.push_back({slice(i), "", 0, 0});
+  for (int i = 0; i < kPages; ++i) pages.push_back({slice(i), "", 0, 0});
   const test::TiffPageSpec reduced{cv::Mat(8, 10, CV_16UC1, cv::Scalar(1)), "", FILETYPE_REDUCEDIMAGE, 0};
   fs::create_directories(scratch_ / "each");
-  for (int i = 0; i < kSlices; ++i) {
+  for (int i = 0; i < kPages; ++i) {
     test::write_tiff(scratch_ / "each" / ("k" + std::to_string(i) + ".tif"),
                      {pages[static_cast<std::size_t>(i)], reduced});
   }

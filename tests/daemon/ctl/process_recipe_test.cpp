@@ -18,16 +18,11 @@
 namespace fvd::ctl {
 namespace {
 
+using test::process;
+using test::read_float;
 using test::ScratchDir;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-
-test::Outcome process(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "process");
-  return test::run_command(arguments);
-}
-
-cv::Mat read_float(const fs::path& path) { return cv::imread(path.string(), cv::IMREAD_UNCHANGED); }
 
 /// For slices of write_stack().
 constexpr const char* kRecipe = R"({

@@ -93,7 +93,12 @@ TEST(RpcEndpoint, IsReadFromTextAndFile) {
   EXPECT_EQ(parse_endpoint("localhost:7411").text(), "localhost:7411");
   EXPECT_EQ(parse_endpoint("[::1]:80").host, "::1");
   EXPECT_EQ(parse_endpoint("[::1]:80").text(), "[::1]:80");
-  for (const char* text : {"", "host", "host:", ":1", "host:0", "host:65536", "host:1x", "host:-1"}) {
+  EXPECT_FALSE(parse_endpoint("localhost:7411").is_http);
+  EXPECT_TRUE(parse_endpoint("http://localhost:7413").is_http);
+  EXPECT_EQ(parse_endpoint("http://[::1]:7413/").text(), "[::1]:7413");
+  expect_error(ErrorCode::kBadInput, {"no TLS"}, [] { (void)parse_endpoint("https://localhost:7413"); });
+  for (const char* text : {"", "host", "host:", ":1", "host:0", "host:65536", "host:1x", "host:-1", "http://host",
+                           "http://host:1/x", "http://"}) {
     expect_error(ErrorCode::kBadInput, {"host:port"}, [&] { (void)parse_endpoint(text); });
   }
   const ScratchDir scratch;

@@ -24,4 +24,9 @@ inline Outcome run_command(const std::vector<std::string>& arguments, bool termi
   return {code, out.str(), err.str()};
 }
 
+inline Outcome process(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "process");
+  return run_command(arguments);
+}
+
 }  // namespace fvd::test

@@ -17,7 +17,7 @@ using test::Outcome;
 using test::run_command;
 using testing::HasSubstr;
 
-constexpr const char* kRecipe = R"({"format": 2,
+constexpr const char* kPlainRecipe = R"({"format": 2,
   "acquire": {"scan": {"start_um": 0, "step_um": 1, "slices": 11}, "camera": {"width_px": 480, "height_px": 360}},
   "reconstruct": {"focus": {"window_px": 9, "window": "box"},
                   "lateral": {"pixel_pitch_x_um": 1, "pixel_pitch_y_um": 1}}})";
@@ -33,7 +33,7 @@ TEST(SuggestFilters, PrintsChoiceTableAndFragment) {
 
 TEST(SuggestFilters, TakesFromTheRecipeWhatIsNotGiven) {
   const test::ScratchDir folder;
-  test::write_text(folder / "part.json", kRecipe);
+  test::write_text(folder / "part.json", kPlainRecipe);
   const std::string recipe = (folder / "part.json").string();
 
   const Outcome told = run_command({"recipe", "suggest-filters", "--recipe", recipe, "--json"});

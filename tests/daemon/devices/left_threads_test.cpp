@@ -42,12 +42,12 @@ TEST(WorkThatMayBeLeftDeathTest, IsLeftWhenTheProcessEnds) {
 
 /// What a device still tells while it is closed takes this long.
 constexpr std::chrono::milliseconds kClosing{300};
-std::atomic<bool> closed{false};
+std::atomic<bool> device_closed{false};
 
 struct SlowToClose {
   ~SlowToClose() {
     std::this_thread::sleep_for(kClosing);
-    closed = true;
+    device_closed = true;
   }
   [[nodiscard]] static bool connected() { return true; }
 };
@@ -62,7 +62,7 @@ TEST(ASlotDeathTest, AwaitsAtTheEndOfTheProcessWhatTheNextOneWouldAwait) {
       process_ends();
       slot.drop();
     }
-    std::_Exit(closed && !left_a_thread() ? 7 : 8);
+    std::_Exit(device_closed && !left_a_thread() ? 7 : 8);
   };
   EXPECT_EXIT(end_of_a_process(Predecessor::kAwaited), testing::ExitedWithCode(7), "") << "a drive's watchdog";
   EXPECT_EXIT(end_of_a_process(Predecessor::kIgnored), testing::ExitedWithCode(8), "") << "a camera that is silent";

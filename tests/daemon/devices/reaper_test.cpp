@@ -4,6 +4,8 @@
 #include <future>
 #include <thread>
 
+#include "core/base/clock.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "gtest/gtest.h"
 
 namespace fvd {
@@ -27,6 +29,22 @@ TEST(Reaper, ClosesOnAnotherThreadWhileItsCallerGoesOn) {
   EXPECT_NE(closed.wait_for(std::chrono::seconds(0)), std::future_status::ready);
   go.set_value();
   EXPECT_NE(closed.get(), std::this_thread::get_id());
+}
+
+TEST(Reaper, IsSeenToHangInADeviceThatCannotBeClosed) {
+  std::promise<void> begun;
+  std::promise<void> go;
+  Reaper reaper;
+  reaper.bury(std::make_unique<Device>([&] {
+    begun.set_value();
+    go.get_future().wait_for(std::chrono::seconds(10));
+  }));
+  begun.get_future().wait();
+  EXPECT_TRUE(stalled_threads(HostClock::now() + std::chrono::minutes(4)).empty());
+  const auto stalled = stalled_threads(HostClock::now() + std::chrono::minutes(6));
+  ASSERT_EQ(stalled.size(), 1U);
+  EXPECT_EQ(stalled.front().name, "fvd-reaper");
+  go.set_value();
 }
 
 TEST(Reaper, EndsOnlyWhenEveryDeviceIsClosed) {

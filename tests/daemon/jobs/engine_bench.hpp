@@ -39,6 +39,7 @@ struct Bench {
   std::atomic<bool> axis_moves{false};
   std::atomic<bool> stop_works{true};
   std::atomic<int> stops{0};
+  std::atomic<int> moves{0};
   std::atomic<int> moves_until_restless{-1};  ///< the axis goes on moving after the move that counts this to 0
   std::atomic<bool> lost_at_rest{false};      ///< the axis is lost when it is looked at after that many moves:
   std::atomic<int> moves_until_rest{-1};
@@ -85,6 +86,7 @@ class BenchAxis final : public sim::FakeAxis {
       unplug();
     }
     require_line();
+    ++bench_.moves;
     MoveRecord move = FakeAxis::move_to(target, criterion, std::move(stop));
     moved_ = bench_.moves_until_rest >= 0 && bench_.moves_until_rest-- == 0;
     if (bench_.moves_until_restless >= 0 && bench_.moves_until_restless-- == 0) bench_.axis_moves = true;

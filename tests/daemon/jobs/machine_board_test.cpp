@@ -75,6 +75,20 @@ TEST(MachineBoard, SaysWhyItRefuses) {
   FVD_EXPECT_ERROR(kShuttingDown, require(Command::kStartJob));
 }
 
+TEST(MachineBoard, TellsEachListener) {
+  MachineBoard board(constants(), std::nullopt);
+  int first = 0;
+  int second = 0;
+  const int key = 0;
+  board.on_change([&] { ++first; });
+  board.on_change([&] { ++second; }, &key);
+  board.update(up);
+  EXPECT_EQ(std::pair(first, second), std::pair(1, 1));
+  board.on_change({});
+  board.update(up);
+  EXPECT_EQ(std::pair(first, second), std::pair(1, 2));
+}
+
 TEST(MachineBoard, CallsNoListenerOnceItWasTakenAway) {
   MachineBoard board(constants(), std::nullopt);
   std::jthread changing([&](std::stop_token stop) {

@@ -141,5 +141,15 @@ TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
   EXPECT_TRUE(fs::exists(results_ / waiting));
 }
 
+TEST_F(ARetention, TakesOtherLimitsWhileItRuns) {
+  const std::string old = add(1, true, kLongAgo);
+  Retention retention(store_, {}, results_);
+  retention.run_once();
+  EXPECT_TRUE(fs::exists(results_ / old));
+  retention.set_limits({.keep_days = 30});
+  retention.run_once();
+  EXPECT_FALSE(fs::exists(results_ / old));
+}
+
 }  // namespace
 }  // namespace fvd

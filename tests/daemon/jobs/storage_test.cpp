@@ -2,6 +2,8 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <sys/mount.h>
@@ -194,6 +196,43 @@ TEST_F(AKillBetweenFolderAndRow, LeavesNothingOfAFolderThatIsNotWhole) {
   EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
 }
 
+TEST_F(AKillBetweenFolderAndRow, LeavesTheJobAResultHoweverLongItsTextIs) {
+  std::ofstream(folder_ / "results" / job_.job_id / "result.json", std::ios::app)
+      << std::string(std::size_t{9} << 20U, ' ');
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").adopted, 1);
+  EXPECT_TRUE(fs::exists(store_->find(ClientSeq{1}).result_dir));
+}
+
+TEST_F(AKillBetweenFolderAndRow, LeavesAResultThatCannotBeReadForTheNextStart) {
+  const fs::path text = folder_ / "results" / job_.job_id / "result.json";
+  fs::rename(text, folder_ / "whole");
+  for (const char* unreadable : {"/proc/self/mem", "result.json"}) {  // EIO, ELOOP
+    fs::create_symlink(unreadable, text);
+    const Reconciled done = reconcile_results(*store_, folder_ / "results");
+    EXPECT_EQ(done.adopted + done.removed + done.set_aside, 0) << unreadable;
+    ASSERT_TRUE(fs::is_symlink(text)) << unreadable;
+    fs::remove(text);
+  }
+  fs::rename(folder_ / "whole", text);
+  const fs::path part = folder_ / "results" / job_.job_id / "height.tiff";
+  fs::rename(part, folder_ / "part");
+  fs::create_symlink("height.tiff", part);  // the disk does not tell its size
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 0);
+  fs::remove(part);
+  fs::rename(folder_ / "part", part);
+
+  store_.reset();
+  store_ = std::make_unique<JobStore>(folder_ / "fvd.sqlite");
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").set_aside, 1);
+  EXPECT_TRUE(fs::exists(folder_ / "set-aside" / job_.job_id / "result.json"));
+}
+
+TEST_F(AKillBetweenFolderAndRow, LeavesNothingOfAFolderWithoutItsText) {
+  fs::remove(folder_ / "results" / job_.job_id / "result.json");
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1);
+  EXPECT_TRUE(fs::is_empty(folder_ / "results"));
+}
+
 TEST_F(AKillBetweenFolderAndRow, ChangesNothingThatWasToldAndAcknowledged) {
   (void)store_->acknowledge(ClientSeq{1});
   EXPECT_EQ(reconcile_results(*store_, folder_ / "results").set_aside, 1);
@@ -209,6 +248,17 @@ TEST_F(AKillBetweenFolderAndRow, ChangesNothingThatAStartBeforeTold) {
   EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
   EXPECT_TRUE(fs::is_empty(folder_ / "results"));
   EXPECT_TRUE(fs::exists(folder_ / "set-aside" / job_.job_id / "result.json")) << "nothing measured is lost";
+}
+
+TEST_F(AKillBetweenFolderAndRow, ChangesNothingOfAJobThatWasToldAsFailed) {
+  JobStatus failed = store_->accept({2, "part", "chapter"});
+  fs::rename(folder_ / "results" / job_.job_id, folder_ / "results" / failed.job_id);  // it could not be taken back
+  failed.state = JobState::kFailed;
+  failed.error = ErrorCode::kStorageWrite;
+  store_->finish(failed, "", "");
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1) << "the result of another job";
+  EXPECT_EQ(store_->find(ClientSeq{2}).status.error, ErrorCode::kStorageWrite);
+  EXPECT_TRUE(fs::is_empty(folder_ / "results"));
 }
 
 TEST_F(AKillBetweenFolderAndRow, LeavesFoldersOfJobsAndEvaluationsThatTheDatabaseDoesNotKnow) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Man pages and completions hold what the programs say of themselves: man_pages_test.py FVD FVDCTL"""
+"""Man pages and completions hold what the programs say of themselves: man_pages_test.py FVD FVDCTL FVD_SIM"""
 import json
 import pathlib
 import re
@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-FVD, FVDCTL = sys.argv[1:3]
+FVD, FVDCTL, FVD_SIM = sys.argv[1:4]
 
 
 def run(*command):
@@ -37,22 +37,23 @@ class ThePages(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.out = pathlib.Path(cls.folder.name)
-        run(sys.executable, str(ROOT / "daemon/man/make_pages.py"), "--fvd", FVD, "--fvdctl", FVDCTL, "--keys",
-            str(ROOT / "config/README.md"), "--version", "1.2.3", "--out", cls.folder.name)
+        run(sys.executable, str(ROOT / "daemon/man/make_pages.py"), "--fvd", FVD, "--fvdctl", FVDCTL, "--fvd-sim",
+            FVD_SIM, "--keys", str(ROOT / "config/README.md"), "--version", "1.2.3", "--out", cls.folder.name)
 
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
 
     def test_have_every_option_of_help(self):
-        for program, page in ((FVD, "fvd.8"), (FVDCTL, "fvdctl.1")):
+        for program, page in ((FVD, "fvd.8"), (FVDCTL, "fvdctl.1"), (FVD_SIM, "fvd-sim.1")):
+            name = page.rpartition(".")[0]
             text = plain(self.out / page)
             seen = 0
             for words, shown in helps(program):
                 section = text
                 if words and "Subcommands:" not in shown:
-                    self.assertIn(f'.SS "fvdctl {" ".join(words)}"', text)
-                    section = text.split(f'.SS "fvdctl {" ".join(words)}"')[1].split(".SS")[0]
+                    self.assertIn(f'.SS "{name} {" ".join(words)}"', text)
+                    section = text.split(f'.SS "{name} {" ".join(words)}"')[1].split(".SS")[0]
                 for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", shown, re.M):
                     if option != "--help":
                         seen += 1
@@ -97,6 +98,7 @@ class ThePages(unittest.TestCase):
         self.assertEqual(completed("fvdctl", "stage", "acc"), ["accuracy"])
         self.assertEqual(completed("fvdctl", "--address", "1.2.3.4:5", "stage", "stop", "--con"), ["--config"])
         self.assertEqual(completed("fvd", "--check-c"), ["--check-config"])
+        self.assertEqual(completed("fvd-sim", "run", "--camera-a"), ["--camera-address"])
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ class FixedMachine final : public MachineView {
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
     return std::make_shared<const MachineStatus>(status);
   }
-  void on_change(std::function<void()> /*listener*/) override {}
+  void on_change(std::function<void()> /*listener*/, const void* /*whose*/) override {}
 
   MachineStatus status;
 };

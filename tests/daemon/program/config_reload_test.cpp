@@ -19,6 +19,13 @@ TEST(ConfigReload, TakesTheLogLevel) {
   EXPECT_THAT(reload.changes, ElementsAre("/log/level: info -> debug"));
 }
 
+TEST(ConfigReload, TakesWhatIsKeptOfResults) {
+  const Reload reload = after(R"({"store": {"keep_days": 30, "keep_gib": 5, "keep_free_gib": 2}})");
+  EXPECT_EQ(reload.refusal, "");
+  EXPECT_THAT(reload.changes, ::testing::UnorderedElementsAre("/store/keep_days: 0 -> 30", "/store/keep_gib: 0 -> 5",
+                                                              "/store/keep_free_gib: 0 -> 2"));
+}
+
 TEST(ConfigReload, TakesNothingWhereNothingDiffers) {
   const Reload reload = after("{}");
   EXPECT_EQ(reload.refusal, "");

@@ -31,6 +31,12 @@ class BrokenDisk {
   BrokenDisk& operator=(const BrokenDisk&) = delete;
 
   void mend() { mended_ = true; }
+  /// As a new one.
+  void break_again(int error, int good_writes) {
+    error_ = error;
+    good_writes_ = good_writes;
+    mended_ = false;
+  }
 
   /// True once a write failed.
   [[nodiscard]] bool has_failed() const { return good_writes_ < 0; }
@@ -56,7 +62,7 @@ class BrokenDisk {
   static ssize_t try_write(int file, const void* bytes, std::size_t count) {
     return fails() ? -1 : ::write(file, bytes, count);
   }
-  static inline int error_ = 0;
+  static inline std::atomic<int> error_ = 0;
   static inline std::atomic<int> good_writes_ = 0;
   static inline std::atomic<bool> mended_ = false;
 };

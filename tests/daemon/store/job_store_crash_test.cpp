@@ -97,7 +97,7 @@ TEST(JobStoreCrash, RefusesAFileThatIsNoDatabase) {
 TEST(JobStoreCrash, RefusesAnUnusableFolder) {
   const test::ScratchDir folder;
   std::ofstream(folder.path() / "file") << "not a folder";
-  FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore(folder.path() / "file" / "jobs.db"), HasSubstr("folder"));
+  FVD_EXPECT_ERROR_SAYING(kStorageWrite, JobStore(folder.path() / "file" / "jobs.db"), HasSubstr("/file"));
 }
 
 TEST(JobStoreCrash, RefusesADatabaseOfANewerVersion) {

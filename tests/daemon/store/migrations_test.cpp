@@ -237,5 +237,14 @@ TEST(AFileOfAnotherProgram, IsRefusedAndLeftAloneByteForByte) {
   }
 }
 
+TEST_F(AFileOfVersion1, IsKeptWithOneOtherCopyAndNoMore) {
+  for (const char* name : {"fvd.sqlite.v10", "fvd.sqlite.v9", "fvd.sqlite.v2", "fvd.sqlite.vx", "fvd.sqlite.v"}) {
+    test::write_text(folder_ / name, "");
+  }
+  { const JobStore store(file_); }
+  EXPECT_THAT(folder_.entries(), ::testing::IsSupersetOf({"fvd.sqlite.v1", "fvd.sqlite.v10", "fvd.sqlite.vx"}));
+  for (const char* gone : {"fvd.sqlite.v9", "fvd.sqlite.v2"}) EXPECT_FALSE(folder_.entries().contains(gone)) << gone;
+}
+
 }  // namespace
 }  // namespace fvd

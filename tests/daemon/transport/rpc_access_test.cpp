@@ -119,6 +119,62 @@ TEST_F(AGuardedRpcServer, KeepsAPlaceForWhoHasControl) {
   EXPECT_TRUE(back.closes());
 }
 
+TEST_F(AGuardedRpcServer, LetsWhoMayControlByATokenHaveThatPlace) {
+  const std::string operating = new_token();
+  const std::string looking = new_token();
+  config_.access.token_file = folder_ / "tokens";
+  config_.access.loopback_role = Role::kView;
+  config_.max_connections = 2;
+  test::write_text(config_.access.token_file, credential_of("plc", Role::kOperate, operating).line() + "\n" +
+                                                  credential_of("guest", Role::kView, looking).line() + "\n");
+  serve();
+  LineClient viewer(server_->port());
+  EXPECT_TRUE(ask(viewer, call("system.ping")).contains("result"));
+  const auto expect_refused = [](LineClient& client) {
+    const auto line = client.line();
+    ASSERT_TRUE(line);
+    EXPECT_EQ(json::parse(*line)["error"]["data"]["error"], "too_many_connections");
+    EXPECT_TRUE(client.closes());
+  };
+  LineClient idle(server_->port());  // one of those that may still log in
+  LineClient asking(server_->port());
+  asking.send(call("system.state") + "\n");
+  expect_refused(asking);
+  LineClient guest(server_->port());
+  EXPECT_EQ(ask(guest, call("session.login", {{"token", "wrong"}}))["error"]["code"], 1004);
+  expect_refused(guest);
+  LineClient other(server_->port());
+  other.send(call("session.login", {{"token", looking}}) + "\n");
+  expect_refused(other);
+  LineClient controller(server_->port());
+  EXPECT_EQ(ask(controller, call("session.login", {{"token", operating}}))["result"]["role"], "operate");
+  EXPECT_TRUE(ask(controller, call("control.acquire", {{"owner", "plc"}})).contains("result"));
+  LineClient anew(server_->port());
+  EXPECT_EQ(ask(anew, call("session.login", {{"token", operating}}))["result"]["role"], "operate");
+  EXPECT_TRUE(controller.closes()) << "its old connection gives way";
+}
+
+TEST_F(AGuardedRpcServer, LogsInWhileTheWorkerIsBusy) {
+  const std::string token = new_token();
+  config_.access.token_file = folder_ / "tokens";
+  test::write_text(config_.access.token_file, credential_of("kiosk", Role::kOperate, token).line());
+  std::promise<void> begun;
+  std::promise<void> released;
+  service_.before_start = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  serve();
+  LineClient starting(server_->port());
+  starting.send(call("job.start", {{"seq", 5}, {"part_id", "p"}}) + "\n");
+  begun.get_future().wait();
+  LineClient kiosk(server_->port());
+  EXPECT_EQ(ask(kiosk, call("session.login", {{"token", token}}))["result"]["who"], "token kiosk");
+  EXPECT_EQ(ask(kiosk, call("stage.stop"))["result"]["stopped"], "command");
+  released.set_value();
+  EXPECT_TRUE(starting.line());
+}
+
 TEST_F(AGuardedRpcServer, StopsWhileTheWorkerAndTheConnectionAreBusy) {
   std::promise<void> begun;
   std::promise<void> released;

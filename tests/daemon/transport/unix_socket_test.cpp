@@ -28,6 +28,7 @@ TEST_F(AUnixSocket, IsThereForEverybodyAndGoneAtItsEnd) {
   ASSERT_EQ(::stat(file_.c_str(), &status), 0);
   EXPECT_TRUE(S_ISSOCK(status.st_mode));
   EXPECT_EQ(status.st_mode & 0777U, 0666U);
+  EXPECT_FALSE(std::filesystem::exists(file_.string() + "~"));
   const LineClient client(file_);
   listening.reset();
   EXPECT_FALSE(std::filesystem::exists(file_));

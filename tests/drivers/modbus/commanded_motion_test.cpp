@@ -11,9 +11,6 @@ using std::chrono::milliseconds;
 using test::expect_error;
 using test::Transport;
 
-constexpr SettleCriterion kCriterion{
-    .window = Micrometers{0.5}, .samples = 3, .dwell = milliseconds(10), .timeout = milliseconds(5000)};
-
 class ACommandedMotion : public testing::TestWithParam<test::DriveCase> {
  protected:
   test::SimulatedDrive plant_{GetParam(), Transport::kTcp};
@@ -21,10 +18,10 @@ class ACommandedMotion : public testing::TestWithParam<test::DriveCase> {
 
 TEST_P(ACommandedMotion, OfASweepIsAsSlowAsAskedAndTheNextMoveAsFastAsBefore) {
   const auto stage = plant_.open_homed();
-  stage->move_to(Micrometers{0}, kCriterion, {});
+  stage->move_to(Micrometers{0}, test::kCriterion, {});
   const MoveRecord sweep = stage->sweep_to(Micrometers{60}, 120.0, {});
   EXPECT_GE(sweep.settled - sweep.started, milliseconds(450)) << "60 um at 120 um/s take half a second";
-  const MoveRecord move = stage->move_to(Micrometers{0}, kCriterion, {});
+  const MoveRecord move = stage->move_to(Micrometers{0}, test::kCriterion, {});
   EXPECT_LT(move.halted - move.started, milliseconds(450)) << "at " << stage->info().speed_um_per_s << " um/s";
 }
 
@@ -34,7 +31,7 @@ TEST_P(ACommandedMotion, DoesNotBeginOnceAStopIsRequested) {
   const double z_um = plant_.axis().true_position_um(HostClock::now());
   std::stop_source stop;
   stop.request_stop();
-  expect_error(ErrorCode::kAborted, {}, [&] { stage->move_to(Micrometers{300}, kCriterion, stop.get_token()); });
+  expect_error(ErrorCode::kAborted, {}, [&] { stage->move_to(Micrometers{300}, test::kCriterion, stop.get_token()); });
   expect_error(ErrorCode::kAborted, {}, [&] { stage->sweep_to(Micrometers{300}, 200.0, stop.get_token()); });
   expect_error(ErrorCode::kAborted, {}, [&] { stage->home(stop.get_token()); });
   EXPECT_EQ(plant_.drive().moves(), moves);
@@ -44,10 +41,11 @@ TEST_P(ACommandedMotion, DoesNotBeginOnceAStopIsRequested) {
 
 TEST_P(ACommandedMotion, ThatIsRefusedLeavesTheReference) {
   const auto stage = plant_.open_homed();
-  stage->move_to(Micrometers{20}, kCriterion, {});
+  stage->move_to(Micrometers{20}, test::kCriterion, {});
   plant_.faults().add({.on = sim::FaultOn::kWrite, .fault = sim::FaultKind::kException, .code = 4});
-  expect_error(ErrorCode::kStagePosition, {"refused"}, [&] { stage->move_to(Micrometers{40}, kCriterion, {}); });
-  EXPECT_NEAR(stage->move_to(Micrometers{60}, kCriterion, {}).position.value, 60.0, 1.0) << "no homing is asked for";
+  expect_error(ErrorCode::kStagePosition, {"refused"}, [&] { stage->move_to(Micrometers{40}, test::kCriterion, {}); });
+  EXPECT_NEAR(stage->move_to(Micrometers{60}, test::kCriterion, {}).position.value, 60.0, 1.0)
+      << "no homing is asked for";
 }
 
 INSTANTIATE_TEST_SUITE_P(With, ACommandedMotion, testing::ValuesIn(test::kDriveCases),
@@ -58,7 +56,7 @@ TEST(ADriveWithAlarmBits, LosesItsReferenceByOneOfSeveral) {
   const auto stage = plant.open_homed();
   plant.drive().raise_alarm(0x0201);
   expect_error(ErrorCode::kStageAlarm, {"0x201", "position error limit", "encoder error", "home again"},
-               [&] { stage->move_to(Micrometers{10}, kCriterion, {}); });
+               [&] { stage->move_to(Micrometers{10}, test::kCriterion, {}); });
   EXPECT_FALSE(stage->status().homed);
 }
 
@@ -66,7 +64,7 @@ TEST(ADriveOnALimitSwitch, IsHomedAwayFromIt) {
   test::SimulatedDrive plant{test::kDriveCases[3], Transport::kTcp};  // SCL tells the switch, as an alarm
   const auto stage = plant.open_homed();
   plant.drive().limit_hit();
-  expect_error(ErrorCode::kStageAlarm, {"limit"}, [&] { stage->move_to(Micrometers{10}, kCriterion, {}); });
+  expect_error(ErrorCode::kStageAlarm, {"limit"}, [&] { stage->move_to(Micrometers{10}, test::kCriterion, {}); });
   EXPECT_NO_THROW(stage->home({}));
   EXPECT_NEAR(plant.axis().true_position_um(HostClock::now()), 0.0, 5.0);
 }

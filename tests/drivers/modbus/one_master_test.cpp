@@ -16,9 +16,6 @@ using std::chrono::milliseconds;
 using test::expect_error;
 using test::Transport;
 
-constexpr SettleCriterion kCriterion{
-    .window = Micrometers{0.5}, .samples = 3, .dwell = milliseconds(10), .timeout = milliseconds(5000)};
-
 /// Lets a drive be seen, and counts what is written to it.
 class WriteCounter final : public sim::RegisterBank {
  public:
@@ -72,16 +69,16 @@ TEST_P(OneMaster, LeavesASecondOneOutWhileTheAxisMoves) {
     expect_error(ErrorCode::kStageTaken, {"in use by process"}, [&] { (void)open_modbus_stage(config); });
     EXPECT_EQ(counter_.writes(), before);
   });
-  EXPECT_NEAR(stage->move_to(Micrometers{300.0}, kCriterion, {}).position.value, 300.0, 0.5);
+  EXPECT_NEAR(stage->move_to(Micrometers{300.0}, test::kCriterion, {}).position.value, 300.0, 0.5);
 }
 
 TEST_P(OneMaster, NoticesAnotherOnesTarget) {
   const auto stage = plant_.open_homed();
-  stage->move_to(Micrometers{10.0}, kCriterion, {});
+  stage->move_to(Micrometers{10.0}, test::kCriterion, {});
   ASSERT_TRUE(plant_.write_target_as_another_master(4321));
   const int moves = plant_.drive().moves();
   expect_error(ErrorCode::kStageTaken, {"another master", "4321"},
-               [&] { stage->move_to(Micrometers{20.0}, kCriterion, {}); });
+               [&] { stage->move_to(Micrometers{20.0}, test::kCriterion, {}); });
   EXPECT_EQ(plant_.drive().moves(), moves) << "who moves the axis is not for fvd to say any more";
   EXPECT_FALSE(plant_.axis().moving(HostClock::now()));
 }
@@ -96,14 +93,14 @@ TEST_P(OneMaster, NoticesAnotherOneWhileItMoves) {
     EXPECT_TRUE(plant_.write_target_as_another_master(77));
   });
   expect_error(ErrorCode::kStageTaken, {"another master", "77"},
-               [&] { stage->move_to(Micrometers{1000.0}, kCriterion, {}); });
+               [&] { stage->move_to(Micrometers{1000.0}, test::kCriterion, {}); });
   EXPECT_FALSE(plant_.axis().moving(HostClock::now())) << "it is halted";
 }
 
 TEST_P(OneMaster, MistakesNothingOfItsOwnForAnothers) {
   const auto stage = plant_.open_homed();
   for (int i = 1; i <= 12; ++i) {
-    EXPECT_NO_THROW(stage->move_to(Micrometers{10.0 * i}, kCriterion, {}));
+    EXPECT_NO_THROW(stage->move_to(Micrometers{10.0 * i}, test::kCriterion, {}));
     if (i % 4 == 0) stage->stop();
     if (i == 8) stage->home({});
   }
@@ -111,11 +108,11 @@ TEST_P(OneMaster, MistakesNothingOfItsOwnForAnothers) {
 
 TEST_P(OneMaster, FindsADriveThatWasRestartedNotHomedAndHomesIt) {
   const auto stage = plant_.open_homed();
-  stage->move_to(Micrometers{10.0}, kCriterion, {});
+  stage->move_to(Micrometers{10.0}, test::kCriterion, {});
   plant_.drive().power_cycle();
-  expect_error(ErrorCode::kStageNotHomed, {}, [&] { stage->move_to(Micrometers{20.0}, kCriterion, {}); });
+  expect_error(ErrorCode::kStageNotHomed, {}, [&] { stage->move_to(Micrometers{20.0}, test::kCriterion, {}); });
   EXPECT_NO_THROW(stage->home({})) << "no other master has to go away first";
-  EXPECT_NEAR(stage->move_to(Micrometers{20.0}, kCriterion, {}).position.value, 20.0, 0.5);
+  EXPECT_NEAR(stage->move_to(Micrometers{20.0}, test::kCriterion, {}).position.value, 20.0, 0.5);
 }
 
 INSTANTIATE_TEST_SUITE_P(With, OneMaster, testing::ValuesIn(test::kDriveCases),
@@ -123,8 +120,6 @@ INSTANTIATE_TEST_SUITE_P(With, OneMaster, testing::ValuesIn(test::kDriveCases),
 
 constexpr test::DriveCase kAz = test::kDriveCases[0];
 constexpr test::DriveCase kScl = test::kDriveCases[3];
-constexpr test::DriveCase kCia402 = test::kDriveCases[4];
-constexpr int kCia402Controlword = 6000;
 constexpr int kSclOpcode = 124;
 
 void write_word(test::SimulatedDrive& plant, int address, std::uint16_t word) {
@@ -133,11 +128,12 @@ void write_word(test::SimulatedDrive& plant, int address, std::uint16_t word) {
 }
 
 TEST(AnotherMaster, ThatDisablesTheDriveIsNotOverridden) {
-  test::SimulatedDrive plant(kCia402, Transport::kTcp);
+  test::SimulatedDrive plant(test::kCia402, Transport::kTcp);
   const auto stage = plant.open_homed();
-  stage->move_to(Micrometers{10.0}, kCriterion, {});
-  write_word(plant, kCia402Controlword, 0);
-  expect_error(ErrorCode::kStageTaken, {"controlword"}, [&] { stage->move_to(Micrometers{20.0}, kCriterion, {}); });
+  stage->move_to(Micrometers{10.0}, test::kCriterion, {});
+  write_word(plant, test::kCia402Controlword, 0);
+  expect_error(ErrorCode::kStageTaken, {"controlword"},
+               [&] { stage->move_to(Micrometers{20.0}, test::kCriterion, {}); });
   expect_error(ErrorCode::kStageTaken, {"controlword"}, [&] { stage->home({}); });
   EXPECT_FALSE(stage->status().enabled);
 }
@@ -145,9 +141,10 @@ TEST(AnotherMaster, ThatDisablesTheDriveIsNotOverridden) {
 TEST(AnotherMaster, ThatSendsAHomedAxisToZeroIsNoRestart) {
   test::SimulatedDrive plant(kAz, Transport::kTcp);
   const auto stage = plant.open_homed();
-  stage->move_to(Micrometers{10.0}, kCriterion, {});
+  stage->move_to(Micrometers{10.0}, test::kCriterion, {});
   ASSERT_TRUE(plant.write_target_as_another_master(0));
-  expect_error(ErrorCode::kStageTaken, {"another master"}, [&] { stage->move_to(Micrometers{20.0}, kCriterion, {}); });
+  expect_error(ErrorCode::kStageTaken, {"another master"},
+               [&] { stage->move_to(Micrometers{20.0}, test::kCriterion, {}); });
 }
 
 /// What another master does while the axis is on a long way.
@@ -162,12 +159,13 @@ void expect_taken_in_motion(const test::DriveCase& drive, const std::function<vo
     other(plant);
   });
   expect_error(ErrorCode::kStageTaken, {"another master"},
-               [&] { stage->move_to(Micrometers{1000.0}, kCriterion, {}); });
+               [&] { stage->move_to(Micrometers{1000.0}, test::kCriterion, {}); });
   EXPECT_FALSE(plant.axis().moving(HostClock::now()));
 }
 
 TEST(AnotherMaster, ThatDisablesAMovingAxisIsToldOfInPlaceOfAnAlarm) {
-  expect_taken_in_motion(kCia402, [](test::SimulatedDrive& plant) { write_word(plant, kCia402Controlword, 0); });
+  expect_taken_in_motion(test::kCia402,
+                         [](test::SimulatedDrive& plant) { write_word(plant, test::kCia402Controlword, 0); });
 }
 
 TEST(AnotherMaster, ThatStartsAMoveIsToldOfInPlaceOfALostReference) {

@@ -21,11 +21,7 @@ using std::chrono::milliseconds;
 using test::expect_error;
 using test::Transport;
 
-constexpr SettleCriterion kCriterion{
-    .window = Micrometers{0.5}, .samples = 3, .dwell = milliseconds(10), .timeout = milliseconds(5000)};
 constexpr test::DriveCase kAr = test::kDriveCases[1];
-constexpr test::DriveCase kCia402 = test::kDriveCases[4];
-constexpr int kCia402Controlword = 6000;
 constexpr int kArInput = 0x007C;
 constexpr int kArSpeed = 0x0480;
 
@@ -53,24 +49,25 @@ TEST_P(ADriveWithAnOldTarget, NeverStartsTowardsIt) {
     while (plant.axis().true_position_um(HostClock::now()) < 50.0) std::this_thread::yield();
     stop.request_stop();
   });
-  expect_error(ErrorCode::kAborted, {}, [&] { stage->move_to(Micrometers{1200.0}, kCriterion, stop.get_token()); });
+  expect_error(ErrorCode::kAborted, {},
+               [&] { stage->move_to(Micrometers{1200.0}, test::kCriterion, stop.get_token()); });
 
   // So near that the axis stands within the window already: where it stands tells nothing.
   const double target_um = stage->status().position.value + 0.3;
   plant.faults().add(lost(test::target_address(GetParam().kind)));
-  EXPECT_NO_THROW(stage->move_to(Micrometers{target_um}, kCriterion, {}));
+  EXPECT_NO_THROW(stage->move_to(Micrometers{target_um}, test::kCriterion, {}));
   EXPECT_NEAR(plant.axis().true_position_um(HostClock::now()), target_um, 0.25);
   EXPECT_FALSE(plant.axis().moving(HostClock::now()));
   EXPECT_EQ(plant.faults().unconsumed(), 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(With, ADriveWithAnOldTarget, testing::Values(kAr, test::kDriveCases[3], kCia402),
+INSTANTIATE_TEST_SUITE_P(With, ADriveWithAnOldTarget, testing::Values(kAr, test::kDriveCases[3], test::kCia402),
                          [](const auto& on) { return testing::PrintToString(on.param); });
 
 TEST(ADriveWithAnOldSpeed, DoesNotStartAtIt) {
   test::SimulatedDrive plant(kAr, Transport::kTcp);
   const auto stage = plant.open_homed();
-  stage->move_to(Micrometers{10.0}, kCriterion, {});
+  stage->move_to(Micrometers{10.0}, test::kCriterion, {});
   const int before = plant.drive().moves();
   plant.faults().add(lost(kArSpeed));
   EXPECT_NO_THROW(stage->sweep_to(Micrometers{12.0}, 20.0, {}));
@@ -81,11 +78,11 @@ TEST(ADriveWithAnOldSpeed, DoesNotStartAtIt) {
 }
 
 TEST(AHoming, ThatEndedIsNotRunAgainForItsLastStep) {
-  test::SimulatedDrive plant(kCia402, Transport::kTcp);
+  test::SimulatedDrive plant(test::kCia402, Transport::kTcp);
   std::atomic<int> starts{0};
   std::atomic<int> put_off{0};
   test::GatedBank bank(plant.drive(), [&](int address, std::span<const std::uint16_t> values) {
-    if (address != kCia402Controlword) return sim::ModbusException::kNone;
+    if (address != test::kCia402Controlword) return sim::ModbusException::kNone;
     if (values.front() == 0x001F) ++starts;
     const bool is_last = starts > 0 && values.size() == 2 && values[0] == 0x000F && values[1] == 1;
     if (!is_last || put_off == 20) return sim::ModbusException::kNone;  // for longer than the link's patience
@@ -98,7 +95,7 @@ TEST(AHoming, ThatEndedIsNotRunAgainForItsLastStep) {
   stage->home({});
   EXPECT_EQ(starts, 1);
   EXPECT_EQ(put_off, 20);
-  EXPECT_NEAR(stage->move_to(Micrometers{10.0}, kCriterion, {}).position.value, 10.0, 0.5);
+  EXPECT_NEAR(stage->move_to(Micrometers{10.0}, test::kCriterion, {}).position.value, 10.0, 0.5);
 }
 
 TEST(AHoming, ThatBeganWithoutAnAnswerIsCompleted) {

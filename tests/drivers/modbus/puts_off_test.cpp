@@ -25,8 +25,6 @@ using std::chrono::milliseconds;
 using test::expect_error;
 using test::Transport;
 
-constexpr SettleCriterion kCriterion{
-    .window = Micrometers{0.5}, .samples = 3, .dwell = milliseconds(10), .timeout = milliseconds(5000)};
 constexpr int kAzTarget = 0x005C;
 constexpr int kAzPosition = 0x00CC;
 
@@ -45,7 +43,7 @@ TEST_P(ADriveThatPutsOff, OneRequestInTenIsHomedAndMovedAllTheSame) {
   stage->home({});
   const int before = plant_.drive().moves();
   for (int i = 1; i <= 6; ++i) {
-    const MoveRecord move = stage->move_to(Micrometers{10.0 * i}, kCriterion, {});
+    const MoveRecord move = stage->move_to(Micrometers{10.0 * i}, test::kCriterion, {});
     EXPECT_NEAR(move.position.value, 10.0 * i, 0.5);
     EXPECT_NEAR(plant_.axis().true_position_um(HostClock::now()), 10.0 * i, 0.75);
   }
@@ -170,7 +168,7 @@ TEST_F(ABentLine, ThatClosesAfterEveryAnswerIsServed) {
   stage->home({});
   const int before = plant_.drive().moves();
   for (int i = 1; i <= 3; ++i) {
-    EXPECT_NEAR(stage->move_to(Micrometers{10.0 * i}, kCriterion, {}).position.value, 10.0 * i, 0.5);
+    EXPECT_NEAR(stage->move_to(Micrometers{10.0 * i}, test::kCriterion, {}).position.value, 10.0 * i, 0.5);
   }
   EXPECT_EQ(plant_.drive().moves(), before + 3);
   EXPECT_GT(line.connections(), 10);
@@ -180,7 +178,7 @@ TEST_F(ABentLine, WithBytesBehindEveryAnswerIsServedAndCounted) {
   const test::BentLine line(drive_port(), {.trailing = {0xAB, 0xCD}});
   const auto stage = open_modbus_stage(stage_on(line));
   stage->home({});
-  EXPECT_NEAR(stage->move_to(Micrometers{10.0}, kCriterion, {}).position.value, 10.0, 0.5);
+  EXPECT_NEAR(stage->move_to(Micrometers{10.0}, test::kCriterion, {}).position.value, 10.0, 0.5);
   ASSERT_TRUE(stage->link_stats());
   EXPECT_GT(stage->link_stats()->discarded_bytes, 20U);
 }

@@ -39,7 +39,7 @@ void write_slices(const ScratchDir& scratch, int count, int bits, int shift) {
   }
 }
 
-std::uint16_t at(const SliceImage& slice, int x, int y) { return slice.view().as<std::uint16_t>().at(x, y); }
+std::uint16_t word_at(const SliceImage& slice, int x, int y) { return slice.view().as<std::uint16_t>().at(x, y); }
 
 int most(const SliceImage& slice) {
   const auto* const first = reinterpret_cast<const std::uint16_t*>(slice.pixels.data());
@@ -75,7 +75,7 @@ TEST(SignificantBits, AreAll16OfAnOrdinaryFile) {
   const RecordedStack stack(scratch.path());
   EXPECT_EQ(stack.format(), PixelFormat::kMono16);
   EXPECT_EQ(stack.list().description, "s*.png (3 files)");
-  EXPECT_EQ(at(stack.read(1), 5, 5), clipped(1, 16).at<std::uint16_t>(5, 5));
+  EXPECT_EQ(word_at(stack.read(1), 5, 5), clipped(1, 16).at<std::uint16_t>(5, 5));
 }
 
 TEST(SignificantBits, AreSeenFromAPlateauInOneSliceOfMany) {
@@ -104,7 +104,7 @@ TEST(SignificantBits, AreWhatAPersonSays) {
   const ScratchDir high;
   write_slices(high, 3, 10, 6);
   const RecordedStack stack(find_slices(high.path()), 10);
-  EXPECT_EQ(at(stack.read(1), 5, 5), clipped(1, 10).at<std::uint16_t>(5, 5));
+  EXPECT_EQ(word_at(stack.read(1), 5, 5), clipped(1, 10).at<std::uint16_t>(5, 5));
   const ScratchDir full;
   write_slices(full, 3, 16, 0);
   expect_error(ErrorCode::kBadInput, {"s0.png", "12 significant bits"},
@@ -143,7 +143,7 @@ TEST_P(EveryRange, OfRealNumbersIsBroughtTo16Bit) {
   const RecordedStack stack(scratch / "s.tif");
   EXPECT_EQ(stack.format(), PixelFormat::kMono16);
   const auto value = static_cast<double>(pages[2].pixels.at<float>(5, 6));
-  EXPECT_NEAR(at(stack.read(2), 6, 5), (value - std::min(0.0, least)) / full * 65'535, 1.0);
+  EXPECT_NEAR(word_at(stack.read(2), 6, 5), (value - std::min(0.0, least)) / full * 65'535, 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Recorded, EveryRange,
@@ -161,7 +161,7 @@ TEST(SignedSamples, AreTakenFromTheLeastOne) {
     pages.push_back({slice, "", 0, 0});
   }
   test::write_tiff(scratch / "s.tif", pages);
-  EXPECT_NEAR(at(RecordedStack(scratch / "s.tif").read(1), 4, 5), clipped(1, 16).at<std::uint16_t>(5, 4), 1.0);
+  EXPECT_NEAR(word_at(RecordedStack(scratch / "s.tif").read(1), 4, 5), clipped(1, 16).at<std::uint16_t>(5, 4), 1.0);
 }
 
 TEST(RealSamples, MustBeNumbers) {
@@ -187,7 +187,7 @@ TEST_P(EveryPacking, IsReadAsItIs) {
                                                : PixelFormat::kMono16);
   EXPECT_EQ(most(stack.read(2)), max_grey_level(stack.format()));
   const int lost = significant_bits(stack.format()) - GetParam();
-  EXPECT_EQ(at(stack.read(2), 39, 29) >> lost, pages[2].pixels.at<std::uint16_t>(29, 39));
+  EXPECT_EQ(word_at(stack.read(2), 39, 29) >> lost, pages[2].pixels.at<std::uint16_t>(29, 39));
 }
 
 INSTANTIATE_TEST_SUITE_P(Recorded, EveryPacking, testing::Values(10, 12, 14));
@@ -204,7 +204,7 @@ TEST(ContiguousTiff, IsReadImageByImage) {
   EXPECT_EQ(stack.list().used_pages, 4);
   EXPECT_TRUE(stack.list().ignored_pages.empty());
   for (int i = 0; i < 4; ++i) {
-    EXPECT_EQ(at(stack.read(i), 39, 29), images[static_cast<std::size_t>(i)].at<std::uint16_t>(29, 39)) << i;
+    EXPECT_EQ(word_at(stack.read(i), 39, 29), images[static_cast<std::size_t>(i)].at<std::uint16_t>(29, 39)) << i;
   }
   test::write_text(scratch / "s.tif", whole.substr(0, whole.size() - 1));
   expect_error(ErrorCode::kBadInput, {"s.tif", "incomplete"}, [&] { (void)RecordedStack(scratch / "s.tif").slices(); });

@@ -14,7 +14,7 @@ using test::Bytes;
 using test::GvcpClient;
 using test::words;
 
-constexpr std::uint16_t kWrite = 0x0082;
+constexpr std::uint16_t kWriteRegister = 0x0082;
 
 class AGigeCameraServer : public test::CameraTest {};
 
@@ -60,7 +60,8 @@ TEST(AGigeCameraServerWithAnIncrement, TakesWidthsOnItsGridOnly) {
 
 TEST_F(AGigeCameraServer, TellsHowFarARefusedWriteCame) {
   EXPECT_EQ(client_.write(gvcp::reg::kControlPrivilege, 2), 0);
-  const Bytes reply = client_.ask(kWrite, words({feature::kWidth, 32, feature::kHeight, 16, gvcp::reg::kVersion, 1}));
+  const Bytes reply =
+      client_.ask(kWriteRegister, words({feature::kWidth, 32, feature::kHeight, 16, gvcp::reg::kVersion, 1}));
   ASSERT_EQ(reply.size(), 12U);
   EXPECT_EQ(gvcp::get16(reply, 0), 0x8004);
   EXPECT_EQ(gvcp::get16(reply, 10), 2) << "two were written";
@@ -119,7 +120,7 @@ TEST_F(AGigeCameraServer, SurvivesNonsenseAndStillAnswers) {
 TEST_F(AGigeCameraServer, DoesNotRunARepeatedRequestTwice) {
   open_stream();
   start(true);
-  const Bytes trigger = GvcpClient::command(kWrite, words({feature::kTriggerSoftware, 1}), 0x4321);
+  const Bytes trigger = GvcpClient::command(kWriteRegister, words({feature::kTriggerSoftware, 1}), 0x4321);
   client_.send(trigger);
   const auto first = client_.receive(5000);
   GvcpClient other(server_.address());
@@ -130,7 +131,7 @@ TEST_F(AGigeCameraServer, DoesNotRunARepeatedRequestTwice) {
   ASSERT_TRUE(first && second);
   EXPECT_EQ(*first, *second);
   // The number alone makes no repetition.
-  client_.send(GvcpClient::command(kWrite, words({gvcp::reg::kHeartbeatTimeout, 4000}), 0x4321));
+  client_.send(GvcpClient::command(kWriteRegister, words({gvcp::reg::kHeartbeatTimeout, 4000}), 0x4321));
   ASSERT_TRUE(client_.receive(5000).has_value());
   EXPECT_EQ(client_.read(gvcp::reg::kHeartbeatTimeout), 4000U);
   EXPECT_EQ(gvcp::get16(trigger_frame().at(0), 2), 2) << "one frame was exposed before this one";

@@ -1,0 +1,352 @@
+#include "daemon/transport/http_session.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.hpp"
+#include "daemon/transport/http_message.hpp"
+#include "daemon/transport/tcp_options.hpp"
+
+namespace fvd {
+
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+
+namespace {
+
+constexpr std::uint32_t kMaxHeader_bytes = 16384;
+constexpr std::chrono::seconds kHeaderTime{10};
+constexpr std::chrono::seconds kBodyTime{10};
+constexpr std::chrono::seconds kAnswerTime{10};     // for the client to read
+constexpr std::chrono::seconds kKeepAliveTime{60};  // between two requests
+constexpr std::chrono::seconds kDrainTime{1};
+constexpr std::size_t kDrainChunk_bytes = 4096;
+
+/// Without a token nobody can change anything by HTTP, whatever his address may do elsewhere: a page in a browser has
+/// that address too.
+Identity looking_only(Identity who) {
+  who.role = std::min(who.role, Role::kView);
+  return who;
+}
+
+}  // namespace
+
+HttpSession::HttpSession(const HttpSessionHost& host, Socket socket, std::uint64_t number)
+    : host_(host),
+      socket_(std::move(socket)),
+      deadline_(host.context),
+      wait_(host.context),
+      buffer_(kMaxHeader_bytes + Dispatcher::kMaxLineBytes) {
+  ErrorCodeOf gone;
+  address_ = socket_.remote_endpoint(gone).address().to_string(gone);
+  own_address_ = socket_.local_endpoint(gone).address().to_string(gone);
+  caller_.connection = number;
+  caller_.peer = "http " + peer_of(socket_.native_handle());
+  by_address_ = {"address " + address_, Role::kNone};
+  if (const auto bytes = address_bytes(address_)) by_address_ = looking_only(host.access.of_address(*bytes, address_));
+}
+
+const HttpSession::Route* HttpSession::route_of(const std::string& path) {
+  static const std::map<std::string, Route> kRoutes{{"/api/jsonrpc", {http::verb::post, &HttpSession::serve_call}}};
+  const auto found = kRoutes.find(path);
+  return found == kRoutes.end() ? nullptr : &found->second;
+}
+
+template <typename Result>
+void HttpSession::work(Worker& worker, std::function<Result()> what, void (HttpSession::*then)(Result)) {
+  at_work_ = true;
+  worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
+    Result result = what();
+    asio::io_context& context = self->host_.context;
+    // The session is moved back: its destructor must run on the server's thread.
+    asio::post(context, [self = std::move(self), result = std::move(result), then]() mutable {
+      self->at_work_ = false;
+      if (!self->is_closed_) (self.get()->*then)(std::move(result));
+    });
+  });
+}
+
+void HttpSession::start() {
+  tune(socket_.native_handle());
+  read_head();
+}
+
+void HttpSession::turn_away() {
+  tune(socket_.native_handle());
+  refuse({503, "too_many_connections", "too many connections; close some, or try again later"});
+}
+
+void HttpSession::close() {
+  if (is_closed_) return;
+  is_closed_ = true;
+  waiting_.reset();
+  ErrorCodeOf ignored;
+  deadline_.cancel();
+  wait_.cancel();
+  socket_.shutdown(Socket::shutdown_both, ignored);
+  socket_.close(ignored);
+  host_.on_close(shared_from_this());
+}
+
+void HttpSession::expire_after(std::chrono::milliseconds time) {
+  timed_out_ = false;
+  deadline_.expires_after(time);
+  deadline_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+    // One that was put off after it had expired comes all the same.
+    if (error || self->is_closed_ || self->deadline_.expiry() > std::chrono::steady_clock::now()) return;
+    self->timed_out_ = true;
+    ErrorCodeOf ignored;
+    self->socket_.cancel(ignored);
+  });
+}
+
+void HttpSession::await_request() {
+  is_busy_ = false;
+  since_ = HostClock::now();
+  if (buffer_.size() > 0) return read_head();
+  expire_after(kKeepAliveTime);
+  socket_.async_wait(Socket::wait_read, [self = shared_from_this()](ErrorCodeOf error) {
+    if (self->is_closed_) return;
+    if (error) return self->close();
+    self->read_head();
+  });
+}
+
+void HttpSession::read_head() {
+  parser_.emplace();
+  parser_->header_limit(kMaxHeader_bytes);
+  parser_->body_limit(Dispatcher::kMaxLineBytes);
+  expire_after(kHeaderTime);
+  http::async_read_header(socket_, buffer_, *parser_, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
+    if (!self->is_closed_) self->take_head(error);
+  });
+}
+
+void HttpSession::take_head(ErrorCodeOf error) {
+  if (error) return refuse_unread(error);
+  head_ = head_of(parser_->get());
+  if (const auto refusal = host_.gate.refusal_of(head_, own_address_)) {
+    spdlog::warn("HTTP from {} was refused: {}", caller_.peer, refusal->error);
+    return refuse(*refusal);
+  }
+  const Route* route = route_of(head_.path);
+  if (route == nullptr) return refuse({404, "not_found", "there is POST /api/jsonrpc"});
+  if (parser_->get().method() != route->verb) {
+    return refuse({405, "method_not_allowed", "use " + std::string(http::to_string(route->verb))});
+  }
+  (this->*route->serve)();
+}
+
+void HttpSession::serve_call() {
+  if (!head_.content_type || !is_json_type(*head_.content_type)) {
+    return refuse({415, "unsupported_media_type", "send the header field Content-Type: application/json"});
+  }
+  if (parser_->get()[http::field::expect] != "100-continue") return read_body();
+  static const std::string kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  asio::async_write(socket_, asio::buffer(kContinue), [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
+    if (self->is_closed_) return;
+    if (error) return self->close();
+    self->read_body();
+  });
+}
+
+void HttpSession::read_body() {
+  expire_after(kBodyTime);
+  http::async_read(socket_, buffer_, *parser_, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
+    if (!self->is_closed_) self->take_body(error);
+  });
+}
+
+void HttpSession::take_body(ErrorCodeOf error) {
+  if (error) return refuse_unread(error);
+  deadline_.cancel();
+  since_ = HostClock::now();
+  caller_.received = HostClock::now();
+  recognise();
+}
+
+void HttpSession::recognise() {
+  if (!head_.authorization) {
+    caller_.who = by_address_;
+    return answer();
+  }
+  const auto token = bearer_of(*head_.authorization);
+  if (!token) return refuse_token("Authorization is not of the form Bearer TOKEN");
+  using Found = std::pair<std::optional<Identity>, std::string>;
+  work<Found>(
+      host_.logins,
+      [&access = host_.access, token = std::string(*token)]() -> Found {
+        try {
+          return {access.of_token(token), {}};
+        } catch (const Error& error) {
+          return {std::nullopt, error.what()};
+        }
+      },
+      &HttpSession::take_identity);
+}
+
+void HttpSession::take_identity(std::pair<std::optional<Identity>, std::string> found) {
+  if (!found.second.empty()) {
+    spdlog::error("nobody can be recognised by a token: {}", found.second);
+    return refuse({503, "no_tokens", "the file of tokens cannot be read; the log says why"});
+  }
+  if (!found.first) return refuse_token("nobody has this token");
+  caller_.who = *std::move(found.first);
+  answer();
+}
+
+void HttpSession::refuse_token(const std::string& why) {
+  const auto delay = host_.wrong_tokens.delay_of_another(address_, HostClock::now());
+  spdlog::warn("HTTP from {} was refused: {}", caller_.peer, why);
+  since_ = HostClock::now();
+  wait_.expires_after(delay);
+  wait_.async_wait([self = shared_from_this(), why](ErrorCodeOf error) {
+    if (error || self->is_closed_) return;
+    self->refuse({401, "unauthorized", why + "; fvdctl token new makes one, which goes into rpc.token_file"});
+  });
+}
+
+void HttpSession::answer() {
+  is_busy_ = true;
+  const std::string& text = parser_->get().body();
+  if (auto handled = host_.dispatcher.try_handle(text, caller_)) return take(std::move(*handled));
+  work<Handled>(
+      host_.worker,
+      [&dispatcher = host_.dispatcher, text, caller = caller_] { return dispatcher.handle(text, caller); },
+      &HttpSession::take);
+}
+
+void HttpSession::take(Handled handled) {
+  if (handled.waiting) return begin_wait(*std::move(handled.waiting));
+  send_reply(std::move(handled.reply));
+}
+
+void HttpSession::begin_wait(WaitingRequest waiting) {
+  wait_is_over_ = false;
+  wait_.expires_after(waiting.until.timeout);
+  waiting_ = std::move(waiting);
+  wait_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+    if (!error && self->wait_.expiry() <= std::chrono::steady_clock::now()) self->resume(true);
+  });
+  watch_client();
+  check_wait(false);
+}
+
+void HttpSession::watch_client() {
+  socket_.async_wait(Socket::wait_read, [self = shared_from_this(), request = ++requests_](ErrorCodeOf error) {
+    // What ends the watch of a request that was answered is the next request.
+    if (error || self->is_closed_ || !self->waiting_ || request != self->requests_) return;
+    ErrorCodeOf ignored;
+    if (self->socket_.available(ignored) == 0) self->close();
+  });
+}
+
+void HttpSession::resume(bool timed_out) { check_wait(timed_out); }
+
+void HttpSession::check_wait(bool timed_out) {
+  if (!waiting_) return;
+  wait_is_over_ = wait_is_over_ || timed_out;
+  if (at_work_) {
+    check_again_ = true;
+    return;
+  }
+  if (!wait_is_over_ && !host_.dispatcher.may_have_come(*waiting_)) return;
+  check_again_ = false;
+  work<std::optional<std::string>>(
+      host_.worker,
+      [&dispatcher = host_.dispatcher, waiting = *waiting_, late = wait_is_over_] {
+        return dispatcher.resume(waiting, late);
+      },
+      &HttpSession::end_wait);
+}
+
+void HttpSession::end_wait(std::optional<std::string> reply) {
+  if (!reply) {
+    if (check_again_) check_wait(false);
+    return;
+  }
+  waiting_.reset();
+  wait_.cancel();
+  send_reply(std::move(reply));
+}
+
+void HttpSession::send_reply(std::optional<std::string> reply) {
+  Response response;
+  response.result(reply ? http::status::ok : http::status::no_content);
+  if (reply) response.body() = *std::move(reply) + "\n";
+  response.keep_alive(parser_->get().keep_alive());
+  send(std::move(response));
+}
+
+void HttpSession::refuse_unread(ErrorCodeOf error) {
+  if (timed_out_) {
+    const bool is_begun = parser_ && (buffer_.size() > 0 || parser_->got_some());
+    if (!is_begun) return close();
+    return refuse({408, "too_slow", "the request did not come within 10 s; send it at once"});
+  }
+  if (error == http::error::header_limit) {
+    return refuse({431, "header_too_large", "the header has more than 16 KiB; send fewer fields"});
+  }
+  if (error == http::error::body_limit) {
+    return refuse(
+        {413, "too_large",
+         "the body has more than " + std::to_string(Dispatcher::kMaxLineBytes) + " bytes; send less at a time"});
+  }
+  const bool is_http = error.category() == http::make_error_code(http::error::bad_method).category();
+  if (!is_http || error == http::error::end_of_stream || error == http::error::partial_message) return close();
+  refuse({400, "bad_request", "this is no HTTP/1.1: " + error.message() + "; see POST /api/jsonrpc"});
+}
+
+void HttpSession::refuse(const HttpRefusal& refusal) {
+  Response response;
+  response.result(static_cast<unsigned>(refusal.status));
+  if (refusal.status == 401) response.set(http::field::www_authenticate, "Bearer");
+  if (refusal.status == 405) {
+    response.set(http::field::allow, http::to_string(route_of(head_.path)->verb));
+  }
+  response.body() = refusal.body();
+  response.keep_alive(false);
+  send(std::move(response));
+}
+
+void HttpSession::send(Response response) {
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  response.set(http::field::cache_control, "no-store");
+  if (!response.body().empty()) response.set(http::field::content_type, "application/json");
+  if (response.result() != http::status::no_content) response.prepare_payload();
+  response_ = std::move(response);
+  expire_after(kAnswerTime);
+  http::async_write(socket_, response_, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
+    if (self->is_closed_) return;
+    if (error) return self->close();
+    if (self->response_.keep_alive()) return self->await_request();
+    self->drain();
+  });
+}
+
+void HttpSession::drain() {
+  is_busy_ = false;
+  ErrorCodeOf ignored;
+  socket_.shutdown(Socket::shutdown_send, ignored);
+  expire_after(kDrainTime);
+  drain_more();
+}
+
+void HttpSession::drain_more() {
+  buffer_.clear();
+  socket_.async_read_some(buffer_.prepare(kDrainChunk_bytes),
+                          [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
+                            if (self->is_closed_) return;
+                            if (error) return self->close();
+                            self->drain_more();
+                          });
+}
+
+}  // namespace fvd

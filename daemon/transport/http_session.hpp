@@ -1,0 +1,128 @@
+#pragma once
+
+/// One connection of a client that speaks HTTP: a request, its answer, the next request.
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>  // before Asio 1.74, which forgets it
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+
+#include "daemon/access/access_rules.hpp"
+#include "daemon/api/dispatcher.hpp"
+#include "daemon/transport/http_gate.hpp"
+#include "daemon/transport/worker.hpp"
+#include "daemon/transport/wrong_tokens.hpp"
+
+namespace fvd {
+
+class HttpSession;
+
+/// What a session needs of its server; all of it outlives the session.
+struct HttpSessionHost {
+  boost::asio::io_context& context;  ///< run by the server's thread
+  const Dispatcher& dispatcher;
+  const AccessRules& access;
+  const HttpGate& gate;
+  WrongTokens& wrong_tokens;
+  Worker& worker;  ///< for calls that may block
+  Worker& logins;  ///< for the token file: nobody waits behind a slow call to be recognised
+  std::function<void(const std::shared_ptr<HttpSession>&)> on_close;
+};
+
+/// Held by shared_ptr: handlers that are still queued keep it alive. context: the server's thread only.
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  using Socket = boost::asio::ip::tcp::socket;
+
+  /// number: of the connection since the server's start.
+  HttpSession(const HttpSessionHost& host, Socket socket, std::uint64_t number);
+
+  void start();
+  /// Answers with 503 and closes: there are too many connections.
+  void turn_away();
+  /// Checks the waiting request again: a job changed, or the waiting time is over, which answers it.
+  void resume(bool timed_out);
+  /// True from a whole request to the last byte of its answer.
+  [[nodiscard]] bool is_busy() const noexcept { return is_busy_; }
+  /// When it became as it is: a connection that is not busy gives way to another one, the oldest first.
+  [[nodiscard]] HostTime since() const noexcept { return since_; }
+  /// Closes at once and calls the host's on_close.
+  void close();
+
+ private:
+  using ErrorCodeOf = boost::system::error_code;
+  using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+  using Response = boost::beast::http::response<boost::beast::http::string_body>;
+
+  struct Route {
+    boost::beast::http::verb verb;
+    void (HttpSession::*serve)();  ///< the header is read and may be served
+  };
+  /// Everything that can be asked for, by path; nothing for another.
+  [[nodiscard]] static const Route* route_of(const std::string& path);
+
+  void await_request();
+  void read_head();
+  void take_head(ErrorCodeOf error);
+  /// The header of /api/jsonrpc: its body is read if it may be.
+  void serve_call();
+  void read_body();
+  void take_body(ErrorCodeOf error);
+  /// Finds out who the caller is, then answers.
+  void recognise();
+  void refuse_token(const std::string& why);
+  void answer();
+  void take(Handled handled);
+  void begin_wait(WaitingRequest waiting);
+  void check_wait(bool timed_out);
+  void end_wait(std::optional<std::string> reply);
+  /// Closes when the client does, which nobody would see during a wait otherwise.
+  void watch_client();
+  /// Runs `what`, which may block, on a worker, then the member `then` with its result on the server's thread.
+  template <typename Result>
+  void work(Worker& worker, std::function<Result()> what, void (HttpSession::*then)(Result));
+  void take_identity(std::pair<std::optional<Identity>, std::string> found);
+
+  /// 200 with a reply of JSON-RPC, 204 without one.
+  void send_reply(std::optional<std::string> reply);
+  void refuse(const HttpRefusal& refusal);
+  /// Why reading failed, if the client can still be told; else closes.
+  void refuse_unread(ErrorCodeOf error);
+  void send(Response response);
+  /// Lets the client read the answer, then closes: to close with unread input would discard it.
+  void drain();
+  void drain_more();
+  /// Whatever is under way ends then with timed_out_ set.
+  void expire_after(std::chrono::milliseconds time);
+
+  const HttpSessionHost& host_;
+  Socket socket_;
+  Caller caller_;
+  Identity by_address_;  ///< who the caller is without a token
+  std::string address_;  ///< of the other end
+  std::string own_address_;
+  boost::asio::steady_timer deadline_;
+  boost::asio::steady_timer wait_;
+  boost::beast::flat_buffer buffer_;
+  std::optional<Parser> parser_;  ///< of the request that is read or answered
+  HttpHead head_;
+  Response response_;
+  std::optional<WaitingRequest> waiting_;
+  HostTime since_ = HostClock::now();
+  std::uint64_t requests_ = 0;  ///< that had to wait
+  bool is_busy_ = false;
+  bool timed_out_ = false;
+  bool wait_is_over_ = false;
+  bool at_work_ = false;      ///< a worker runs a task of this session, one at a time
+  bool check_again_ = false;  ///< a check was asked for during a check
+  bool is_closed_ = false;
+};
+
+}  // namespace fvd
