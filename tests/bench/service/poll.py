@@ -91,6 +91,17 @@ def loaded(rig, seq, seconds, rate):
     return json.loads(text)
 
 
+def complete(client, rig, seq):
+    """Waits for the job's end, longer than job.wait alone does; ends the program unless the job is completed."""
+    def end():
+        told = client.ask("job.wait", seq=seq)
+        return told["done"] and told
+
+    ended = wait_for(end, what=f"the end of job {seq}")
+    if ended["state"] != "completed":
+        sys.exit(f"a job is {ended['state']}, {ended['error_message']}: see {rig.folder}")
+
+
 def late_in(result):
     frames, slices = result["frames"], result["slices"]
     return (sum(frames[key] for key in ("incomplete", "missing", "stale", "underrun"))
@@ -106,7 +117,7 @@ def main():
         rig.settings["rpc.max_connections"] = 64
         client = rig.start()
         client.ask("job.start", seq=1, part_id="part", recipe="part")
-        client.ask("job.wait", seq=1)
+        complete(client, rig, 1)
         rig.stop()
         fill(rig.state / "fvd.sqlite", results)
         rig.environment = [f"LD_PRELOAD={rig.build / 'tests/bench/libbench_slow_sync.so'}", f"FVD_SLOW_SYNC_MS={SYNC_MS}"]
@@ -121,9 +132,7 @@ def main():
                 figures.append(loaded(rig, seq, seconds, rate))
                 if client.ask("job.status", seq=seq)["acquired"]:
                     sys.exit(f"the scan ended before the {seconds} s of polls: give it more slices than {slices}")
-                ended = client.ask("job.wait", seq=seq)
-                if ended["state"] != "completed":
-                    sys.exit(f"a job is {ended['state']}, {ended['error_message']}: see {rig.folder}")
+                complete(client, rig, seq)
                 result = client.ask("result.get", seq=seq, format="full")
                 late += late_in(result)
                 print(f"poll: {figures[-1]}, scan {result['times']['scan_ms']:.0f} ms")
