@@ -21,15 +21,16 @@ promises() {
     ready) echo 'ready_cold_ms<=2000 ready_after_kill_ms<=1000' ;;
     kills)
       echo 'kills>=300 kills_random>=60 kills_acquisition>=60 kills_end>=60 kills_start>=60 kills_rename_to_row>=60' \
-        'acked_lost==0 half_visible==0 repeated_motions==0 verdict_changes==0 orphans_left==0 moving_while_released==0'
+        'acked_lost==0 half_visible==0 repeated_motions==0 verdict_changes==0 orphans_left==0 moving_while_released==0' \
+        'times_free>=60 motions>=60'
       ;;
-    poll) echo 'poll_p99_ms<=5 late_slices==0' ;;
+    poll) echo 'poll_p99_ms<=5 late_slices==0 poll_acks>=1 poll_longest_ack_ms>=500' ;;
     restore) echo 'restore_differs==0 restore_repeated_motions==0' ;;
     soak) echo 'rss_slope_kib_per_job<=0.5 fd_slope_per_job<=0 state_gib_bounded==1 soak_jobs>=2000' ;;
     crash) echo 'crash_schedules>=10000 crash_violations==0 write_faults>=1 write_fault_violations==0' ;;
-    matrix) echo 'unauthorised_accepted==0' ;;
+    matrix) echo 'unauthorised_accepted==0 matrix_cases>=1000 chromium==1 page_attempts>=100' ;;
     replies) echo 'worst_reply_bytes_compact<=440 worst_reply_bytes_full<=1400' ;;
-    cuts) echo 'cuts>=1 cuts_repeated_motions==0 cuts_lost==0' ;;
+    cuts) echo 'cuts>=1 cuts_share>=0.9 cuts_repeated_motions==0 cuts_lost==0' ;;
     exposure) echo 'security_exposure<=2.0' ;;
     nspawn) echo 'nspawn_missing==0' ;;
     fuzz) echo 'fuzz_targets>=9 fuzz_findings_open==0' ;;
@@ -40,7 +41,7 @@ promises() {
 targets() {
   case "$1" in
     poll) echo poll_load bench_slow_sync ;;
-    crash) echo crash_test ;;
+    crash) echo crash_test write_faults_test ;;
     matrix) echo access_matrix_test ;;
     replies) echo api_test ;;
   esac

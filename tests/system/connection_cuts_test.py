@@ -5,7 +5,7 @@
 
 A part is measured for each cut: after k bytes of a direction, counted from the beginning of the part's loop, both sides of the
 connection are reset; every fourth time it falls silent instead. At the end the daemon itself is killed in the middle of a part.
-Last line: {"cuts", "repeated_motions", "lost"}.
+Last line: {"cuts", "cuts_share", "repeated_motions", "lost"}; the share is that of the cuts that came.
 """
 
 import contextlib
@@ -306,7 +306,8 @@ def main(fvd, fvd_sim, wanted="12"):
     assert [result["state"] for result in results + more] == ["completed"] * len(seqs), results + more
     lost = len(set(parts) ^ {f"part-{number}" for number in range(count)}) + state["results_waiting"]
     doubled = len(parts) - len(set(parts)) + len(seqs) - len(set(seqs)) + state["newest_seq"] - len(seqs)
-    figures = {"cuts": came, "repeated_motions": scans - len(seqs), "lost": lost + abs(doubled)}
+    figures = {"cuts": came, "cuts_share": round(came / count, 3), "repeated_motions": scans - len(seqs),
+               "lost": lost + abs(doubled)}
     print(f"the loop sends {totals[0]} bytes and receives {totals[1]}; {len(seqs)} parts, {scans} scans")
     print(json.dumps(figures), flush=True)
     assert came > 0 and figures["repeated_motions"] == 0 and figures["lost"] == 0, figures

@@ -21,7 +21,7 @@ import subprocess
 import sys
 import time
 
-from rig import Answer, Lost, Rig, recipe, wait_for
+from rig import START_TIMEOUT_S, Answer, Lost, Rig, recipe, wait_for
 
 UNKNOWN_JOB, INTERRUPTED = 1007, 1014
 SLICES = 9
@@ -46,6 +46,7 @@ class Plc:
         self.ids = {}  # of acknowledged triggers, by number
         self.results = {}  # by number, as told
         self.ended = {}  # state and error as told
+        self.acked = set()  # numbers whose acknowledgement was told
         self.figures = dict.fromkeys(("acked_lost", "half_visible", "verdict_changes", "orphans_left"), 0)
 
     def violation(self, key, what):
@@ -101,6 +102,8 @@ class Plc:
             if not status["done"]:
                 self.violation("half_visible", f"seq {seq} is {status['state']} after a restart")
             self.note_status(status)
+            if seq in self.acked and not status["acknowledged"]:
+                self.violation("acked_lost", f"seq {seq}: its result was acknowledged and is not")
             if status["state"] == "completed":
                 self.look_at_files(client, seq)
             self.resend(client, seq, status)
@@ -132,12 +135,13 @@ class Plc:
             self.violation("acked_lost", f"seq {seq} was a job and began anew")
 
     def look_for_orphans(self, client):
-        """Folders of results that are no result of a job, while no job runs."""
+        """Folders that no job tells as those of its result, while no job runs."""
         results = self.rig.state / "results"
         for folder in sorted(results.iterdir()) if results.exists() else []:
             try:
-                status = client.ask("job.status", job_id=folder.name)
-                is_known = status["state"] in ("completed", "failed")
+                # A job that failed has this name, too: known is the folder only if the result names it.
+                told = client.ask("result.get", job_id=folder.name, format="full")
+                is_known = pathlib.Path(told["directory"]) == folder
             except Answer:
                 is_known = False
             if not is_known:
@@ -164,8 +168,11 @@ def run_job(rig, plc, client, pick, mode):
             return
         plc.note_status(client.ask("job.wait", seq=plc.seq))
         plc.fetch(client, plc.seq)
-        if pick.random() < 0.5:
+        if pick.random() < 0.7:
             client.send("result.ack", seq=plc.seq)
+            if pick.random() < 0.5:  # else killed with the reply on its way
+                client.receive()
+                plc.acked.add(plc.seq)
         time.sleep(pick.uniform(0.0, 0.02))
 
 
@@ -264,6 +271,8 @@ def main():
     jobs = {f"part{seq:04}": recipe(start_um=start_of(seq), step_um=STEP_UM, slices=SLICES)
             for seq in range(1, min(JOBS_AT_MOST, 2 * kills + 10))}
     with Rig(build, jobs) as rig:
+        # Every number is asked for again at the end, however long that takes.
+        rig.settings["rpc.repeat_window_s"] = 86400
         plc = Plc(rig)
         log = None
         done = 0
@@ -275,6 +284,8 @@ def main():
             with concurrent.futures.ThreadPoolExecutor(1) as other:
                 job = other.submit(run_job, rig, plc, client, pick, mode)
                 if mode in ("random", "start"):
+                    if i == 0:  # one at least is killed when it has moved, however slow the machine is
+                        rig.motions().await_line(f"move {start_of(1):.6f}", 0, START_TIMEOUT_S)
                     time.sleep(pick.uniform(0.0, 1.2))
                 else:
                     job.result()
@@ -299,12 +310,15 @@ def main():
         set_aside = rig.state / "set-aside"
         states = [end["state"] for end in plc.ended.values()]
         print(f"kills {mode}: {plc.seq} jobs, {moved} moved; at the end {states.count('completed')} completed, "
-              f"{states.count('failed')} failed; {len(plc.results)} results told; "
+              f"{states.count('failed')} failed; {len(plc.results)} results told, {len(plc.acked)} acknowledged; "
               f"{len(list(set_aside.iterdir())) if set_aside.exists() else 0} set aside; "
               f"{len(motions.intervals())} motions, the part free {len(log.free)} times")
         if moved == 0 or not plc.ids:
             sys.exit("nothing moved: nothing was tested")
+        if len(log.free) < kills / 4 or len(motions.intervals()) < kills / 4:
+            sys.exit("too few motions or times of a free part: that nothing moved in them was not tested")
         print(json.dumps({f"kills_{mode}": done, **plc.figures, "repeated_motions": again,
+                          "times_free": len(log.free), "motions": len(motions.intervals()),
                           "moving_while_released": moved_while_free(log.free, motions)}))
 
 

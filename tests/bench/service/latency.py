@@ -10,7 +10,9 @@ import random
 import sys
 import time
 
-from rig import Client, Rig, percentile, recipe, wait_for
+from rig import Answer, Client, Rig, percentile, recipe, wait_for
+
+NO_CONTROL = 1003
 
 
 def trigger(build, rounds):
@@ -35,6 +37,17 @@ def trigger(build, rounds):
     return {"trigger_p99_ms": round(percentile(times_ms, 0.99), 2), "triggers": len(times_ms)}
 
 
+def demand_no_control(client):
+    """Ends the program unless the client is refused what needs control: else its stops would tell nothing."""
+    try:
+        client.ask("stage.move", z_um=0)
+    except Answer as error:
+        if error.code == NO_CONTROL:
+            return
+        sys.exit(f"the client without control is refused for another reason: {error}")
+    sys.exit("the client without control may move the stage")
+
+
 def stop(build, rounds):
     """From the line of a client without control to the stop at the stage, while another has control and scans."""
     to_stage_ms, to_still_ms, to_reply_ms = [], [], []
@@ -43,8 +56,11 @@ def stop(build, rounds):
     with Rig(build, {"long": scan}) as rig:
         owner = rig.start()
         motions = rig.motions()
-        stranger = Client(rig.port)
+        # Control belongs to an identity: another TCP connection from this address would have it, too.
+        stranger = Client(rig.socket)
         owner.ask("stage.home")
+        owner.ask("control.acquire", owner="line", lease_s=600)
+        demand_no_control(stranger)
         for seq in range(1, rounds + 1):
             owner.ask("control.acquire", owner="line", lease_s=600)
             begun = owner.send("job.start", seq=seq, part_id="part", recipe="long")
@@ -67,7 +83,7 @@ def stop(build, rounds):
 
 
 def jog(build, rounds):
-    """From the last repeat to the true standstill, at the highest speed that the daemon jogs at."""
+    """From the last repeat to the true standstill, at the highest speed of a jog."""
     overruns_ms = []
     with Rig(build) as rig:
         client = rig.start()

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Who may call what, by every way in, and what a page in a real Chromium can do to either port. Usage: matrix.sh [BUILD]
-# Needs what BUILD has built: access_matrix_test, fvd, fvdctl. Without `chromium` that part is skipped and told.
-# Last line: one JSON object {unauthorised_accepted, matrix_cases, chromium}.
+# Needs what BUILD has built: access_matrix_test, fvd, fvdctl. Without `chromium` that part is skipped and told: page_attempts is 0.
+# Last line: one JSON object {unauthorised_accepted, matrix_cases, page_attempts, chromium}.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-build}

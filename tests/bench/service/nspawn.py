@@ -11,6 +11,6 @@ for line in sys.stdin:
 try:
     holds = json.loads(last)
 except ValueError:
-    sys.exit("nspawn.py: the package was not tried in a machine, see above")
+    sys.exit(f"nspawn.py: no figures; the package test said last: {last.strip() or 'nothing'}")
 print(json.dumps({"nspawn": {name: holds.get(name, False) for name in WANTED},
                   "nspawn_missing": sum(holds.get(name) is not True for name in WANTED)}))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Clients that poll while the machine scans: 100,000 results that nobody acknowledged, a disk that takes 500 ms to sync,
-and viewers that never read.
+and viewers that never read. The scans last longer than the polls, so that each call is beside one.
 
 poll.py BUILD [SECONDS] [RESULTS] [CALLS_PER_S] [SLICES] [JOBS]
 The last line is one JSON object.
@@ -11,10 +11,14 @@ import sqlite3
 import subprocess
 import sys
 import threading
+import time
 
-from rig import Client, Rig, recipe
+from rig import Client, Rig, recipe, wait_for
 
 SYNC_MS = 500
+# Of poll_load's clients and viewers, the acknowledger and this program.
+CONNECTIONS = 8 + 8 + 2
+ESTABLISHED = "01"
 
 
 def fill(file, results):
@@ -37,19 +41,65 @@ class Acknowledger(threading.Thread):
     def __init__(self, port):
         super().__init__()
         self.client, self.done, self.is_over = Client(port), 0, False
+        self.longest_ms, self.failure = 0.0, None
 
     def __enter__(self):
         self.start()
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, kind, *_):
         self.is_over = True
         self.join()
+        if kind is None:
+            self.demand_load()
 
     def run(self):
-        while not self.is_over:
-            self.client.ask("result.ack", seq=self.done + 2)
-            self.done += 1
+        try:
+            while not self.is_over:
+                sent = time.monotonic()
+                self.client.ask("result.ack", seq=self.done + 2)
+                self.longest_ms = max(self.longest_ms, 1000 * (time.monotonic() - sent))
+                self.done += 1
+        except Exception as error:  # told by demand_load()
+            self.failure = error
+
+    def demand_load(self):
+        """Without commits that wait for a slow disk, times beside them tell nothing."""
+        if self.failure:
+            sys.exit(f"acknowledgement {self.done + 1} failed: {self.failure!r}")
+        if self.done < 1 or self.longest_ms < SYNC_MS:
+            sys.exit(f"{self.done} acknowledgements, the longest {self.longest_ms:.0f} ms: the disk was not slow")
+
+
+def connections(port):
+    """How many are open, seen from the daemon's end."""
+    local = f":{port:04X}"
+    with open("/proc/net/tcp", encoding="ascii") as table:
+        return sum(words[1].endswith(local) and words[3] == ESTABLISHED for words in map(str.split, table))
+
+
+def loaded(rig, seq, seconds, rate):
+    """What poll_load measured; the viewers' connections are seen meanwhile."""
+    words = (rig.build / "tests/bench/service/poll_load", rig.port, seq, seconds, rate)
+    with subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, text=True) as load:
+        wait_for(lambda: connections(rig.port) >= CONNECTIONS or load.poll() is not None, period_s=0.05,
+                 what=f"{CONNECTIONS} connections")
+        ended_early = load.poll() is not None
+        text, _ = load.communicate()
+    if load.returncode != 0 or ended_early:
+        sys.exit(f"poll_load ended with {load.returncode}, its {CONNECTIONS} connections seen: {not ended_early}")
+    return json.loads(text)
+
+
+def complete(client, rig, seq):
+    """Waits for the job's end, longer than job.wait alone does; ends the program unless the job is completed."""
+    def end():
+        told = client.ask("job.wait", seq=seq)
+        return told["done"] and told
+
+    ended = wait_for(end, what=f"the end of job {seq}")
+    if ended["state"] != "completed":
+        sys.exit(f"a job is {ended['state']}, {ended['error_message']}: see {rig.folder}")
 
 
 def late_in(result):
@@ -60,14 +110,14 @@ def late_in(result):
 
 def main():
     build = sys.argv[1]
-    standards = (15, 100_000, 2000, 200, 2)
+    standards = (15, 100_000, 2000, 400, 2)
     seconds, results, rate, slices, jobs = (int(sys.argv[i]) if len(sys.argv) > i else standard
                                             for i, standard in enumerate(standards, 2))
     with Rig(build, {"part": recipe(start_um=-100, step_um=1, slices=slices)}) as rig:
         rig.settings["rpc.max_connections"] = 64
         client = rig.start()
         client.ask("job.start", seq=1, part_id="part", recipe="part")
-        client.ask("job.wait", seq=1)
+        complete(client, rig, 1)
         rig.stop()
         fill(rig.state / "fvd.sqlite", results)
         rig.environment = [f"LD_PRELOAD={rig.build / 'tests/bench/libbench_slow_sync.so'}", f"FVD_SLOW_SYNC_MS={SYNC_MS}"]
@@ -79,19 +129,18 @@ def main():
         with Acknowledger(rig.port) as acknowledger:
             for seq in range(results + 1, results + 1 + jobs):
                 client.ask("job.start", seq=seq, part_id="part", recipe="part")
-                load = subprocess.run([str(word) for word in (rig.build / "tests/bench/service/poll_load", rig.port, seq,
-                                                              seconds, rate)], stdout=subprocess.PIPE, text=True, check=True)
-                figures.append(json.loads(load.stdout))
-                ended = client.ask("job.wait", seq=seq)
-                if ended["state"] != "completed":
-                    sys.exit(f"a job is {ended['state']}, {ended['error_message']}: see {rig.folder}")
+                figures.append(loaded(rig, seq, seconds, rate))
+                if client.ask("job.status", seq=seq)["acquired"]:
+                    sys.exit(f"the scan ended before the {seconds} s of polls: give it more slices than {slices}")
+                complete(client, rig, seq)
                 result = client.ask("result.get", seq=seq, format="full")
                 late += late_in(result)
                 print(f"poll: {figures[-1]}, scan {result['times']['scan_ms']:.0f} ms")
         rig.stop()
-    print(f"poll: {acknowledger.done} acknowledgements meanwhile")
+    print(f"poll: {acknowledger.done} acknowledgements meanwhile, the longest {acknowledger.longest_ms:.0f} ms")
     print(json.dumps({"poll_p99_ms": round(max(told["p99_ms"] for told in figures), 2), "late_slices": late,
-                      "poll_calls": sum(told["calls"] for told in figures), "poll_jobs": jobs}))
+                      "poll_calls": sum(told["calls"] for told in figures), "poll_jobs": jobs,
+                      "poll_acks": acknowledger.done, "poll_longest_ack_ms": round(acknowledger.longest_ms)}))
 
 
 main()

@@ -154,7 +154,11 @@ class Rig:
         self.simulator = self.run(
             [self.build / "sim/fvd-sim", "run", "--camera-address", "auto", "--stage-port", "0",
              "--ready-file", self.folder / "sim.json", "--motion-log", self.memory / "motion.txt"], "sim.log")
-        self.plant = self.await_file(self.folder / "sim.json", self.simulator)
+        try:
+            self.plant = self.await_file(self.folder / "sim.json", self.simulator)
+        except SystemExit:
+            self.simulator.kill()
+            raise
         self.port = 0
 
     def __enter__(self):

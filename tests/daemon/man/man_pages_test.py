@@ -59,6 +59,7 @@ class ThePages(unittest.TestCase):
                         seen += 1
                         self.assertIn(option, section, f"{page} {words}")
             self.assertGreater(seen, 5)
+        self.assertIn("--motion-log", plain(self.out / "fvd-sim.1"))
 
     def test_have_every_key(self):
         def paths(schema, prefix=""):
@@ -99,6 +100,7 @@ class ThePages(unittest.TestCase):
         self.assertEqual(completed("fvdctl", "--address", "1.2.3.4:5", "stage", "stop", "--con"), ["--config"])
         self.assertEqual(completed("fvd", "--check-c"), ["--check-config"])
         self.assertEqual(completed("fvd-sim", "run", "--camera-a"), ["--camera-address"])
+        self.assertEqual(completed("fvd-sim", "run", "--mot"), ["--motion-log"])
 
 
 if __name__ == "__main__":
