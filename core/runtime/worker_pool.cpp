@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <exception>
 #include <stop_token>
 #include <thread>
@@ -38,15 +39,16 @@ struct WorkerPool::Impl {
   Condition work_arrived;
   Condition work_done;
   Loop* newest FVD_GUARDED_BY(mutex) = nullptr;  // of those that are not done, linked by age
+  std::deque<ThreadTicks> ticks;                 // one a thread, made before it: a thread at work allocates nothing
   std::vector<std::jthread> threads;             // last: they use everything above
 
   /// Runs a loop's indices until none is left; lets go of the mutex for each.
-  void work(Loop& loop, ThreadTicks* ticks) FVD_REQUIRES(mutex) {
+  void work(Loop& loop, ThreadTicks* own_ticks) FVD_REQUIRES(mutex) {
     while (loop.has_more()) {
       const int index = loop.next++;
       ++loop.running;
       mutex.unlock();
-      if (ticks != nullptr) ticks->tick(HostClock::now());
+      if (own_ticks != nullptr) own_ticks->tick(HostClock::now());
       std::exception_ptr thrown;
       try {
         loop.body(index);
@@ -76,24 +78,24 @@ struct WorkerPool::Impl {
     *link = loop.older;
   }
 
-  void serve(std::stop_token stop) {
-    ThreadTicks ticks("fvd-worker", kLongestIndex);
+  void serve(ThreadTicks& own_ticks, std::stop_token stop) {
     MutexLock lock(mutex);
     const auto due = [this] {
       mutex.assert_held();
       return loop_with_more() != nullptr;
     };
     while (work_arrived.wait(lock, stop, due)) {
-      work(*loop_with_more(), &ticks);
-      ticks.rest();
+      work(*loop_with_more(), &own_ticks);
+      own_ticks.rest();
     }
   }
 };
 
 WorkerPool::WorkerPool(int threads) : impl_(std::make_unique<Impl>()) {
   for (int i = 1; i < threads; ++i) {
+    ThreadTicks& ticks = impl_->ticks.emplace_back("fvd-worker", kLongestIndex);
     impl_->threads.push_back(
-        start_thread("fvd-worker", [impl = impl_.get()](std::stop_token stop) { impl->serve(stop); }));
+        start_thread("fvd-worker", [impl = impl_.get(), &ticks](std::stop_token stop) { impl->serve(ticks, stop); }));
   }
 }
 
