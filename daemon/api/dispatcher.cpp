@@ -350,7 +350,8 @@ std::string Dispatcher::ended(const WaitingRequest& waiting) const {
   const bool is_job = std::holds_alternative<JobWait>(waiting.until.awaited);
   return reply_line(failure_reply(waiting.id, ErrorCode::kShuttingDown,
                                   is_job ? "the daemon stops; what was waited for is told when it is back"
-                                         : "the daemon stops, and the command ends; ask for it anew when it is back",
+                                         : "the daemon stops, and the command with it; ask for system.state when it is "
+                                           "back, and then for the command again if it is still to be done",
                                   scan_state_name(services_.machine.snapshot()->state)));
 }
 
