@@ -16,9 +16,6 @@ import time
 from rig import Client, Rig, recipe, wait_for
 
 SYNC_MS = 500
-# Of poll_load's clients and viewers, the acknowledger and this program.
-CONNECTIONS = 8 + 8 + 2
-ESTABLISHED = "01"
 
 
 def fill(file, results):
@@ -71,24 +68,13 @@ class Acknowledger(threading.Thread):
             sys.exit(f"{self.done} acknowledgements, the longest {self.longest_ms:.0f} ms: the disk was not slow")
 
 
-def connections(port):
-    """How many are open, seen from the daemon's end."""
-    local = f":{port:04X}"
-    with open("/proc/net/tcp", encoding="ascii") as table:
-        return sum(words[1].endswith(local) and words[3] == ESTABLISHED for words in map(str.split, table))
-
-
 def loaded(rig, seq, seconds, rate):
-    """What poll_load measured; the viewers' connections are seen meanwhile."""
+    """What poll_load measured; it fails where one of its clients and viewers is not let in."""
     words = (rig.build / "tests/bench/service/poll_load", rig.port, seq, seconds, rate)
-    with subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, text=True) as load:
-        wait_for(lambda: connections(rig.port) >= CONNECTIONS or load.poll() is not None, period_s=0.05,
-                 what=f"{CONNECTIONS} connections")
-        ended_early = load.poll() is not None
-        text, _ = load.communicate()
-    if load.returncode != 0 or ended_early:
-        sys.exit(f"poll_load ended with {load.returncode}, its {CONNECTIONS} connections seen: {not ended_early}")
-    return json.loads(text)
+    load = subprocess.run([str(word) for word in words], stdout=subprocess.PIPE, text=True, check=False)
+    if load.returncode != 0:
+        sys.exit(f"poll_load ended with {load.returncode}")
+    return json.loads(load.stdout)
 
 
 def complete(client, rig, seq):
