@@ -212,7 +212,9 @@ class Bench:
             status = self.look(client, seq, told)
             if status and status["state"] == "completed":
                 completed.add(status["job_id"])
-                client.ask("job.acknowledge", seq=seq)
+                answer = client.ask("result.ack", seq=seq)
+                if "error" in answer:
+                    sys.exit(f"the result of {seq} is not acknowledged: {answer['error']}")
             self.look_at_folders(completed)
             self.daemon.terminate()
             self.daemon.wait(WAIT_S)
