@@ -322,7 +322,7 @@ def check_ticks(findings, files):
             if path in UNTICKED:
                 seen.add(path)
                 continue
-            ticks = re.compile(r"(?:ThreadTicks\s+\w+|\bticks_)\s*[({]\s*" + re.escape(match[1]) + r"\s*,")
+            ticks = re.compile(r"(?:ThreadTicks\s+\w+|\bticks_|\bticks\.emplace_back)\s*[({]\s*" + re.escape(match[1]) + r"\s*,")
             beside = [p for p in files if os.path.dirname(p) == os.path.dirname(path)]
             if not any(ticks.search(read(p)) for p in beside):
                 findings.add("raw_threads", path, 1, f"{path}: thread {match[1]} has no ThreadTicks in its folder: have it "

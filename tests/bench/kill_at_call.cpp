@@ -1,5 +1,5 @@
-/// Kills its process between a result and its row, to be preloaded: once a folder of results was renamed to its name, the
-/// FVD_KILL_AFTER-th of the calls that follow it and write is not made; 0 = none is made.
+/// Kills its process between a result and its row, to be preloaded: once a folder of results was renamed to its name,
+/// the FVD_KILL_AFTER-th of the calls that follow it and write is not made; 0 = none is made.
 
 #include <atomic>
 #include <cerrno>

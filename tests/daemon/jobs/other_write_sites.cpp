@@ -271,8 +271,8 @@ INSTANTIATE_TEST_SUITE_P(OfOthers, AWriteSite,
                                          test::write_site<SomeConstants>("Constants"),
                                          test::write_site<AStudy>("Study"), test::write_site<ABackup>("Backup", 3),
                                          test::write_site<ARestoration>("Restoration", 3),
-                                         test::write_site<APortFile>("PortFile"),
-                                         test::write_site<ASetup>("Setup"), test::write_site<AStack>("Stack")),
+                                         test::write_site<APortFile>("PortFile"), test::write_site<ASetup>("Setup"),
+                                         test::write_site<AStack>("Stack")),
                          [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace

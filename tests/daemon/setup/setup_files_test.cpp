@@ -115,7 +115,8 @@ TEST(TheFilesOfASetup, AreAllWrittenOrNone) {
   const std::string older = R"({"paths": {"recipe_dir": "a file/recipes"}})";
   write_text(file, older);
   const auto before = folder.entries();
-  test::expect_error(ErrorCode::kStorageWrite, {"a file", "Not a directory"}, [&] { (void)write_setup(decided(), file, true); });
+  test::expect_error(ErrorCode::kStorageWrite, {"a file", "Not a directory"},
+                     [&] { (void)write_setup(decided(), file, true); });
   EXPECT_EQ(read_text(file), older);
   EXPECT_EQ(folder.entries(), before);
 }
