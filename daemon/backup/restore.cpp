@@ -101,15 +101,21 @@ fs::path unused_folder(const fs::path& state) {
   return state / (kReplaced + std::to_string(replaced.empty() ? 1 : replaced.rbegin()->first + 1));
 }
 
-/// Of what restorations have replaced all but the two newest; told. What cannot be removed stays.
+/// Of what restorations have replaced, all that is older than the two newest databases; told. What cannot be removed
+/// stays.
 std::vector<fs::path> drop_oldest_replaced(const fs::path& state) {
-  constexpr std::size_t kKept = 2;
-  std::map<int, fs::path> replaced = replaced_in(state);
+  constexpr int kKept = 2;
+  const std::map<int, fs::path> replaced = replaced_in(state);
   std::error_code error;
   std::vector<fs::path> dropped;
-  for (auto oldest = replaced.begin(); replaced.size() > kKept; oldest = replaced.erase(oldest)) {
-    file_calls().remove_all(oldest->second);
-    if (!fs::exists(oldest->second, error)) dropped.push_back(oldest->second);
+  int databases = 0;
+  for (auto newest = replaced.rbegin(); newest != replaced.rend(); ++newest) {
+    if (databases == kKept) {
+      file_calls().remove_all(newest->second);
+      if (!fs::exists(newest->second, error)) dropped.push_back(newest->second);
+    } else if (fs::exists(newest->second / "fvd.sqlite", error)) {
+      ++databases;  // what an attempt that failed left has none, and does not push out the one that has
+    }
   }
   return dropped;
 }

@@ -271,5 +271,17 @@ TEST_F(AnInstrument, KeepsWhatTheLastTwoRestorationsReplaced) {
   EXPECT_TRUE(fs::exists(paths_.state_dir / "replaced-3"));
 }
 
+TEST_F(AnInstrument, KeepsTheReplacedDatabaseHoweverManyAttemptsFailedAfterIt) {
+  (void)make_backup(paths_, backup_, false);
+  store_.reset();
+  (void)restore_backup(backup_, paths_);
+  // As attempts leave them that ended before the database was in its place.
+  for (const char* attempt : {"replaced-2", "replaced-3"}) fs::create_directory(paths_.state_dir / attempt);
+  fs::remove(paths_.state_dir / "fvd.sqlite");
+  const Restored restored = restore_backup(backup_, paths_);
+  EXPECT_TRUE(restored.dropped.empty());
+  EXPECT_TRUE(fs::exists(paths_.state_dir / "replaced-1" / "fvd.sqlite"));
+}
+
 }  // namespace
 }  // namespace fvd
