@@ -11,10 +11,10 @@
 #include <boost/beast/http.hpp>
 #include <spdlog/spdlog.h>
 
-#include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/thread_ticks.hpp"
 #include "daemon/metrics/metrics_page.hpp"
+#include "daemon/transport/tcp_listener.hpp"
 
 namespace fvd {
 
@@ -101,25 +101,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
 struct MetricsServer::Impl {
   Impl(const std::string& address, int port, const MachineView& view)
       : machine(view), acceptor(context), pause(context) {
-    listen(address, port);
+    listen_on(acceptor, address, port, "/metrics");
     accept();
     thread = start_thread("fvd-metrics", [this](const std::stop_token& stop) { run(stop); });
-  }
-
-  void listen(const std::string& address_text, int port) {
-    ErrorCodeOf error;
-    const auto refuse = [&](ErrorCode code) {
-      throw Error(code, "cannot listen on " + address_text + ":" + std::to_string(port) + ": " + error.message() +
-                            "; see /metrics/address and /metrics/port");
-    };
-    const auto address = asio::ip::make_address(address_text, error);
-    if (error) refuse(ErrorCode::kBadConfig);
-    const tcp::endpoint endpoint(address, static_cast<unsigned short>(port));
-    acceptor.open(endpoint.protocol(), error);
-    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor.bind(endpoint, error);
-    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-    if (error) refuse(ErrorCode::kNotReady);
   }
 
   void accept() {

@@ -11,13 +11,13 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/thread_ticks.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/api/replies.hpp"
 #include "daemon/api/rpc_errors.hpp"
 #include "daemon/transport/http_session.hpp"
+#include "daemon/transport/tcp_listener.hpp"
 
 namespace fvd {
 
@@ -72,7 +72,8 @@ struct HttpServer::Impl {
              [this] { return has_room_without_token(); }},
         worker("fvd-http-work"),
         logins("fvd-http-login") {
-    listen(config.address, *config.port);
+    listen_on(acceptor, config.address, *config.port, "/http");
+    port = acceptor.local_endpoint().port();
     accept();
     services.machine.on_change([this] { asio::post(context, [this] { resume_all(); }); }, this);
     thread = start_thread("fvd-http", [this](const std::stop_token&) { run(); });
@@ -82,23 +83,6 @@ struct HttpServer::Impl {
     services.machine.on_change({}, this);
     asio::post(context, [this] { shut_down(std::chrono::steady_clock::now() + kShutdownGrace); });
     thread.join();
-  }
-
-  void listen(const std::string& address_text, int wanted_port) {
-    ErrorCodeOf error;
-    const auto refuse = [&](ErrorCode code) {
-      throw Error(code, "cannot listen on " + address_text + ":" + std::to_string(wanted_port) + ": " +
-                            error.message() + "; see /http/address and /http/port");
-    };
-    const auto address = asio::ip::make_address(address_text, error);
-    if (error) refuse(ErrorCode::kBadConfig);
-    const tcp::endpoint endpoint(address, static_cast<unsigned short>(wanted_port));
-    acceptor.open(endpoint.protocol(), error);
-    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor.bind(endpoint, error);
-    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-    if (error) refuse(ErrorCode::kNotReady);
-    port = acceptor.local_endpoint().port();
   }
 
   void accept() {

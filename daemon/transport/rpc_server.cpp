@@ -14,13 +14,13 @@
 #include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
-#include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "core/runtime/thread_ticks.hpp"
 #include "daemon/api/dispatcher.hpp"
 #include "daemon/api/methods/methods.hpp"
 #include "daemon/transport/port_file.hpp"
 #include "daemon/transport/rpc_session.hpp"
+#include "daemon/transport/tcp_listener.hpp"
 #include "daemon/transport/tcp_options.hpp"
 #include "daemon/transport/unix_socket.hpp"
 #include "daemon/transport/worker.hpp"
@@ -63,7 +63,8 @@ struct RpcServer::Impl {
              [this](const Identity& who) { return has_room(who); }},
         worker("fvd-rpc-work"),
         logins("fvd-rpc-login") {
-    listen();
+    listen_on(acceptor, config.address, config.port, "/rpc");
+    port = acceptor.local_endpoint().port();
     local_socket.emplace(c.socket.empty() ? runtime_dir / "fvd.sock" : c.socket);
     local_acceptor.assign(local::stream_protocol(), local_socket->take_listener());
     write_port_file(port_file, config.address, port, std::filesystem::absolute(local_socket->file()));
@@ -78,24 +79,6 @@ struct RpcServer::Impl {
     asio::post(context, [this] { shut_down(std::chrono::steady_clock::now() + kShutdownGrace); });
     thread.join();
     remove_port_file(port_file);
-  }
-
-  void listen() {
-    ErrorCodeOf error;
-    const auto refuse = [&](ErrorCode code) {
-      throw Error(code, "cannot listen on " + config.address + ":" + std::to_string(config.port) + ": " +
-                            error.message() + "; see /rpc/address and /rpc/port");
-    };
-    const auto address = asio::ip::make_address(config.address, error);
-    if (error) refuse(ErrorCode::kBadConfig);
-    const tcp::endpoint endpoint(address, static_cast<unsigned short>(config.port));
-    acceptor.open(endpoint.protocol(), error);
-    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor.bind(endpoint, error);
-    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-    // Another program may give the port free, and a network card may get its address later.
-    if (error) refuse(ErrorCode::kNotReady);
-    port = acceptor.local_endpoint().port();
   }
 
   /// Goes on accepting. recognise: who is at the other end.
