@@ -1,0 +1,52 @@
+// Texts of the page by language. A test finds keys that one language lacks, and keys that nothing uses.
+import { createStore, useStore } from "../lib/store.ts";
+import de from "./de.json" with { type: "json" };
+import en from "./en.json" with { type: "json" };
+
+export type Language = "en" | "de";
+export type TextKey = keyof typeof en;
+
+const texts: Record<Language, Record<string, string>> = { en, de };
+const kKey = "fvd.language";
+
+function preferred(): Language {
+  const kept = localStorage.getItem(kKey);
+  if (kept === "en" || kept === "de") return kept;
+  return navigator.language.toLowerCase().startsWith("de") ? "de" : "en";
+}
+
+export const language = createStore<Language>(preferred());
+
+export function setLanguage(wanted: Language): void {
+  localStorage.setItem(kKey, wanted);
+  document.documentElement.lang = wanted;
+  language.set(wanted);
+}
+
+// The text of a key with {names} replaced; numbers as the language writes them.
+export function t(key: TextKey, values: Record<string, string | number> = {}): string {
+  const text = texts[language.get()][key] ?? en[key];
+  return text.replace(/\{(\w+)\}/g, (whole, name: string) => {
+    const value = values[name];
+    return value === undefined ? whole : typeof value === "number" ? number(value) : value;
+  });
+}
+
+// Text of a key that is put together, e.g. of a state; the word itself where nobody wrote a text for it.
+export function tWord(prefix: string, word: string): string {
+  const key = `${prefix}.${word}`;
+  return key in en ? t(key as TextKey) : word;
+}
+
+// A number for people: the decimal sign is the language's, the digits are those of the value.
+export function number(value: number, digits?: number): string {
+  if (!Number.isFinite(value)) return "–";
+  return new Intl.NumberFormat(language.get(), digits === undefined
+    ? { maximumFractionDigits: 20, useGrouping: false }
+    : { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false }).format(value);
+}
+
+// Draws the component anew when the language changes.
+export function useLanguage(): Language {
+  return useStore(language);
+}

@@ -1,0 +1,25 @@
+import { render } from "preact";
+import { App } from "./app.ts";
+import { language } from "./i18n/i18n.ts";
+import { html } from "./lib/html.ts";
+import { followLinks } from "./lib/router.ts";
+import { applyTheme } from "./lib/theme.ts";
+import { link, listen } from "./live/live.ts";
+import { resumeSession } from "./rpc/session.ts";
+import "./style/main.css";
+
+document.documentElement.lang = language.get();
+applyTheme();
+followLinks();
+listen();
+// Again after every reconnection: the daemon may have another file of tokens.
+const know = (): void => void resumeSession().catch(() => undefined);
+let was = link.get().status;
+link.watch(() => {
+  const { status } = link.get();
+  if (status === "open" && was === "lost") know();
+  was = status;
+});
+know();
+const page = document.getElementById("page");
+if (page) render(html`<${App}/>`, page);

@@ -1,0 +1,79 @@
+// Calls of the daemon: the same dispatcher, errors and audit as for every other client.
+import { createStore } from "../lib/store.ts";
+import type { Methods } from "./methods.ts";
+
+export class RpcError extends Error {
+  constructor(
+    readonly code: number,
+    readonly error: string,  // its stable name, as "no_control"
+    message: string,
+    readonly data: Record<string, unknown> = {},
+  ) {
+    super(message);
+  }
+}
+
+// kOffline stands for: nobody answered.
+export const kOffline = -1;
+
+const kTokenKey = "fvd.token";
+
+// The token belongs to this tab, and is forgotten with it.
+export const token = createStore<string | null>(sessionStorage.getItem(kTokenKey));
+
+export function setToken(text: string | null): void {
+  if (text === null) sessionStorage.removeItem(kTokenKey);
+  else sessionStorage.setItem(kTokenKey, text);
+  token.set(text);
+}
+
+let lastId = 0;
+
+interface Reply {
+  result?: unknown;
+  error?: { code: number; message: string; data?: Record<string, unknown> };
+}
+
+export function headers(): Record<string, string> {
+  const given = token.get();
+  return given === null ? {} : { Authorization: `Bearer ${given}` };
+}
+
+export async function call<M extends keyof Methods>(
+  method: M,
+  params: Methods[M]["params"],
+  options: { signal?: AbortSignal; keepalive?: boolean; token?: string } = {},
+): Promise<Methods[M]["result"]> {
+  const id = ++lastId;
+  let response: Response;
+  try {
+    response = await fetch("/api/jsonrpc", {
+      method: "POST",
+      headers: {
+        "Content-Type": "application/json",
+        ...headers(),
+        ...(options.token === undefined ? {} : { Authorization: `Bearer ${options.token}` }),
+      },
+      body: JSON.stringify({ jsonrpc: "2.0", id, method, params }),
+      cache: "no-store",
+      ...(options.signal ? { signal: options.signal } : {}),
+      ...(options.keepalive ? { keepalive: true } : {}),
+    });
+  } catch (error) {
+    if (options.signal?.aborted) throw error;
+    throw new RpcError(kOffline, "offline", String(error));
+  }
+  const text = await response.text();
+  let reply: Reply & { error?: unknown; message?: unknown };
+  try {
+    reply = JSON.parse(text);
+  } catch {
+    throw new RpcError(response.status, "no_json", `HTTP ${response.status}`);
+  }
+  if (!response.ok) throw new RpcError(response.status, String(reply.error), String(reply.message));
+  if (reply.error) {
+    const { code, message, data } = reply.error as NonNullable<Reply["error"]>;
+    throw new RpcError(code, String(data?.["error"] ?? code), message, data ?? {});
+  }
+  return reply.result as Methods[M]["result"];
+}

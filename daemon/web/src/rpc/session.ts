@@ -1,0 +1,38 @@
+// As whom this tab calls.
+import { createStore } from "../lib/store.ts";
+import { call, setToken, token } from "./rpc.ts";
+
+export type Role = "none" | "view" | "operate" | "set_up" | "administer";
+
+const kOrder: readonly Role[] = ["none", "view", "operate", "set_up", "administer"];
+
+export const session = createStore<{ who: string; role: Role }>({ who: "", role: "none" });
+
+export const mayAs = (role: Role, needed: Role): boolean => kOrder.indexOf(role) >= kOrder.indexOf(needed);
+
+export async function lookWhoIAm(): Promise<void> {
+  const { who, role } = await call("session.info", {});
+  session.set({ who, role: role as Role });
+}
+
+// Throws RpcError with code 401 for a token that nobody has.
+export async function logIn(text: string): Promise<void> {
+  const { who, role } = await call("session.info", {}, { token: text });
+  setToken(text);
+  session.set({ who, role: role as Role });
+}
+
+export async function logOut(): Promise<void> {
+  setToken(null);
+  await lookWhoIAm();
+}
+
+// A token that was withdrawn meanwhile makes every call fail: then the tab looks on as one without.
+export async function resumeSession(): Promise<void> {
+  try {
+    await lookWhoIAm();
+  } catch (error) {
+    if (token.get() === null || (error as { code?: number }).code !== 401) throw error;
+    await logOut();
+  }
+}
