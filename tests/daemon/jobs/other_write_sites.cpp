@@ -94,12 +94,12 @@ class AStudy final : public WriteSite {
     const StudyBook again(folder_);
     if (!again.broken().empty()) return again.broken().front().reason;
     if (book_.list().size() != (done ? 1U : 0U)) return "it is not known";
-    // Where the disk takes nothing back a whole one that was refused may stay.
+    // Where the disk takes nothing back a whole one that was refused stays until the disk is mended.
     const std::vector<Study> all = again.list();
     for (const Study& study : book_.list()) {
       if (std::find(all.begin(), all.end(), study) == all.end()) return "studies and files differ";
     }
-    return all.size() <= book_.list().size() + 1 ? "" : "studies are left";
+    return all.size() <= book_.list().size() + (done ? 0 : 1) ? "" : "studies are left";
   }
 
  private:
