@@ -23,6 +23,7 @@ std::filesystem::path prepared_state_dir(const PathsConfig& paths) {
 
 /// Clears what a killed process left, once the open store says that no other process has the folder.
 JobStore& with_cleared_results(JobStore& store, const PathsConfig& paths) {
+  restore_refused_evaluations(store, paths.state_dir / "results");
   remove_abandoned_directories(paths.state_dir / "results");
   (void)reconcile_results(store, paths.state_dir / "results");
   return store;

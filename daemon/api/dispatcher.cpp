@@ -276,6 +276,7 @@ void Dispatcher::note_outcome_of(DeviceTask& task, const Call& call) const {
   // A row of its own: by then the caller, and who he was, may have changed.
   task.note_outcome([entry = audit_entry(call, {}), &audit = services_.audit](const DeviceTask::Outcome& outcome) {
     AuditEntry ended = entry;
+    ended.is_end = true;
     ended.outcome = outcome.error ? std::string(error_name(*outcome.error)) : "ok";
     audit.note(std::move(ended));
   });

@@ -25,8 +25,9 @@ void copy_bytes(const fs::path& from, const fs::path& to) {
   std::ifstream source(from, std::ios::binary);
   if (!source) throw Error(ErrorCode::kBadInput, "cannot read " + from.string());
   const auto mode = static_cast<mode_t>(fs::status(from).permissions());
-  write_new_file(to, [&](const ByteSink& sink) {
-    // Before the first byte: a file of tokens is at no time more readable than it was.
+  // From the beginning: a file of tokens is at no time more readable than it was, and whoever opens it reads on.
+  const auto copy = [&](const ByteSink& sink) {
+    // And what the process' mask took away.
     if (file_calls().set_mode(to, mode) != 0) throw storage_error(errno, "set the permissions of", to);
     give_to_owner_of(from, to);
     std::vector<char> piece(kPiece_bytes);
@@ -35,7 +36,8 @@ void copy_bytes(const fs::path& from, const fs::path& to) {
       sink({piece.data(), static_cast<std::size_t>(source.gcount())});
     }
     if (!source.eof()) throw Error(ErrorCode::kBadInput, "cannot read all of " + from.string());
-  });
+  };
+  write_new_file(to, copy, mode);
 }
 
 void copy_below(const fs::path& from, const fs::path& to) {

@@ -120,15 +120,48 @@ std::vector<fs::path> drop_oldest_replaced(const fs::path& state) {
   return dropped;
 }
 
-void put_back_where_missing(const fs::path& from, const fs::path& to, std::vector<std::string>& kept) {
+/// Of what is copied; what a restoration that was cut off left under such a name is no copy.
+constexpr const char* kUnfinished = ".restored.tmp";
+
+/// Whatever happens meanwhile, there is either all of it or nothing.
+void copy_whole(const fs::path& from, const fs::path& hidden, const fs::path& to) {
+  file_calls().remove_all(hidden);
+  copy_durably(from, hidden);
+  if (file_calls().rename(hidden, to) != 0) throw storage_error(errno, "rename the copy to", to);
+}
+
+/// Of a folder the entries: it may be there, empty, and have an owner or a disk of its own. As long as it is not
+/// filled, a hidden folder in it says so, and a restoration that is repeated goes on.
+void put_back_folder_where_missing(const fs::path& from, const fs::path& to, std::vector<std::string>& kept) {
+  const fs::path hidden = to / kUnfinished;
   std::error_code error;
-  if (to.empty() || !fs::exists(from, error)) return;
-  if (fs::exists(to, error) && !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
+  if (fs::exists(to, error) && !fs::exists(hidden, error) &&
+      !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
     kept.push_back(to.string());
     return;
   }
-  // An empty folder is filled as it is; it is there, so that nothing else has to give way.
-  copy_durably(from, to);
+  (void)make_directories(hidden);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path name = entry.path().filename();
+    if (name.string().starts_with('.') || fs::exists(to / name)) continue;
+    copy_whole(entry.path(), hidden / name, to / name);
+  }
+  sync_directory(to);
+  file_calls().remove_all(hidden);
+}
+
+void put_back_where_missing(const fs::path& from, const fs::path& to, std::vector<std::string>& kept) {
+  std::error_code error;
+  if (to.empty() || !fs::exists(from, error)) return;
+  if (fs::is_directory(from, error)) return put_back_folder_where_missing(from, to, kept);
+  if (fs::exists(to, error)) {
+    kept.push_back(to.string());
+    return;
+  }
+  const fs::path hidden = to.parent_path() / ("." + to.filename().string() + kUnfinished);
+  (void)make_directories(fs::absolute(to).parent_path());
+  copy_whole(from, hidden, to);
+  sync_directory(fs::absolute(to).parent_path());
 }
 
 int add_results(const fs::path& from, const fs::path& to) {
@@ -138,10 +171,7 @@ int add_results(const fs::path& from, const fs::path& to) {
     const fs::path folder = to / entry->path().filename();
     std::error_code ignored;
     if (fs::exists(folder, ignored)) continue;
-    const fs::path hidden = to / ("." + entry->path().filename().string() + ".restored.tmp");
-    file_calls().remove_all(hidden);
-    copy_durably(entry->path(), hidden);
-    if (file_calls().rename(hidden, folder) != 0) throw storage_error(errno, "rename the copy to", folder);
+    copy_whole(entry->path(), to / ("." + entry->path().filename().string() + kUnfinished), folder);
     ++added;
   }
   if (error && error != std::errc::no_such_file_or_directory) {

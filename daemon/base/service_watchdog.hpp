@@ -16,8 +16,8 @@ class ServiceWatchdog {
   /// Time between two calls of look(): a third of systemd's watchdog time, 1 s if systemd does not watch the service.
   [[nodiscard]] static std::chrono::milliseconds interval();
 
-  /// Sends WATCHDOG=1 unless a thread has stalled (stalled_threads()). Logs once when a thread stalls, and once when it
-  /// works again.
+  /// Sends WATCHDOG=1 unless a thread has stalled (stalled_threads()) for which a measurement may wait. Logs once when
+  /// a thread stalls, and once when it works again.
   void look(HostTime now);
 
  private:

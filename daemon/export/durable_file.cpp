@@ -24,8 +24,8 @@ void write_all(int fd, std::string_view bytes, const std::filesystem::path& path
 UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, std::string_view bytes)
     : UnsyncedFile(path, [bytes](const ByteSink& sink) { sink(bytes); }) {}
 
-UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, const ByteProducer& produce)
-    : path_(path), file_(file_calls().create(path)) {
+UnsyncedFile::UnsyncedFile(const std::filesystem::path& path, const ByteProducer& produce, mode_t mode)
+    : path_(path), file_(file_calls().create(path, mode)) {
   if (!file_.valid()) throw storage_error(errno, "create", path_);
   try {
     produce([this](std::string_view bytes) {
@@ -53,12 +53,12 @@ void UnsyncedFile::finish() {
 
 void write_new_file(const std::filesystem::path& path, std::string_view bytes) { UnsyncedFile(path, bytes).finish(); }
 
-void write_new_file(const std::filesystem::path& path, const ByteProducer& produce) {
-  UnsyncedFile(path, produce).finish();
+void write_new_file(const std::filesystem::path& path, const ByteProducer& produce, mode_t mode) {
+  UnsyncedFile(path, produce, mode).finish();
 }
 
 void write_new_file_at_will(const std::filesystem::path& path, const std::function<void(int fd)>& write) {
-  UniqueFd file(file_calls().create(path));
+  UniqueFd file(file_calls().create(path, kReadableFile));
   if (!file.valid()) throw storage_error(errno, "create", path);
   try {
     write(file.get());

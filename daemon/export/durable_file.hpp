@@ -7,6 +7,8 @@
 #include <functional>
 #include <string_view>
 
+#include <sys/types.h>
+
 #include "daemon/base/unique_fd.hpp"
 
 namespace fvd {
@@ -20,6 +22,9 @@ using ByteSink = std::function<void(std::string_view bytes)>;
 /// Gives all bytes of a file to the sink, in order.
 using ByteProducer = std::function<void(const ByteSink& sink)>;
 
+/// The group may read results: who looks after them need not be the daemon.
+constexpr mode_t kReadableFile = 0644;
+
 /// A new file whose bytes are written but not yet known to be on the disk. Destroyed without finish() the file stays as
 /// it is.
 class UnsyncedFile {
@@ -28,7 +33,7 @@ class UnsyncedFile {
   /// that could not be written is removed. Throws Error kStorageFull, kStorageWrite.
   UnsyncedFile(const std::filesystem::path& path, std::string_view bytes);
   /// The same for bytes that come one after the other; also throws what `produce` throws.
-  UnsyncedFile(const std::filesystem::path& path, const ByteProducer& produce);
+  UnsyncedFile(const std::filesystem::path& path, const ByteProducer& produce, mode_t mode = kReadableFile);
 
   /// Waits until it is on the disk. A file that could not be brought there is removed. Throws Error kStorageFull,
   /// kStorageWrite.
@@ -45,7 +50,7 @@ class UnsyncedFile {
 /// Creates a file that must not exist yet, writes it and brings it to the disk. A file that could not be finished is
 /// removed. Throws Error kStorageFull, kStorageWrite.
 void write_new_file(const std::filesystem::path& path, std::string_view bytes);
-void write_new_file(const std::filesystem::path& path, const ByteProducer& produce);
+void write_new_file(const std::filesystem::path& path, const ByteProducer& produce, mode_t mode = kReadableFile);
 /// The same for a writer that goes back in its file. write: gets the file, open to be read and written; also throws
 /// what it throws.
 void write_new_file_at_will(const std::filesystem::path& path, const std::function<void(int fd)>& write);

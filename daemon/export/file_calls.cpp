@@ -24,9 +24,8 @@ std::atomic<FileCalls*> replaced{nullptr};
 
 }  // namespace
 
-// The group may read results: who looks after them need not be the daemon.
-int FileCalls::create(const std::filesystem::path& path) {
-  return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+int FileCalls::create(const std::filesystem::path& path, mode_t mode) {
+  return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
 }
 
 ssize_t FileCalls::write(int fd, const void* bytes, std::size_t count) { return ::write(fd, bytes, count); }

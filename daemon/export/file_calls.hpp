@@ -16,8 +16,8 @@ namespace fvd {
 class FileCalls {
  public:
   virtual ~FileCalls() = default;
-  /// A new file, open to be read and written.
-  virtual int create(const std::filesystem::path& path);
+  /// A new file, open to be read and written, whatever `mode` allows later.
+  virtual int create(const std::filesystem::path& path, mode_t mode);
   virtual ssize_t write(int fd, const void* bytes, std::size_t count);
   /// Room on the disk for a file of that many bytes.
   virtual int allocate(int fd, std::int64_t bytes);

@@ -19,7 +19,7 @@ constexpr std::chrono::seconds kRetryPeriod{1};
 constexpr std::chrono::minutes kLongestWrite{2};        // the database's own patience, some times
 constexpr std::chrono::milliseconds kLongestRead{100};  // that a reader waits for what is not written yet
 constexpr std::chrono::minutes kRefusalsPeriod{1};
-constexpr std::size_t kMostRefused = 200;  // identities that are counted side by side
+constexpr const char* kOthers = "";  // no identity: all for whom there is no counter of their own
 
 std::string now_utc() {
   using namespace std::chrono;
@@ -43,8 +43,8 @@ AuditLog::~AuditLog() {
   thread_.request_stop();
   thread_.join();
   const MutexLock lock(mutex_);
-  if (!waiting_.empty() || lost_in_all_ > 0) {
-    spdlog::error("{} entries of who asked for what are not written down", lost_in_all_ + std::ssize(waiting_));
+  if (!waiting_.empty() || lost_ > 0) {
+    spdlog::error("{} entries of who asked for what are not written down", lost_ + std::ssize(waiting_));
   }
 }
 
@@ -59,23 +59,30 @@ void AuditLog::note(AuditEntry entry) {
 }
 
 void AuditLog::keep_locked(AuditEntry entry) {
-  if (waiting_.size() == kMostKept) {
-    if (lost_in_all_++ == 0) {
-      spdlog::error(
-          "not written down, for the database takes nothing: {} by {}; others follow it, their number is told",
-          waiting_.front().what, waiting_.front().who);
-    }
-    waiting_.pop_front();
-    ++lost_;
-  }
+  if (waiting_.size() == kMostKept) drop_oldest_locked();
   waiting_.push_back(std::move(entry));
 }
 
+void AuditLog::drop_oldest_locked() {
+  if (lost_++ == 0) {
+    spdlog::error("not written down, for the database takes nothing: {} by {}; others follow it, their number is told",
+                  waiting_.front().what, waiting_.front().who);
+  }
+  waiting_.pop_front();
+}
+
+void AuditLog::put_back_locked(std::vector<AuditEntry> entries) {
+  waiting_.insert(waiting_.begin(), std::make_move_iterator(entries.begin()), std::make_move_iterator(entries.end()));
+  while (waiting_.size() > kMostKept) drop_oldest_locked();
+}
+
 bool AuditLog::is_listed_locked(const AuditEntry& entry) {
-  if (entry.outcome == "ok" || entry.outcome == "accepted") return true;
+  if (entry.is_end || entry.outcome == "ok" || entry.outcome == "accepted") return true;
   const HostTime now = HostClock::now();
-  close_minutes_locked(now, refusals_.size() >= kMostRefused);
-  Refusals& refusals = refusals_.try_emplace(entry.who, Refusals{.since = now, .last = {}}).first->second;
+  close_minutes_locked(now, false);
+  const bool has_counter = refusals_.contains(entry.who) || refusals_.size() < kMostRefused;
+  const std::string key = has_counter ? entry.who : kOthers;
+  Refusals& refusals = refusals_.try_emplace(key, Refusals{.since = now, .last = {}}).first->second;
   if (++refusals.rows <= kMostRefusals) return true;
   ++refusals.not_listed;
   refusals.last = entry;
@@ -90,7 +97,8 @@ void AuditLog::close_minutes_locked(HostTime now, bool all) {
       continue;
     }
     if (refusals.not_listed > 0) {
-      refusals.last.detail = std::to_string(refusals.not_listed) + " refusals within a minute; this is the last";
+      const std::string whose = at->first == kOthers ? " refusals of others" : " refusals";
+      refusals.last.detail = std::to_string(refusals.not_listed) + whose + " within a minute; this is the last";
       keep_locked(std::move(refusals.last));
     }
     at = refusals_.erase(at);
@@ -102,7 +110,7 @@ std::vector<AuditEntry> AuditLog::newest(int most, std::int64_t before) {
     MutexLock lock(mutex_);
     changed_.wait_for(lock, kLongestRead, [this] {
       mutex_.assert_held();
-      return waiting_.empty() || !written_;
+      return (waiting_.empty() && !is_writing_) || !written_;
     });
   }
   return table_.newest(most, before);
@@ -137,27 +145,29 @@ bool AuditLog::write() {
   std::vector<AuditEntry> entries;
   {
     const MutexLock lock(mutex_);
-    lost_ = 0;
-    entries.assign(waiting_.begin(), waiting_.end());
+    entries.assign(std::make_move_iterator(waiting_.begin()), std::make_move_iterator(waiting_.end()));
+    waiting_.clear();
+    is_writing_ = !entries.empty();
   }
   if (entries.empty()) return true;
-  bool written = true;
+  std::string failure;
   try {
     table_.add(entries);
   } catch (const Error& error) {
-    written = false;
-    const MutexLock lock(mutex_);
-    if (written_) spdlog::error("who asked for what cannot be written down: {}; it is tried again", error.what());
+    failure = error.what();
   }
+  const bool written = failure.empty();
   {
     const MutexLock lock(mutex_);
-    written_ = written;
-    if (written && lost_in_all_ > 0) {
-      spdlog::error("{} entries of who asked for what were lost while the database took nothing", lost_in_all_);
-      lost_in_all_ = 0;
+    if (!written) {
+      if (written_) spdlog::error("who asked for what cannot be written down: {}; it is tried again", failure);
+      put_back_locked(std::move(entries));
+    } else if (lost_ > 0) {
+      spdlog::error("{} entries of who asked for what were lost while the database took nothing", lost_);
+      lost_ = 0;
     }
-    // Entries that came meanwhile stand behind these.
-    for (std::size_t i = lost_; written && i < entries.size(); ++i) waiting_.pop_front();
+    written_ = written;
+    is_writing_ = false;
   }
   changed_.notify_all();
   return written;

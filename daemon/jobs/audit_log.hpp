@@ -20,11 +20,12 @@ namespace fvd {
 
 /// What the disk does not take is kept and tried again, so many entries at most; the log tells how many were lost.
 /// Whoever is refused again and again takes so many rows a minute, and one that counts the others: rows that matter are
-/// not pushed out. context: thread-safe.
+/// not pushed out. The end of what was accepted is no refusal, whatever came of it. context: thread-safe.
 class AuditLog final : public AuditService {
  public:
   static constexpr std::size_t kMostKept = 1000;
-  static constexpr int kMostRefusals = 30;  ///< a minute, of one identity
+  static constexpr int kMostRefusals = 30;          ///< a minute, of one identity
+  static constexpr std::size_t kMostRefused = 200;  ///< identities that are counted apart; all others are as one
 
   /// table: outlives it.
   explicit AuditLog(AuditTable& table);
@@ -50,6 +51,9 @@ class AuditLog final : public AuditService {
   bool is_listed_locked(const AuditEntry& entry) FVD_REQUIRES(mutex_);
   void close_minutes_locked(HostTime now, bool all) FVD_REQUIRES(mutex_);
   void keep_locked(AuditEntry entry) FVD_REQUIRES(mutex_);
+  void drop_oldest_locked() FVD_REQUIRES(mutex_);
+  /// Before those that came meanwhile.
+  void put_back_locked(std::vector<AuditEntry> entries) FVD_REQUIRES(mutex_);
   void run(const std::stop_token& stop);
   /// False if the disk did not take it.
   bool write();
@@ -58,11 +62,11 @@ class AuditLog final : public AuditService {
   Mutex mutex_;
   Condition changed_;
   std::deque<AuditEntry> waiting_ FVD_GUARDED_BY(mutex_);
-  std::map<std::string, Refusals> refusals_ FVD_GUARDED_BY(mutex_);
-  std::size_t lost_ FVD_GUARDED_BY(mutex_) = 0;          ///< so many were taken from the front without being written
-  std::int64_t lost_in_all_ FVD_GUARDED_BY(mutex_) = 0;  ///< likewise, since the table took everything
-  bool written_ FVD_GUARDED_BY(mutex_) = true;           ///< the table took all there was, the last time
-  std::jthread thread_;                                  // last
+  std::map<std::string, Refusals> refusals_ FVD_GUARDED_BY(mutex_);  ///< by who was refused; kOthers = the rest
+  std::int64_t lost_ FVD_GUARDED_BY(mutex_) = 0;    ///< so many found no place, since the table took everything
+  bool is_writing_ FVD_GUARDED_BY(mutex_) = false;  ///< what was taken from those that wait
+  bool written_ FVD_GUARDED_BY(mutex_) = true;      ///< the table took all there was, the last time
+  std::jthread thread_;                             // last
 };
 
 }  // namespace fvd

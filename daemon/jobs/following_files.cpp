@@ -125,6 +125,7 @@ void FollowingFiles::follow(ResultToFollow result, const std::stop_token& stop) 
   const std::string job_id = result.job_id;
   try {
     const FollowedResult followed = follow_result(std::move(result), stop);
+    store_.shorten_log();  // before the commit, which begins the log anew: that costs it a sync more
     store_.note_files(job_id, followed.text, followed.pending);
     if (followed.pending) {
       spdlog::warn("job {}: files of its result stay pending until the daemon starts again: {}", job_id,

@@ -10,6 +10,7 @@
 #include "daemon/base/log_scope.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/export/recorded_slices.hpp"
+#include "daemon/jobs/longest_step.hpp"
 #include "daemon/jobs/part_temperature.hpp"
 #include "daemon/pipeline/job_memory.hpp"
 #include "daemon/pipeline/reconstruct.hpp"
@@ -63,14 +64,6 @@ ResultData described(const AcceptedJob& job, const Recipe& recipe, const Config&
 /// For files of earlier results, before the scan.
 constexpr std::chrono::minutes kLongestWait{60};
 
-/// Of one slice or one phase; the stage may come to a continuous scan's first slice at the scan's own speed.
-std::chrono::milliseconds longest_step(const Recipe& recipe) {
-  constexpr std::chrono::minutes kLongestSlice{10};
-  if (recipe.mode != ScanMode::kContinuous || recipe.speed_um_per_s <= 0.0) return kLongestSlice;
-  const double scan_s = std::min(recipe.step_um * recipe.slices / recipe.speed_um_per_s, 86400.0);
-  return kLongestSlice + std::chrono::seconds(static_cast<std::int64_t>(2.0 * scan_s));
-}
-
 }  // namespace
 
 void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
@@ -86,11 +79,12 @@ void JobRunner::run(const AcceptedJob& job, const std::stop_token& stop) {
   spdlog::info("job {} starts: client {}, seq {}, part '{}', recipe {}", job.status.job_id, request.client, request.seq,
                request.part_id, job.recipe.id);
   deps_.preview.clear();
-  longest_step_ = longest_step(job.recipe);
+  longest_step_ = longest_step(job.recipe, {});  // of the stage nothing is known yet
   deps_.ticks.tick(HostClock::now(), longest_step_);
   if (const auto failure = deps_.hub.open()) {
     return end(job, {.error = failure->code, .message = failure->message, .failure = failure});
   }
+  longest_step_ = longest_step(job.recipe, deps_.hub.facts().stage);
   JobEnd ended = measured(job, stop);
   end(job, ended);
   JobResult& result = ended.result;

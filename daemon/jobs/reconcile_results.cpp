@@ -6,9 +6,11 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "config/strict_json.hpp"
@@ -24,6 +26,8 @@ namespace fvd {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kRefused = ".refused.tmp";
 
 /// Throws fs::filesystem_error where the disk does not tell.
 bool is_as_told(const fs::path& path, const ResultFile& file) {
@@ -46,14 +50,15 @@ std::string what_is_missing(const fs::path& folder, const Result& result, const 
 struct Found {
   std::optional<StoredJob> whole;
   std::string problem;
+  bool is_unknown = false;  ///< its text is complete and says what this version does not know: a newer one may
 };
 
 /// Throws Error and fs::filesystem_error where the folder cannot be read: that tells nothing of what is in it.
 Found result_in(const fs::path& folder, const JobStatus& interrupted) {
   if (!fs::exists(folder / "result.json")) return {std::nullopt, "it has no result.json"};
-  std::string text = read_text_file(folder / "result.json", kAnyLength);
+  const std::string text = read_text_file(folder / "result.json", kAnyLength);
   try {
-    StoredJob job{interrupted, folder.string(), std::move(text)};
+    StoredJob job{interrupted, folder.string(), text};
     const Result result = read_result_json(job.result_json);
     if (const std::string problem = what_is_missing(folder, result, interrupted.job_id); !problem.empty()) {
       return {std::nullopt, problem};
@@ -78,7 +83,7 @@ Found result_in(const fs::path& folder, const JobStatus& interrupted) {
     });
     return {std::move(job), {}};
   } catch (const Error& error) {
-    return {std::nullopt, error.what()};
+    return {std::nullopt, error.what(), nlohmann::json::accept(text)};
   }
 }
 
@@ -98,18 +103,17 @@ std::optional<Found> look_into(const fs::path& folder, const JobStatus& interrup
   }
 }
 
-/// The result of a job that was told without one: what was told stays, and so does what was measured.
-bool set_aside(const fs::path& folder, const fs::path& aside) {
+/// A result that its job cannot have any more: what was told stays, and so does what was measured.
+bool set_aside(const fs::path& folder, const fs::path& aside, const std::string& why) {
   try {
     (void)make_directories(aside.parent_path());
     if (file_calls().rename_to_new(folder, aside) != 0) throw storage_error(errno, "rename it to", aside);
   } catch (const Error& failure) {
-    spdlog::error("{}: its job was told without a result, and it stays where it is: {}", folder.string(),
+    spdlog::error("{}: {}; it cannot be moved to {}, and stays where it is: {}", folder.string(), why, aside.string(),
                   failure.what());
     return false;
   }
-  spdlog::warn("{}: its job was told without a result and stays so; the whole result is in {} from now on",
-               folder.string(), aside.string());
+  spdlog::warn("{}: {}; the whole result is in {} from now on", folder.string(), why, aside.string());
   return true;
 }
 
@@ -134,6 +138,23 @@ void name_lost_evaluations(JobStore& store, const fs::path& results) {
 
 }  // namespace
 
+std::string refused_evaluation(const std::string& evaluation_id) { return "." + evaluation_id + kRefused; }
+
+void restore_refused_evaluations(JobStore& store, const fs::path& results) {
+  std::error_code error;
+  for (fs::directory_iterator entry(results, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with(kRefused)) continue;
+    const std::string id = name.substr(1, name.size() - 1 - std::string_view(kRefused).size());
+    if (!store.evaluations().find(id)) continue;
+    if (file_calls().rename_to_new(entry->path(), results / id) == 0) {
+      spdlog::warn("evaluation {} was refused, and its row was on the disk all the same: it is there from now on", id);
+    } else if (errno != EEXIST) {
+      spdlog::error("evaluation {} has a row and no files: {} cannot be renamed", id, entry->path().string());
+    }
+  }
+}
+
 Reconciled reconcile_results(JobStore& store, const fs::path& results) {
   Reconciled done;
   for (const JobStatus& ended : store.results().without_result()) {
@@ -151,8 +172,10 @@ Reconciled reconcile_results(JobStore& store, const fs::path& results) {
       ++done.adopted;
       continue;
     }
-    if (found.whole) {
-      if (set_aside(folder, results.parent_path() / "set-aside" / ended.job_id)) ++done.set_aside;
+    if (found.whole || found.is_unknown) {
+      const std::string why = found.whole ? "its job was told without a result and stays so"
+                                          : "this version does not know such a result: " + found.problem;
+      if (set_aside(folder, results.parent_path() / "set-aside" / ended.job_id, why)) ++done.set_aside;
       continue;
     }
     file_calls().remove_all(folder);

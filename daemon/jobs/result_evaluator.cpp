@@ -12,6 +12,7 @@
 #include "daemon/base/version.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/result_json.hpp"
+#include "daemon/jobs/reconcile_results.hpp"
 #include "daemon/pipeline/evaluation_record.hpp"
 #include "daemon/pipeline/job_memory.hpp"
 #include "daemon/pipeline/reference_input.hpp"
@@ -147,9 +148,11 @@ std::string ResultEvaluator::evaluated(const Order& order) const {
   try {
     table.add(row);
   } catch (...) {
-    // Nobody could find it. Under a hidden name first, which a start removes: a part of it must not be seen.
-    const std::filesystem::path hidden = deps_.results_dir / ("." + row.id + ".removed.tmp");
-    if (file_calls().rename(row.result_dir, hidden) == 0) file_calls().remove_all(hidden);
+    // Nobody may find it. But a disk that failed at the commit's end may have the row, which the next start tells then:
+    // it looks for the folder under this name, and removes it where there is no row.
+    const std::filesystem::path hidden = deps_.results_dir / refused_evaluation(row.id);
+    file_calls().remove_all(hidden);
+    (void)file_calls().rename(row.result_dir, hidden);
     throw;
   }
   spdlog::info("job {} was evaluated by recipe {}: {}", job_id, row.recipe, row.result_dir);

@@ -108,8 +108,9 @@ void Retention::set_limits(const StoreConfig& limits) {
 void Retention::run(const std::stop_token& stop) {
   Mutex mutex;
   Condition never;
-  while (!stop.stop_requested()) {
-    if (has_limits(config())) run_once(stop);
+  // At the start in any case: removals that were cut off are finished, whatever the limits are now.
+  for (bool first = true; !stop.stop_requested(); first = false) {
+    if (first || has_limits(config())) run_once(stop);
     ticks_.rest();
     MutexLock lock(mutex);
     (void)never.wait_for(lock, stop, kPeriod, [] { return false; });
@@ -119,7 +120,7 @@ void Retention::run(const std::stop_token& stop) {
 void Retention::run_once(const std::stop_token& stop) noexcept {
   try {
     finish_removals();
-    make_room(stop);
+    if (has_limits(config())) make_room(stop);
   } catch (const std::exception& failure) {
     spdlog::error("no room is made for new results: {}", failure.what());
   }

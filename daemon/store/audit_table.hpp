@@ -21,6 +21,7 @@ struct AuditEntry {
   std::string what;         ///< the method, or an event of the daemon
   std::string detail;       ///< parameters, shortened
   std::string outcome;      ///< "ok", or the error's name; "accepted": it goes on, and a row with its end follows
+  bool is_end = false;      ///< of what was accepted; not kept in the table
 };
 
 /// The newest hundred thousand rows are kept. context: thread-safe; a reader waits for other readers, never for a

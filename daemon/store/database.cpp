@@ -84,6 +84,15 @@ void Database::use_write_ahead_log() {
   execute("PRAGMA synchronous=FULL");
 }
 
+void Database::move_log() {
+  // A connection that has read nothing yet does not know of the log, and would move nothing.
+  execute("PRAGMA schema_version");
+  int in_log = -1;
+  const int code = sqlite3_wal_checkpoint_v2(handle_.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, &in_log, nullptr);
+  if (code == SQLITE_BUSY || code == SQLITE_LOCKED) return;
+  if (code != SQLITE_OK || in_log < 0) fail("moving the write-ahead log");
+}
+
 void Database::execute(const char* sql) {
   if (sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail(sql);
 }

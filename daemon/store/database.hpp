@@ -30,6 +30,10 @@ class Database {
   /// do not wait for it. Throws Error kDatabase, also where the file system cannot do that, kStorageFull.
   void use_write_ahead_log();
 
+  /// Moves what the write-ahead log holds into the file, as far as no reader still needs it there; waits for nobody, and
+  /// no commit waits for it. Throws Error kDatabase, kStorageFull.
+  void move_log();
+
   /// Runs statements without results. Throws Error kDatabase, kStorageFull.
   void execute(const char* sql);
 

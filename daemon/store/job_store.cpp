@@ -74,6 +74,8 @@ struct JobStore::Impl {
   Database database FVD_GUARDED_BY(mutex);
   Mutex read_mutex;  // never held then; never together with mutex
   Database reader FVD_GUARDED_BY(read_mutex){Database::reader_of(database)};
+  Mutex log_mutex;  // held while the write-ahead log is moved; never together with another
+  Database log_mover FVD_GUARDED_BY(log_mutex){Database::reader_of(database)};
   mutable Mutex kept_mutex;                       // innermost
   KeptEnds kept_ends FVD_GUARDED_BY(kept_mutex);  ///< that could not be stored yet
   RecipeTable recipes{{database, mutex}, {reader, read_mutex}};
@@ -277,6 +279,15 @@ void JobStore::note_files(const std::string& job_id, const std::string& result_j
       .bind(std::int64_t{files_pending})
       .bind(job_id)
       .run();
+}
+
+void JobStore::shorten_log() noexcept {
+  try {
+    const MutexLock lock(impl_->log_mutex);
+    impl_->log_mover.move_log();
+  } catch (const std::exception& failure) {
+    spdlog::warn("{}", failure.what());
+  }
 }
 
 std::vector<StoredJob> JobStore::with_pending_files() const {

@@ -60,6 +60,10 @@ class JobStore {
   /// The files of an ended job's result as they stand now: what differs from finish() is told in result_json. Throws
   /// Error kUnknownJob, kDatabase, kStorageFull.
   void note_files(const std::string& job_id, const std::string& result_json, bool files_pending);
+  /// Moves what was committed from the write-ahead log into the database's file, while commits go on. Later ones
+  /// overwrite the log then: one that grows waits for the file system's journal, too, and so for whoever else writes
+  /// files. To be called where nobody waits; a failure is logged, and does no harm before the log has 4 MB.
+  void shorten_log() noexcept;
   /// The jobs whose results have files that are still to be made, the oldest first.
   [[nodiscard]] std::vector<StoredJob> with_pending_files() const;
   /// Stores the ends that are kept in memory. Throws Error kDatabase, kStorageFull: they are still kept.

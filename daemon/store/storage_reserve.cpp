@@ -3,6 +3,7 @@
 #include <cerrno>
 
 #include "daemon/base/unique_fd.hpp"
+#include "daemon/export/durable_file.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 
@@ -11,7 +12,7 @@ namespace fvd {
 void StorageReserve::take() {
   if (taken_) return;
   remove_file(file_);  // of the process before
-  const UniqueFd file(file_calls().create(file_));
+  const UniqueFd file(file_calls().create(file_, kReadableFile));
   if (!file.valid()) throw storage_error(errno, "create", file_);
   if (file_calls().allocate(file.get(), kBytes) != 0) {
     const int reason = errno;

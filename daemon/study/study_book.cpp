@@ -66,10 +66,11 @@ StudyBook::StudyBook(fs::path folder) : folder_(std::move(folder)) {
 
 Study StudyBook::keep(StudyDraft draft, const std::function<std::string(const Study&)>& report) {
   const MutexLock keeping(keeping_);
+  take_back_refused();
   int number = next_number();
   // One that was refused, and that the disk would not take back.
   for (std::error_code error; fs::exists(folder_ / id_of(number), error);) ++number;
-  if (make_directories(folder_)) sync_directory(fs::absolute(folder_).parent_path());
+  (void)make_directories(folder_);
   Study study = std::move(draft.study);
   study.id = id_of(number);
   study.time = iso8601_utc(std::chrono::system_clock::now());
@@ -86,11 +87,33 @@ Study StudyBook::keep(StudyDraft draft, const std::function<std::string(const St
   for (const StudyFile& file : draft.files) directory.add_file(file.name, file.bytes);
   directory.add_file("report.pdf", report(study));
   directory.add_file("study.json", text);
-  directory.commit();
+  try {
+    directory.commit();
+  } catch (...) {
+    refused_.insert(number);
+    take_back_refused();
+    throw;
+  }
   const MutexLock lock(mutex_);
   last_ = number;
   studies_.emplace(number, study);
   return study;
+}
+
+StudyBook::~StudyBook() {
+  const MutexLock keeping(keeping_);
+  take_back_refused();
+}
+
+void StudyBook::take_back_refused() noexcept {
+  std::erase_if(refused_, [this](int number) {
+    // Hidden first: a start clears what is left of it.
+    const fs::path folder = folder_ / id_of(number);
+    const fs::path hidden = folder_ / ("." + id_of(number) + ".refused.tmp");
+    if (file_calls().rename(folder, hidden) == 0) file_calls().remove_all(hidden);
+    std::error_code error;
+    return !fs::exists(folder, error) && !error;
+  });
 }
 
 int StudyBook::next_number() const {

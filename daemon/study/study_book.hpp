@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,15 @@ class StudyBook {
   /// Reads <folder>/*/study.json; no such folder = no studies yet. What a killed process left is cleared away. One that
   /// cannot be read is told by broken() and keeps its number.
   explicit StudyBook(std::filesystem::path folder);
+  /// Takes back what the disk did not take back when it was refused.
+  ~StudyBook();
+  StudyBook(const StudyBook&) = delete;
+  StudyBook& operator=(const StudyBook&) = delete;
 
   /// Gives the study its id and time and makes its folder: the draft's files, and report.pdf made by page, which is
   /// called with the study as it will be kept. Durable at the return. Throws Error kStorageFull, kStorageWrite;
-  /// kStudyRefused where a figure or constant is out of the range that could be read back. Nothing is left then.
+  /// kStudyRefused where a figure or constant is out of the range that could be read back. Nothing is left
+  /// then; where the disk does not take that either, it is tried again by the next call and at the end.
   Study keep(StudyDraft draft, const std::function<std::string(const Study&)>& report);
 
   /// Throws Error kStudyRefused naming the id, also where it cannot be read.
@@ -51,9 +57,11 @@ class StudyBook {
 
  private:
   [[nodiscard]] int next_number() const;
+  void take_back_refused() noexcept FVD_REQUIRES(keeping_);
 
   const std::filesystem::path folder_;
-  Mutex keeping_;  ///< held while a folder is written; before mutex_
+  Mutex keeping_;                                   ///< held while a folder is written; before mutex_
+  std::set<int> refused_ FVD_GUARDED_BY(keeping_);  ///< their folders are there although keep() failed
   mutable Mutex mutex_;
   std::map<int, Study> studies_ FVD_GUARDED_BY(mutex_);
   std::map<int, BrokenStudy> broken_ FVD_GUARDED_BY(mutex_);

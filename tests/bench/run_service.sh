@@ -15,17 +15,17 @@ here=$FVD_ROOT/tests/bench/service
 # Of each phase, what is promised.
 promises() {
   case "$1" in
-    trigger) echo 'trigger_p99_ms<=5' ;;
-    stop) echo 'stop_without_lease_ms<=60' ;;
-    jog) echo 'jog_overrun_ms<=200' ;;
-    ready) echo 'ready_cold_ms<=2000 ready_after_kill_ms<=1000' ;;
+    trigger) echo 'trigger_p99_ms<=5 triggers>=400' ;;
+    stop) echo 'stop_without_lease_ms<=60 stops>=100' ;;
+    jog) echo 'jog_overrun_ms<=200 jogs>=40' ;;
+    ready) echo 'ready_cold_ms<=2000 ready_after_kill_ms<=1000 ready_starts>=20' ;;
     kills)
       echo 'kills>=300 kills_random>=60 kills_acquisition>=60 kills_end>=60 kills_start>=60 kills_rename_to_row>=60' \
         'acked_lost==0 half_visible==0 repeated_motions==0 verdict_changes==0 orphans_left==0 moving_while_released==0' \
-        'times_free>=60 motions>=60'
+        'times_free>=60 motions>=60 acked>=1'
       ;;
-    poll) echo 'poll_p99_ms<=5 late_slices==0 poll_acks>=1 poll_longest_ack_ms>=500' ;;
-    restore) echo 'restore_differs==0 restore_repeated_motions==0' ;;
+    poll) echo 'poll_p99_ms<=5 late_slices==0 poll_calls>=50000 poll_jobs>=2 poll_acks>=1 poll_longest_ack_ms>=500' ;;
+    restore) echo 'restore_differs==0 restore_repeated_motions==0 restore_jobs>=10' ;;
     soak) echo 'rss_slope_kib_per_job<=0.5 fd_slope_per_job<=0 state_gib_bounded==1 soak_jobs>=2000' ;;
     crash) echo 'crash_schedules>=10000 crash_violations==0 write_faults>=1 write_fault_violations==0' ;;
     matrix) echo 'unauthorised_accepted==0 matrix_cases>=1000 chromium==1 page_attempts>=100' ;;

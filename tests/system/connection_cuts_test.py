@@ -196,7 +196,7 @@ def measure_over_a_kill(example, port, restart):
         results.append(line.measure("killed", line.begin()))
         line.finish("killed", results[0]["seq"])
 
-    thread = threading.Thread(target=measure)
+    thread = threading.Thread(target=measure, daemon=True)
     thread.start()
     wait_for(lambda: direct.ask("job.latest")["seq"] > newest, "the job has begun")
     restart()
@@ -310,7 +310,8 @@ def main(fvd, fvd_sim, wanted="12"):
                "lost": lost + abs(doubled)}
     print(f"the loop sends {totals[0]} bytes and receives {totals[1]}; {len(seqs)} parts, {scans} scans")
     print(json.dumps(figures), flush=True)
-    assert came > 0 and figures["repeated_motions"] == 0 and figures["lost"] == 0, figures
+    # A poll more or less moves the last bytes: one of a few cuts may find none.
+    assert came >= 0.8 * count and figures["repeated_motions"] == 0 and figures["lost"] == 0, figures
 
 
 if __name__ == "__main__":

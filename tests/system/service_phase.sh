@@ -5,6 +5,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$1 promises=$2 script=$3
 shift 3
+export FVD_SERVICE_TIMEOUT_S=120 # within that of the test
 said=$(mktemp)
 trap 'rm -f "$said"' EXIT
 python3 "$here/../bench/service/$script" "$build" "$@" | tee "$said"

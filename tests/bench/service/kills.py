@@ -317,7 +317,7 @@ def main():
             sys.exit("nothing moved: nothing was tested")
         if len(log.free) < kills / 4 or len(motions.intervals()) < kills / 4:
             sys.exit("too few motions or times of a free part: that nothing moved in them was not tested")
-        print(json.dumps({f"kills_{mode}": done, **plc.figures, "repeated_motions": again,
+        print(json.dumps({f"kills_{mode}": done, **plc.figures, "repeated_motions": again, "acked": len(plc.acked),
                           "times_free": len(log.free), "motions": len(motions.intervals()),
                           "moving_while_released": moved_while_free(log.free, motions)}))
 

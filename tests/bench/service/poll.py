@@ -35,9 +35,10 @@ def fill(file, results):
 class Acknowledger(threading.Thread):
     """Acknowledges old results, one after the other: each is a commit beside the scan."""
 
-    def __init__(self, port):
+    def __init__(self, port, results):
         super().__init__()
         self.client, self.done, self.is_over = Client(port), 0, False
+        self.last = results  # what comes behind it is the job that runs
         self.longest_ms, self.failure = 0.0, None
 
     def __enter__(self):
@@ -52,7 +53,7 @@ class Acknowledger(threading.Thread):
 
     def run(self):
         try:
-            while not self.is_over:
+            while not self.is_over and self.done + 2 <= self.last:
                 sent = time.monotonic()
                 self.client.ask("result.ack", seq=self.done + 2)
                 self.longest_ms = max(self.longest_ms, 1000 * (time.monotonic() - sent))
@@ -112,7 +113,7 @@ def main():
         if waiting != results:
             sys.exit(f"{waiting} results wait, not {results}: see {rig.folder}")
         figures, late = [], 0
-        with Acknowledger(rig.port) as acknowledger:
+        with Acknowledger(rig.port, results) as acknowledger:
             for seq in range(results + 1, results + 1 + jobs):
                 client.ask("job.start", seq=seq, part_id="part", recipe="part")
                 figures.append(loaded(rig, seq, seconds, rate))

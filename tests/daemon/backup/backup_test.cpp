@@ -107,11 +107,11 @@ TEST_F(AnInstrument, LeavesNoHalfBackup) {
 class OnFirstFile : public FileCalls {
  public:
   OnFirstFile(fs::path below, std::function<void()> action) : below_(std::move(below)), action_(std::move(action)) {}
-  int create(const fs::path& path) override {
+  int create(const fs::path& path, mode_t mode) override {
     if (path.string().starts_with(below_.string())) {
       if (const auto action = std::exchange(action_, nullptr)) action();
     }
-    return FileCalls::create(path);
+    return FileCalls::create(path, mode);
   }
 
  private:
@@ -202,21 +202,25 @@ TEST_F(AnInstrument, IsRestoredOnAnotherMachine) {
   FVD_EXPECT_ERROR(kSeqStale, (void)store.accept({2, "part", "chapter"}));
 }
 
-/// The permissions of a file when its first bytes are written.
+/// The permissions of a file when it is made and when its first bytes are written.
 class FirstBytes final : public FileCalls {
  public:
   explicit FirstBytes(std::string name) : name_(std::move(name)) {}
-  int create(const fs::path& path) override {
-    const int fd = FileCalls::create(path);
-    if (path.filename() == name_) fd_ = fd;
+  int create(const fs::path& path, mode_t mode) override {
+    const int fd = FileCalls::create(path, mode);
+    if (path.filename() != name_) return fd;
+    struct stat info {};
+    fd_ = fd;
+    if (::fstat(fd, &info) == 0) mode_at_first = info.st_mode & 0777U;
     return fd;
   }
   ssize_t write(int fd, const void* bytes, std::size_t count) override {
     struct stat info {};
-    if (fd == std::exchange(fd_, fd == fd_ ? -1 : fd_) && ::fstat(fd, &info) == 0) mode = info.st_mode & 0777U;
+    if (fd == std::exchange(fd_, fd == fd_ ? -1 : fd_) && ::fstat(fd, &info) == 0) mode_at_bytes = info.st_mode & 0777U;
     return FileCalls::write(fd, bytes, count);
   }
-  std::optional<mode_t> mode;
+  std::optional<mode_t> mode_at_first;
+  std::optional<mode_t> mode_at_bytes;
 
  private:
   const std::string name_;
@@ -230,7 +234,8 @@ TEST_F(AnInstrument, HasItsTokensCopiedByNobodyButWhoMayReadThem) {
   FirstBytes calls("tokens");
   const ReplacedFileCalls replaced(calls);
   (void)make_backup(paths_, backup_, false);
-  EXPECT_EQ(calls.mode, 0600U);
+  EXPECT_EQ(calls.mode_at_first, 0600U) << "whoever opens it then reads all that comes";
+  EXPECT_EQ(calls.mode_at_bytes, 0600U);
   EXPECT_EQ(test::read_text(backup_ / "tokens"), "secret");
 }
 

@@ -1,12 +1,14 @@
 #include "daemon/jobs/audit_log.hpp"
 
 #include <algorithm>
-#include <thread>
+#include <chrono>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "daemon/store/job_store.hpp"
 #include "tests/daemon/store/held_disk.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -26,7 +28,11 @@ TEST(AuditLog, KeepsWhatWasNotedInItsOrderOverARestart) {
     JobStore store(folder / "fvd.sqlite");
     AuditLog log(store.audit());
     for (int i = 0; i < 50; ++i) log.note(entry("start " + std::to_string(i)));
-    const auto newest = log.newest(10, 0);
+    const auto deadline = HostClock::now() + std::chrono::seconds(60);
+    auto newest = log.newest(10, 0);
+    while ((newest.empty() || newest.front().what != "start 49") && HostClock::now() < deadline) {
+      newest = log.newest(10, 0);  // a slow disk is waited for a moment only
+    }
     ASSERT_EQ(newest.size(), 10U);
     EXPECT_EQ(newest.front().what, "start 49");
     EXPECT_EQ(newest.front().time_utc.size(), std::string("2026-11-30T10:00:00.000Z").size());
@@ -69,16 +75,82 @@ TEST(AuditLog, IsNotFilledByRefusals) {
 TEST(AuditLog, AnswersAReaderWhileTheDiskTakesItsTime) {
   const test::ScratchDir folder;
   JobStore store(folder / "fvd.sqlite");
-  AuditLog log(store.audit());
-  log.note(entry("first"));
-  while (log.newest(10, 0).empty()) std::this_thread::yield();
+  store.audit().add({entry("first")});
   test::HeldDisk disk;
+  AuditLog log(store.audit());  // ends before the disk is as it was
   log.note(entry("second"));
   disk.await_a_write();
   const auto rows = log.newest(10, 0);
-  ASSERT_EQ(rows.size(), 1U) << "what is not written yet is not waited for";
-  EXPECT_EQ(rows.front().what, "first");
+  EXPECT_THAT(rows, testing::ElementsAre(testing::Field(&AuditEntry::what, "first")))
+      << "what is not written yet is not waited for";
   disk.let_go();
+}
+
+TEST(AuditLog, TellsNothingOfALossWhereTheDiskTookAll) {
+  const test::ScratchDir folder;
+  JobStore store(folder / "fvd.sqlite");
+  const test::CapturedLog told;
+  {
+    test::HeldDisk disk;
+    AuditLog log(store.audit());
+    log.note(entry("first"));
+    disk.await_a_write();
+    for (std::size_t i = 0; i < AuditLog::kMostKept; ++i) log.note(entry("later"));
+    disk.let_go();
+  }
+  EXPECT_EQ(store.audit().newest(2000).size(), AuditLog::kMostKept + 1);
+  EXPECT_EQ(told.text(), "");
+}
+
+TEST(AuditLog, HasTheEndOfWhatWasAcceptedHoweverOftenItsCallerWasRefused) {
+  const test::ScratchDir folder;
+  JobStore store(folder / "fvd.sqlite");
+  {
+    AuditLog log(store.audit());
+    AuditEntry refused = entry("job.start");
+    refused.outcome = "busy";
+    for (int i = 0; i < 2 * AuditLog::kMostRefusals; ++i) log.note(refused);
+    AuditEntry move = entry("stage.move");
+    move.outcome = "accepted";
+    log.note(move);
+    move.outcome = "stage_alarm";
+    move.is_end = true;
+    for (int i = 0; i < 2 * AuditLog::kMostRefusals; ++i) log.note(move);
+  }
+  const auto rows = store.audit().newest(1000);
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const AuditEntry& row) { return row.outcome == "stage_alarm"; }),
+            2 * AuditLog::kMostRefusals);
+  EXPECT_EQ(rows.front().detail,
+            std::to_string(AuditLog::kMostRefusals) + " refusals within a minute; this is the last");
+}
+
+TEST(AuditLog, IsNotFilledByRefusalsOfManyEither) {
+  const test::ScratchDir folder;
+  JobStore store(folder / "fvd.sqlite");
+  constexpr int kRounds = 3;
+  constexpr int kOthers = 300;
+  {
+    AuditLog log(store.audit());
+    AuditEntry refused = entry("stage.move");
+    refused.outcome = "not_allowed";
+    for (int round = 0; round < kRounds; ++round) {
+      refused.who = "one of them";
+      for (int i = 0; i < 40; ++i) log.note(refused);
+      for (int other = 0; other < kOthers; ++other) {
+        refused.who = "somebody " + std::to_string(round * kOthers + other);
+        log.note(refused);
+      }
+    }
+  }
+  const auto rows = store.audit().newest(10000);
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const AuditEntry& row) { return row.who == "one of them"; }),
+            AuditLog::kMostRefusals + 1);
+  const int apart = static_cast<int>(AuditLog::kMostRefused) - 1;
+  EXPECT_EQ(rows.size(), static_cast<std::size_t>(apart + 2 * AuditLog::kMostRefusals + 2));
+  const std::string counted = std::to_string(kRounds * kOthers - apart - AuditLog::kMostRefusals);
+  EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&counted](const AuditEntry& row) {
+    return row.detail == counted + " refusals of others within a minute; this is the last";
+  }));
 }
 
 }  // namespace

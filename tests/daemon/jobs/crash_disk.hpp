@@ -23,8 +23,8 @@ class CrashDisk final : public FileCalls {
  public:
   explicit CrashDisk(std::filesystem::path root) : root_(std::move(root)) { nodes_[root_] = 0; }
 
-  int create(const std::filesystem::path& path) override {
-    const int fd = FileCalls::create(path);
+  int create(const std::filesystem::path& path, mode_t mode) override {
+    const int fd = FileCalls::create(path, mode);
     const std::lock_guard lock(mutex_);
     if (fd >= 0) open_[fd] = enter(path);
     return fd;

@@ -37,7 +37,9 @@ class FaultyCalls final : public FileCalls {
     return calls_ > good_;
   }
 
-  int create(const std::filesystem::path& path) override { return fails() ? -1 : FileCalls::create(path); }
+  int create(const std::filesystem::path& path, mode_t mode) override {
+    return fails() ? -1 : FileCalls::create(path, mode);
+  }
   ssize_t write(int fd, const void* bytes, std::size_t count) override {
     return fails() ? -1 : FileCalls::write(fd, bytes, std::max<std::size_t>(1, count / 2));
   }

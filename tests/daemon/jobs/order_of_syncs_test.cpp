@@ -32,8 +32,8 @@ class UnsyncedEntries final : public FileCalls {
   /// What was unsynced when a file got this name is kept.
   explicit UnsyncedEntries(fs::path in_force = {}) : in_force_(std::move(in_force)) {}
 
-  int create(const fs::path& path) override {
-    const int fd = FileCalls::create(path);
+  int create(const fs::path& path, mode_t mode) override {
+    const int fd = FileCalls::create(path, mode);
     if (fd >= 0) came_from_[path] = path.parent_path();
     return fd;
   }

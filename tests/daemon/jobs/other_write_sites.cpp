@@ -94,12 +94,12 @@ class AStudy final : public WriteSite {
     const StudyBook again(folder_);
     if (!again.broken().empty()) return again.broken().front().reason;
     if (book_.list().size() != (done ? 1U : 0U)) return "it is not known";
-    // Where the disk takes nothing back a whole one that was refused may stay.
+    // Where the disk takes nothing back a whole one that was refused stays until the disk is mended.
     const std::vector<Study> all = again.list();
     for (const Study& study : book_.list()) {
       if (std::find(all.begin(), all.end(), study) == all.end()) return "studies and files differ";
     }
-    return all.size() <= book_.list().size() + 1 ? "" : "studies are left";
+    return all.size() <= book_.list().size() + (done ? 0 : 1) ? "" : "studies are left";
   }
 
  private:
@@ -113,10 +113,11 @@ struct Instrument {
   explicit Instrument(const fs::path& in)
       : paths{in / "state", in / "recipes", in / "config" / "fvd.json", in / "drive.json", in / "tokens"} {
     fs::create_directories(paths.state_dir / "calibration");
-    fs::create_directories(paths.recipe_dir);
+    fs::create_directories(paths.recipe_dir / "masks");
     fs::create_directories(paths.config_file.parent_path() / "conf.d");
     for (const fs::path& file :
-         {paths.state_dir / "calibration" / "calibration.json", paths.recipe_dir / "part.json", paths.config_file,
+         {paths.state_dir / "calibration" / "calibration.json", paths.recipe_dir / "part.json",
+          paths.recipe_dir / "other.json", paths.recipe_dir / "masks" / "a.png", paths.config_file,
           paths.config_file.parent_path() / "conf.d" / "10.json", paths.stage_profile, paths.token_file}) {
       test::write_text(file, "{}");
     }
@@ -171,7 +172,17 @@ class ARestoration final : public WriteSite {
     (void)store.accept({8, "part", "chapter"});
     epoch_ = store.epoch();
     fs::remove_all(instrument_.result);
-    fs::remove(instrument_.paths.config_file);
+    const InstrumentPaths& paths = instrument_.paths;
+    missing_ = {paths.recipe_dir / "part.json",
+                paths.recipe_dir / "other.json",
+                paths.recipe_dir / "masks" / "a.png",
+                paths.config_file,
+                paths.config_file.parent_path() / "conf.d" / "10.json",
+                paths.stage_profile,
+                paths.token_file};
+    for (const fs::path& file : missing_) fs::remove(file);
+    fs::remove(paths.recipe_dir / "masks");  // the folder itself stays, empty
+    fs::remove_all(paths.config_file.parent_path());
   }
   void work() override { (void)restore_backup(from_, instrument_.paths); }
   std::string wrong(bool done) override {
@@ -184,7 +195,9 @@ class ARestoration final : public WriteSite {
     if (done && !is_restored) return "the old database is in force";
     if (!knows(store, 7)) return "neither database";
     if (is_restored && !fs::exists(instrument_.result / "result.json")) return "the result is not back";
-    if (is_restored && !fs::exists(instrument_.paths.config_file)) return "the configuration is not back";
+    for (const fs::path& file : missing_) {
+      if (is_restored && !(fs::exists(file) && test::read_text(file) == "{}")) return file.string() + " is not back";
+    }
     try {
       (void)store.accept({8, "part", "chapter"});
       return "a number runs twice";
@@ -204,6 +217,7 @@ class ARestoration final : public WriteSite {
   [[nodiscard]] fs::path database() const { return instrument_.paths.state_dir / "fvd.sqlite"; }
   const Instrument instrument_;
   const fs::path from_;
+  std::vector<fs::path> missing_;
   std::int64_t epoch_ = 0;
 };
 
@@ -269,8 +283,8 @@ class AStack final : public WriteSite {
 INSTANTIATE_TEST_SUITE_P(OfOthers, AWriteSite,
                          testing::Values(test::write_site<ARecipe>("Recipe"),
                                          test::write_site<SomeConstants>("Constants"),
-                                         test::write_site<AStudy>("Study"), test::write_site<ABackup>("Backup", 3),
-                                         test::write_site<ARestoration>("Restoration", 3),
+                                         test::write_site<AStudy>("Study"), test::write_site<ABackup>("Backup", 5),
+                                         test::write_site<ARestoration>("Restoration", 7),
                                          test::write_site<APortFile>("PortFile"), test::write_site<ASetup>("Setup"),
                                          test::write_site<AStack>("Stack")),
                          [](const auto& of) { return std::string(of.param.name); });

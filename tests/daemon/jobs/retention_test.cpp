@@ -1,6 +1,8 @@
 #include "daemon/jobs/retention.hpp"
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -139,6 +141,19 @@ TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
   retention.run_once();
   EXPECT_FALSE(fs::exists(results_ / old));
   EXPECT_TRUE(fs::exists(results_ / waiting));
+}
+
+TEST_F(ARetention, GoesOnAtTheStartWithARemovalThatWasCutOffWhateverTheLimitsAre) {
+  const std::string old = add(1, true, kLongAgo);
+  const std::string kept = add(2, true, kLongAgo);
+  ASSERT_TRUE(store_.results().mark_removed(old));
+  Retention retention(store_, {}, results_);
+  retention.start();
+  const auto deadline = HostClock::now() + std::chrono::seconds(60);
+  while (fs::exists(results_ / old) && HostClock::now() < deadline) std::this_thread::yield();
+  retention.finish();
+  EXPECT_FALSE(fs::exists(results_ / old));
+  EXPECT_TRUE(fs::exists(results_ / kept));
 }
 
 TEST_F(ARetention, TakesOtherLimitsWhileItRuns) {

@@ -31,9 +31,9 @@ bool hangs_after(const std::string& thread, HostClock::duration time) {
 /// The first call that makes or renames something waits until it is let go.
 class HeldCalls final : public FileCalls {
  public:
-  int create(const std::filesystem::path& path) override {
+  int create(const std::filesystem::path& path, mode_t mode) override {
     hold();
-    return FileCalls::create(path);
+    return FileCalls::create(path, mode);
   }
   int rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
     hold();

@@ -227,6 +227,25 @@ TEST_F(AKillBetweenFolderAndRow, LeavesAResultThatCannotBeReadForTheNextStart) {
   EXPECT_TRUE(fs::exists(folder_ / "set-aside" / job_.job_id / "result.json"));
 }
 
+TEST_F(AKillBetweenFolderAndRow, LeavesAResultOfANewerVersionToThatVersion) {
+  const fs::path text = folder_ / "results" / job_.job_id / "result.json";
+  const std::string newer = R"({"format": 1000, "what": "nobody knows"})";
+  test::write_text(text, newer);
+  const Reconciled done = reconcile_results(*store_, folder_ / "results");
+  EXPECT_EQ(done.set_aside, 1);
+  EXPECT_EQ(done.removed, 0);
+  EXPECT_EQ(test::read_text(folder_ / "set-aside" / job_.job_id / "result.json"), newer);
+  EXPECT_TRUE(fs::exists(folder_ / "set-aside" / job_.job_id / "height.tiff"));
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
+}
+
+TEST_F(AKillBetweenFolderAndRow, LeavesNothingOfAFolderWhoseTextIsCutOff) {
+  const fs::path text = folder_ / "results" / job_.job_id / "result.json";
+  fs::resize_file(text, fs::file_size(text) / 2);
+  EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "set-aside"));
+}
+
 TEST_F(AKillBetweenFolderAndRow, LeavesNothingOfAFolderWithoutItsText) {
   fs::remove(folder_ / "results" / job_.job_id / "result.json");
   EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1);
@@ -259,6 +278,21 @@ TEST_F(AKillBetweenFolderAndRow, ChangesNothingOfAJobThatWasToldAsFailed) {
   EXPECT_EQ(reconcile_results(*store_, folder_ / "results").removed, 1) << "the result of another job";
   EXPECT_EQ(store_->find(ClientSeq{2}).status.error, ErrorCode::kStorageWrite);
   EXPECT_TRUE(fs::is_empty(folder_ / "results"));
+}
+
+TEST_F(AKillBetweenFolderAndRow, LeavesARefusedEvaluationItsFilesWhereItsRowCameBack) {
+  const fs::path results = folder_ / "results";
+  StoredEvaluation row;
+  row.id = job_.job_id + "-e1";
+  row.job_id = job_.job_id;
+  row.number = 1;
+  store_->evaluations().add(row);
+  const std::string second = job_.job_id + "-e2";
+  for (const std::string& id : {row.id, second}) fs::create_directory(results / refused_evaluation(id));
+  restore_refused_evaluations(*store_, results);
+  EXPECT_TRUE(fs::exists(results / row.id));
+  EXPECT_FALSE(fs::exists(results / second));
+  EXPECT_EQ(remove_abandoned_directories(results), 1U) << "what has no row goes, as all that is not finished";
 }
 
 TEST_F(AKillBetweenFolderAndRow, LeavesFoldersOfJobsAndEvaluationsThatTheDatabaseDoesNotKnow) {

@@ -55,6 +55,23 @@ TEST_F(AJobStore, KnowsNothingAtFirst) {
   FVD_EXPECT_ERROR(kUnknownJob, store_->acknowledge(std::string("x")));
 }
 
+TEST_F(AJobStore, WritesItsLogAnewWhenItIsShortened) {
+  const std::filesystem::path log = file_.string() + "-wal";
+  const auto measure = [this](int first, int last) {
+    for (int seq = first; seq < last; ++seq) {
+      const JobStatus job = store_->accept(request(seq));
+      finish(job);
+      store_->shorten_log();
+      store_->note_files(job.job_id, "{}", false);
+    }
+  };
+  measure(1, 10);
+  const auto size_bytes = std::filesystem::file_size(log);
+  measure(10, 60);
+  EXPECT_LE(std::filesystem::file_size(log), size_bytes + size_bytes / 2);
+  EXPECT_EQ(store_->find(ClientSeq{59}).status.state, JobState::kCompleted);
+}
+
 TEST_F(AJobStore, KeepsTheTemperatureThatCameWithAJob) {
   JobRequest warm = request(1);
   warm.temperature_c = 20.1;  // no binary fraction: it must come back as it went
