@@ -43,7 +43,7 @@ test("slopes use the neighbours that are valid; a slope towards the light is lig
 test("from above the image stands upright: right is right, its upper border is on top", () => {
   const matrix = matrixOf({ turn_deg: 0, tilt_deg: 90, zoom: 1 }, 100, 5, 3, 1);
   const at = (x: number, y: number, z: number): number[] =>
-    [0, 1, 2].map((r) => Number((matrix[r]! * x + matrix[4 + r]! * y + matrix[8 + r]! * z + matrix[12 + r]!).toFixed(6)));
+    [0, 1, 2].map((r) => Number((matrix[r]! * x + matrix[4 + r]! * y + matrix[8 + r]! * z + matrix[12 + r]!).toFixed(6)) + 0);
   assert.deepEqual(at(100, 0, 5).slice(0, 2), [1, 0]);
   assert.deepEqual(at(0, 100, 5).slice(0, 2), [0, 1]);
   assert.ok(at(0, 0, 10)[2]! < at(0, 0, 0)[2]!, "what is higher is nearer");
