@@ -30,8 +30,9 @@ function Shapes({ shapes, at }: { shapes: Shape[]; at: (place: Place) => Place }
     }
     if (kind === "notch") return html`<path class="shape notch" d=${`M${first.x - 8} ${first.y - 8}l16 16m0 -16l-16 16`}/>`;
     const d = `M${screen.map(({ x, y }) => `${x} ${y}`).join("L")}${screen.length > 2 ? "Z" : ""}`;
-    const middle = { x: screen.reduce((sum, { x }) => sum + x, 0) / screen.length, y: screen.reduce((sum, { y }) => sum + y, 0) / screen.length };
-    return html`<g class=${`shape ${kind}`}><path d=${d}/>${kind === "region" && html`<text x=${middle.x} y=${middle.y} text-anchor="middle">${name}</text>`}</g>`;
+    // Beside the first border, where the profile's line does not run.
+    const [a, b] = [first, screen[1] ?? first];
+    return html`<g class=${`shape ${kind}`}><path d=${d}/>${kind === "region" && html`<text x=${(a.x + b.x) / 2} y=${Math.max(16, (a.y + b.y) / 2 + 16)} text-anchor="middle">${name}</text>`}</g>`;
   });
 }
 

@@ -39,7 +39,7 @@ export function ProfilePanel({ result, map, line, measurement, onLine, onMarks }
       y: line.from.y + ((line.to.y - line.from.y) * along) / (length || 1),
     });
     onMarks([at(first), at(second)]);
-  }, [line, first, second]);
+  }, [line.from.x, line.from.y, line.to.x, line.to.y, first, second]);
 
   const fit = useMemo(() => {
     if (!profile || kind === "none") return null;

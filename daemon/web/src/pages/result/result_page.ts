@@ -21,9 +21,12 @@ import { useResult } from "./use_result.ts";
 import { View3dPanel } from "./view3d_panel.ts";
 import "../../style/result.css";
 
-// Across the middle, from border to border.
-const firstLine = ({ width, height, pitch_x, pitch_y }: MapSize): ProfileLine =>
-  ({ from: { x: 0, y: (height * pitch_y) / 2 }, to: { x: width * pitch_x, y: (height * pitch_y) / 2 }, width_um: 0 });
+// Across the middle, with ends that one can take hold of.
+const firstLine = ({ width, height, pitch_x, pitch_y }: MapSize): ProfileLine => ({
+  from: { x: 0.05 * width * pitch_x, y: (height * pitch_y) / 2 },
+  to: { x: 0.95 * width * pitch_x, y: (height * pitch_y) / 2 },
+  width_um: 0,
+});
 
 function Shown({ result, ended_utc }: { result: ResultJson; ended_utc: string }) {
   const { tile, error } = useOverview(mapOwner(result), "height");
@@ -34,7 +37,8 @@ function Shown({ result, ended_utc }: { result: ResultJson; ended_utc: string })
   const [is3d, set3d] = useState(false);
   const measurement = (name !== null && result.evaluation?.measurements?.[name]) || null;
   const shapes = useMemo(() => (measurement ? shapesOf(measurement) : []), [measurement]);
-  const line = typed ?? (map ? firstLine(map.size) : null);
+  const first = useMemo(() => (map ? firstLine(map.size) : null), [map]);
+  const line = typed ?? first;
   const summary = summaryText(result);
 
   // A measurement is shown along its own section; a line that is moved then is one's own again.
