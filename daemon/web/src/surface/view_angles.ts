@@ -7,7 +7,7 @@ export interface Look {
   zoom: number;
 }
 
-export const kFirstLook: Look = { turn_deg: -25, tilt_deg: 45, zoom: 1 };
+export const kFirstLook: Look = { turn_deg: -25, tilt_deg: 45, zoom: 1.25 };
 
 export function boundedLook(look: Look): Look {
   return {

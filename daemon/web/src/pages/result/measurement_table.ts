@@ -28,10 +28,9 @@ function rowsOf({ values, main_value }: Measurement): [string, EvaluatedValue][]
 
 function ValueRow({ name, value }: { name: string; value: EvaluatedValue }) {
   return html`<tr>
-    <th scope="row">${nameOf(name)}</th>
+    <th scope="row">${nameOf(name)}${unitText(value.unit) && ` / ${unitText(value.unit)}`}</th>
     <td class="number"><data value=${String(value.value ?? "")}>${valueText(value)}</data></td>
     <td class="number">${uncertaintyText(value)}</td>
-    <td>${unitText(value.unit)}</td>
     <td class="number">${limitsText(value)}</td>
     <td>${value.verdict ? html`<${VerdictSign} verdict=${value.verdict}/>` : ""}${value.reason && html`<span class="help">${value.reason}</span>`}
       ${(value.warnings ?? []).map(({ text }) => html`<span class="help">${text}</span>`)}</td>
@@ -53,15 +52,15 @@ function OneMeasurement({ name, measurement, result, isShown, all, onShow }: One
   const judged = rows.filter(([key, value]) => key === measurement.main_value || value.limits);
   const shown = all || isOpen || judged.length === 0 ? rows : judged;
   return html`<tbody>
-    <tr class="measurement-head"><th colspan="5" scope="rowgroup">${name} <span class="help">${tWord("result.kind_of", measurement.kind)}</span>
+    <tr class="measurement-head"><th colspan="4" scope="rowgroup">${name} <span class="help">${tWord("result.kind_of", measurement.kind)}</span>
         ${measurement.reason && html`<span class="problem">${measurement.reason}</span>`}</th>
       <td>${measurement.verdict && html`<${VerdictSign} verdict=${measurement.verdict}/>`}</td></tr>
     ${shown.map(([key, value]) => html`<${ValueRow} name=${key} value=${value}/>`)}
-    ${!all && html`<tr><td colspan="6" class="measurement-buttons">
+    ${!all && html`<tr><td colspan="5" class="measurement-buttons">
       <button type="button" aria-expanded=${isOpen} onClick=${() => setOpen(!isOpen)}>${t(isOpen ? "result.less" : "result.more", { name })}</button>
       ${onShow && html`<button type="button" aria-pressed=${isShown} onClick=${onShow}>${t("result.show_geometry", { name })}</button>`}
     </td></tr>`}
-    ${(all || isOpen) && html`<tr><td colspan="6"><${MeasurementDetails} measurement=${measurement} result=${result}/></td></tr>`}
+    ${(all || isOpen) && html`<tr><td colspan="5"><${MeasurementDetails} measurement=${measurement} result=${result}/></td></tr>`}
   </tbody>`;
 }
 
@@ -77,7 +76,7 @@ export function MeasurementTable({ result, shown, all = false, onShow }: Props) 
   if (measurements.length === 0) return html`<p>${t("result.no_measurements")}</p>`;
   return html`<div class="scroll" tabindex="0" role="region" aria-label=${t("result.measurements")}><table class="measurements">
     <thead><tr><th scope="col">${t("result.col.value")}</th><th class="number" scope="col">${t("result.col.measured")}</th><th class="number" scope="col">U</th>
-      <th scope="col">${t("result.col.unit")}</th><th class="number" scope="col">${t("result.col.limits")}</th><th scope="col">${t("result.col.verdict")}</th></tr></thead>
+      <th class="number" scope="col">${t("result.col.limits")}</th><th scope="col">${t("result.col.verdict")}</th></tr></thead>
     ${measurements.map(([name, measurement]) => html`<${OneMeasurement} key=${name} name=${name} measurement=${measurement} result=${result} all=${all}
       isShown=${shown === name} onShow=${measurement.cross_section ? () => onShow(shown === name ? null : name) : null}/>`)}
   </table></div>`;

@@ -32,7 +32,7 @@ export function NumberField({ label, value, digits, unit = "", least = -Infinity
     if (!bad && number(read, digits) !== shown) onChange(read);
   };
   return html`<label class="number-field"><span>${label}${unit && ` (${unit})`}</span>
-    <input type="text" inputmode="decimal" size="9" value=${text} disabled=${disabled} aria-invalid=${isWrong ? "true" : undefined}
+    <input type="text" inputmode="decimal" size="7" value=${text} disabled=${disabled} aria-invalid=${isWrong ? "true" : undefined}
       onInput=${(event: Event) => setText((event.target as HTMLInputElement).value)} onChange=${take}
       onKeyDown=${(event: KeyboardEvent) => {
         if (event.key === "Enter") take(event);

@@ -33,6 +33,11 @@ export function ProfilePanel({ result, map, line, measurement, onLine, onMarks }
   const [kind, setKind] = useState<FitKind>("none");
   const [first, second] = [Math.min(cursors.first, length), Math.min(cursors.second, length)];
 
+  // A measurement's section has a length of its own.
+  useEffect(() => {
+    if (measurement) setCursors({ first: length / 4, second: (3 * length) / 4 });
+  }, [measurement]);
+
   useEffect(() => {
     const at = (along: number): Place => ({
       x: line.from.x + ((line.to.x - line.from.x) * along) / (length || 1),
