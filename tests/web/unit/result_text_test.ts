@@ -11,7 +11,7 @@ test("as many decimals as two digits of U need, four digits without U", () => {
   assert.equal(digitsFor(49.978, 1.2), 1);
   assert.equal(digitsFor(49.978, 120), 0);
   assert.equal(digitsFor(49.978), 2);
-  assert.equal(digitsFor(0), 0);
+  assert.deepEqual([digitsFor(0), digitsFor(5)], [0, 0]);
   assert.equal(digitsFor(1e-9), 6);
 });
 

@@ -23,6 +23,7 @@ export function digitsFor(value: number, U?: number): number {
     return Math.max(0, Math.min(kMost, digits - 1 - Math.floor(Math.log10(Math.abs(of)))));
   };
   if (U !== undefined && U > 0) return leading(U, 2);
+  if (Number.isInteger(value)) return 0;  // a count
   return leading(value, 4);
 }
 

@@ -39,8 +39,7 @@ export class GlSurface {
 
   // Null: this browser has no WebGL2.
   static on(canvas: HTMLCanvasElement): GlSurface | null {
-    // Kept after drawing, so that the picture can be printed.
-    const gl = canvas.getContext("webgl2", { antialias: false, alpha: true, preserveDrawingBuffer: true });
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: true });
     if (!gl || gl.isContextLost()) return null;
     const program = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, kVertex], [gl.FRAGMENT_SHADER, kFragment]] as const) {

@@ -39,7 +39,7 @@ export function EvaluateAgain({ result }: { result: ResultJson }) {
       setBusy(false);
     }
   };
-  return html`<section class="panel" aria-labelledby="again-title">
+  return html`<section class="panel again-panel" aria-labelledby="again-title">
     <h2 id="again-title">${t("result.again.title")}</h2>
     <form onSubmit=${submit}>
       <p class="help">${t("result.again.help")}</p>

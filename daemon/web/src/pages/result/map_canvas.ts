@@ -93,5 +93,5 @@ export function MapCanvas({ job, kind, map, overview, range, plane, view, canvas
     }
   }, [overview, shown, range.low, range.high, plane, view, canvas.width, canvas.height, ratio]);
 
-  return html`<canvas ref=${element} class="map-canvas" aria-hidden="true"></canvas>`;
+  return html`<canvas ref=${element} class="map-canvas" aria-hidden="true" style=${{ aspectRatio: `${canvas.width} / ${canvas.height}` }}></canvas>`;
 }

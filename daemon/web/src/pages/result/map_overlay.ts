@@ -45,7 +45,7 @@ export function MapOverlay({ map, unit, view, canvas, shapes, line, cursor, mark
   const band = [[from, 1], [to, 1], [to, -1], [from, -1]] as const;
   const here = cursor && at(middleOf(map, cursor));
   const bar = barLength((canvas.width * 0.3) / view.scale);
-  return html`<svg class="map-overlay" width=${canvas.width} height=${canvas.height} aria-hidden="true">
+  return html`<svg class="map-overlay" viewBox=${`0 0 ${canvas.width} ${canvas.height}`} aria-hidden="true">
     <${Shapes} shapes=${shapes} at=${at}/>
     ${half > 1 && html`<path class="profile-band" d=${`M${band.map(([{ x, y }, side]) => `${x + side * across.x} ${y + side * across.y}`).join("L")}Z`}/>`}
     <path class="profile-line under" d=${`M${from.x} ${from.y}L${to.x} ${to.y}`}/>

@@ -60,7 +60,7 @@ function OneMeasurement({ name, measurement, result, isShown, all, onShow }: One
       <button type="button" aria-expanded=${isOpen} onClick=${() => setOpen(!isOpen)}>${t(isOpen ? "result.less" : "result.more", { name })}</button>
       ${onShow && html`<button type="button" aria-pressed=${isShown} onClick=${onShow}>${t("result.show_geometry", { name })}</button>`}
     </td></tr>`}
-    ${(all || isOpen) && html`<tr><td colspan="5"><${MeasurementDetails} measurement=${measurement} result=${result}/></td></tr>`}
+    ${(all || isOpen) && html`<tr class="details-row"><td colspan="5"><${MeasurementDetails} measurement=${measurement} result=${result}/></td></tr>`}
   </tbody>`;
 }
 
@@ -74,7 +74,7 @@ interface Props {
 export function MeasurementTable({ result, shown, all = false, onShow }: Props) {
   const measurements = measurementsOf(result);
   if (measurements.length === 0) return html`<p>${t("result.no_measurements")}</p>`;
-  return html`<div class="scroll" tabindex="0" role="region" aria-label=${t("result.measurements")}><table class="measurements">
+  return html`<div class="scroll" tabindex="0" role="region" aria-label=${t("result.measurements.table")}><table class="measurements">
     <thead><tr><th scope="col">${t("result.col.value")}</th><th class="number" scope="col">${t("result.col.measured")}</th><th class="number" scope="col">U</th>
       <th class="number" scope="col">${t("result.col.limits")}</th><th scope="col">${t("result.col.verdict")}</th></tr></thead>
     ${measurements.map(([name, measurement]) => html`<${OneMeasurement} key=${name} name=${name} measurement=${measurement} result=${result} all=${all}

@@ -12,7 +12,7 @@ export function ResultHead({ result, ended_utc }: { result: ResultJson; ended_ut
     ${provenance?.simulated && html`<p class="result-simulated">${t("result.simulated")}</p>`}
     <p>${t("result.head", { job: job.job_id, recipe: job.recipe, time: ended_utc || provenance?.created || "" })}</p>
     ${source && html`<p>${t("result.evaluated", { time: result.evaluated ?? "", recipe: source.recipe?.id ?? "" })}
-      <a href=${`/jobs/${encodeURIComponent(source.job_id)}`}>${source.job_id}</a></p>`}
+      ${" "}<a href=${`/jobs/${encodeURIComponent(source.job_id)}`}>${source.job_id}</a></p>`}
     ${(warnings?.length ?? 0) > 0 && html`<ul class="warnings">${(warnings ?? []).map(({ text }) => html`<li>${text}</li>`)}</ul>`}
   </header>`;
 }

@@ -78,8 +78,13 @@ export function View3dCanvas(props: Props) {
     }
     const half = Math.hypot(map.width * map.pitch_x, map.height * map.pitch_y) / 2;
     const matrix = matrixOf(look, half, (heights_um.low + heights_um.high) / 2, exaggeration, width / height);
-    const frame = requestAnimationFrame(() => surface.draw([moving ? "coarse" : "fine", "frame"], matrix, width, height));
-    return () => cancelAnimationFrame(frame);
+    const draw = (): void => surface.draw([moving ? "coarse" : "fine", "frame"], matrix, width, height);
+    const frame = requestAnimationFrame(draw);
+    addEventListener("beforeprint", draw);  // what was drawn is not kept once it was shown
+    return () => {
+      cancelAnimationFrame(frame);
+      removeEventListener("beforeprint", draw);
+    };
   }, [surface, look, moving, coarse, fine, range.low, range.high, byTexture, exaggeration, canvas.width, canvas.height]);
 
   useEffect(() => {
