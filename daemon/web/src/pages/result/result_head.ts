@@ -1,0 +1,18 @@
+// Which part, which verdict, when; and what lowers trust in it.
+import { t } from "../../i18n/i18n.ts";
+import { html } from "../../lib/html.ts";
+import type { ResultJson } from "../../result/result_json.ts";
+import { VerdictSign } from "./verdict_sign.ts";
+
+export function ResultHead({ result, ended_utc }: { result: ResultJson; ended_utc: string }) {
+  const { job, source, provenance, warnings } = result;
+  return html`<header class="result-head">
+    <h1><bdi>${job.part_id || t("result.no_part")}</bdi></h1>
+    <${VerdictSign} verdict=${result.verdict} large/>
+    ${provenance?.simulated && html`<p class="result-simulated">${t("result.simulated")}</p>`}
+    <p>${t("result.head", { job: job.job_id, recipe: job.recipe, time: ended_utc || provenance?.created || "" })}</p>
+    ${source && html`<p>${t("result.evaluated", { time: result.evaluated ?? "", recipe: source.recipe?.id ?? "" })}
+      ${" "}<a href=${`/jobs/${encodeURIComponent(source.job_id)}`}>${source.job_id}</a></p>`}
+    ${(warnings?.length ?? 0) > 0 && html`<ul class="warnings">${(warnings ?? []).map(({ text }) => html`<li>${text}</li>`)}</ul>`}
+  </header>`;
+}
