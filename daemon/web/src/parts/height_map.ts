@@ -8,6 +8,7 @@ import { percentileRange, wholeRange } from "../surface/colour_range.ts";
 import { type Range, kHoleColour, kViridisTable, level, rgba } from "../surface/colours.ts";
 import { type Tile, fetchTile } from "../surface/height_tile.ts";
 import { barLength, ticks } from "../surface/ticks.ts";
+import { framed } from "./framed.ts";
 import { messageOf } from "./message_of.ts";
 
 const kMost = 512;
@@ -113,7 +114,7 @@ export function HeightMap({ jobId, pitch, verdict = "", noPointReason = "" }: Pr
   const bar_um = barLength(width_um * 0.3);
   return html`<figure class="height-map">
     <div class="height-map-row">
-      <div class="picture" style=${{ aspectRatio: `${width_um} / ${height_um}` }}>
+      <div class="picture" style=${framed(width_um, height_um)}>
         <canvas ref=${canvas} role="img" aria-label=${`${t("map.alt")} ${summary} ${verdict}`}></canvas>
         ${pitch && html`<span class="scale-bar" aria-hidden="true" style=${{ width: `${100 * bar_um / width_um}%` }}><span>${number(bar_um)} µm</span></span>`}
         ${whole_um === null && html`<p class="picture-says" role="alert">${t("map.no_point")} ${noPointReason}</p>`}

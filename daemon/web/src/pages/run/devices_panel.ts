@@ -69,8 +69,7 @@ export function DevicesPanel() {
     <dl class="figures">
       <${DeviceRow} name=${t("run.camera")} device=${health && deviceOf(health.camera)}/>
       <${DeviceRow} name=${t("run.stage")} device=${health && deviceOf(health.stage)}/>
-      <dt>${t("run.disk")}</dt><dd>${disk === null ? "–" : html`<${Light} kind=${disk.isLow ? "warn" : "good"}/>
-        ${t("run.disk_free", { free: number(disk.free_gib, 1), share: number(100 * disk.free_share, 0) })}`}</dd>
+      <dt>${t("run.disk")}</dt><dd>${disk === null ? "–" : html`<${Light} kind=${disk.isLow ? "warn" : "good"}/> ${t("run.disk_free", { free: number(disk.free_gib, 1), share: number(100 * disk.free_share, 0) })}`}</dd>
       <dt>${t("run.calibration")}</dt><dd>${calibration.state !== "unknown" && html`<${Light} kind=${calibration.state === "there" ? "good" : "warn"}/>`} ${calibration.text}</dd>
       ${state?.objective && html`<dt>${t("run.objective")}</dt><dd>${state.objective}</dd>`}
       <dt>${t("run.results_waiting")}</dt><dd class=${state?.overrun ? "problem" : undefined}>${state ? number(state.results_waiting) : "–"}${state?.overrun && ` – ${t("run.overrun")}`}</dd>

@@ -7,16 +7,14 @@ import type { ValueRow } from "../../run/value_rows.ts";
 const kWidth = 200;
 const kHeight = 28;
 
-export function limitsText({ lower, upper }: ValueRow, digits: number, unit: string): string {
-  const of = (value: number): string => `${number(value, Math.max(digits, decimalsOf(value)))}${unit && ` ${unit}`}`;
+// A limit has the digits that it was written with: it must not look like another one.
+export function limitsText({ lower, upper }: ValueRow, unit: string): string {
+  const of = (value: number): string => `${number(value)}${unit && ` ${unit}`}`;
   if (lower !== null && upper !== null) return t("run.limits_both", { lower: of(lower), upper: of(upper) });
   if (lower !== null) return t("run.limits_lower", { lower: of(lower) });
   if (upper !== null) return t("run.limits_upper", { upper: of(upper) });
   return t("run.limits_none");
 }
-
-// As many as the limit was written with: it must not look like another one.
-const decimalsOf = (value: number): number => Math.min(6, (/\.(\d+)$/.exec(String(value))?.[1] ?? "").length);
 
 export function LimitBarView({ row, label }: { row: ValueRow; label: string }) {
   const bar = limitBar(row.value, row.U, row.lower, row.upper);

@@ -4,6 +4,7 @@ import { number, t, tWord, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
 import { topics } from "../../live/live.ts";
+import { framed } from "../../parts/framed.ts";
 import { type Marks, paintMarks } from "../../run/focus_peaking.ts";
 import { type Picture, type PreviewStatus, watchPreview } from "../../run/preview_poll.ts";
 import { pitchOf, shapesOf } from "../../run/regions.ts";
@@ -73,12 +74,14 @@ export function LivePicture() {
   const { shapes, notDrawn } = shapesOf(recipe);
   const pitch = pitchOf(recipe) ?? { x: 1, y: 1 };
   const isOld = status !== "picture";
+  // The first answer may take ten seconds where nothing takes pictures.
+  const says = status === "waiting" && (!job || job.done) ? "none" : status;
   return html`<section class="panel live" aria-labelledby="live-title">
     <h2 id="live-title">${t("run.live")}</h2>
-    <div class=${`picture ${isOld ? "old" : ""}`} style=${told ? { aspectRatio: `${told.width_px * pitch.x} / ${told.height_px * pitch.y}` } : undefined}>
+    <div class=${`picture ${isOld ? "old" : ""}`} style=${told ? framed(told.width_px * pitch.x, told.height_px * pitch.y) : undefined}>
       <canvas ref=${canvas} role="img" aria-label=${told ? t("run.live_alt") : t("run.live_none")} hidden=${told === null}></canvas>
       ${told && regions && html`<${RegionOverlay} shapes=${shapes} width_um=${told.width_px * pitch.x} height_um=${told.height_px * pitch.y}/>`}
-      ${isOld && html`<p class="picture-says">${tWord("run.live_status", status)}</p>`}
+      ${isOld && html`<p class="picture-says">${tWord("run.live_status", says)}</p>`}
     </div>
     <p class="help figures-line">${told && html`
       <span>z ${number(told.z_um, 1)} µm</span> <span>${t("run.live_focus", { focus: number(told.focus, 1) })}</span>

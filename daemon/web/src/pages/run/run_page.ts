@@ -19,14 +19,14 @@ export function RunPage() {
   return html`<h1 class="hidden">${t("nav.run")}</h1>
     <${StateBanner}/>
     <div class="run">
-      <div class="run-left"><${StartPanel}/><${Progress}/><${ControlPanel}/></div>
+      <div class="run-left"><${StartPanel}/><${Progress}/></div>
       <div class="run-right">
         <${LivePicture}/>
         <${MapPanel} shown=${shown}/>
         <${ValuesPanel} shown=${shown}/>
+        <${LastParts}/>
         <${AlarmsPanel}/>
-        <${DevicesPanel}/>
       </div>
-      <${LastParts}/>
+      <div class="run-foot"><${ControlPanel}/><${DevicesPanel}/></div>
     </div>`;
 }

@@ -17,13 +17,14 @@ function Row({ row: raw }: { row: ValueRow }) {
   const unit = unitForPeople(row.unit);
   const digits = row.value === null ? 2 : decimals(row.value, row.U);
   const withUnit = (value: number): string => `${number(value, digits)}${unit && ` ${unit}`}`;
-  const limits = limitsText(row, row.value === null ? 0 : Math.min(digits, 2), unit);
+  const limits = limitsText(row, unit);
   const value = row.value === null ? t("run.no_value") : withUnit(row.value);
   return html`<tr>
     <th scope="row">${row.measurement ? html`<span class="measurement">${row.measurement}</span> ${row.name}` : tWord("run.value", row.name)}</th>
-    <td class="number">${value}${row.reason && html`<p class="reason">${row.reason}</p>`}</td>
+    <td class="number">${value}</td>
     <td class="number">${row.value === null ? "" : row.U === null ? html`<span class="help">${t("run.no_u")}</span>` : `± ${withUnit(row.U)}`}</td>
-    <td class="limits">${row.value !== null && html`<${LimitBarView} row=${row} label=${`${value}; ${limits}; ${verdictWord(row.verdict)}`}/>`}<span class="help">${limits}</span></td>
+    <td class="limits">${row.value !== null && html`<${LimitBarView} row=${row} label=${`${value}; ${limits}; ${verdictWord(row.verdict)}`}/>`}
+      ${row.reason && html`<p class="reason">${row.reason}</p>`}<span class="help">${limits}</span></td>
     <td>${row.verdict === null ? html`<span class="help">${t("run.not_judged")}</span>` : html`<${VerdictLabel} verdict=${row.verdict}/>`}</td>
   </tr>`;
 }
