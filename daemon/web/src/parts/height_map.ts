@@ -90,7 +90,7 @@ export function HeightMap({ jobId, pitch, verdict = "", noPointReason = "" }: Pr
   const isLinked = useStore(link).status === "open";
   const has = shown?.jobId === jobId;
   useEffect(() => {
-    if (has) return;
+    if (has || !isLinked) return;
     const abort = new AbortController();
     fetchTile(jobId, "height", null, kMost, abort.signal).then((tile) => {
       setProblem("");

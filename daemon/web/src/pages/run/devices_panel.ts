@@ -25,6 +25,7 @@ function useCalibration(): Calibration {
   const objective = state?.objective ?? "";
   const [told, setTold] = useState<{ id: string; created: string; lapsed: string[] } | Error | null>(null);
   useEffect(() => {
+    if (!isLinked) return;
     look("calibration.get", objective ? { objective } : {}).then(({ calibration, lapsed }) => {
       const { id, created } = (calibration ?? {}) as { id?: unknown; created?: unknown };
       setTold({ id: String(id ?? ""), created: String(created ?? ""), lapsed: Array.isArray(lapsed) ? lapsed.map(String) : [] });

@@ -32,6 +32,7 @@ function useStrip(): Strip {
     seen.current = withPart(seen.current, { job_id: job.job_id, part_id: job.part_id, state: job.state, verdict: verdictOf(job.evaluation) }, kMost);
   }
   useEffect(() => {
+    if (!isLinked) return;
     let isOver = false;
     listJobs(kMost).then(({ jobs }) => {
       const parts = jobs.filter(({ state }) => state !== "processing")

@@ -20,6 +20,7 @@ function useRecipeList(): string {
   const count = useStore(resyncs);
   const isLinked = useStore(link).status === "open";
   useEffect(() => {
+    if (!isLinked) return;
     look("recipe.list", {}).then((list) => {
       recipes.set(list.recipes as string[]);
       setProblem("");
@@ -92,7 +93,9 @@ export function StartPanel() {
   const count = useStore(resyncs);
   const isLinked = useStore(link).status === "open";
   const ours = job?.client === kClient ? job.seq : 0;
-  useEffect(askNewest, [count, isLinked, ours]);
+  useEffect(() => {
+    if (isLinked) askNewest();
+  }, [count, isLinked, ours]);
   return html`<section class="panel start" aria-labelledby="start-title">
     <h2 id="start-title">${t("run.start_title")}</h2>
     <${PartField}/>

@@ -1,16 +1,17 @@
 // A recipe's document, fetched anew when it may have changed.
 import { useEffect, useState } from "preact/hooks";
 import { useStore } from "../../lib/store.ts";
-import { resyncs, topics } from "../../live/live.ts";
+import { link, resyncs, topics } from "../../live/live.ts";
 import { look } from "../../rpc/look.ts";
 
 export function useRecipe(id: string): unknown {
   const [held, setHeld] = useState<{ id: string; recipe: unknown }>({ id: "", recipe: null });
   const count = useStore(resyncs);
+  const isLinked = useStore(link).status === "open";
   const { job } = useStore(topics);
   const running = job && !job.done ? job.job_id : "";
   useEffect(() => {
-    if (id === "") return;
+    if (id === "" || !isLinked) return;
     let isOver = false;
     look("recipe.get", { id }).then(({ recipe }) => {
       if (!isOver) setHeld({ id, recipe });
@@ -18,6 +19,6 @@ export function useRecipe(id: string): unknown {
     return () => {
       isOver = true;
     };
-  }, [id, count, running]);
+  }, [id, count, running, isLinked]);
   return held.id === id ? held.recipe : null;
 }

@@ -35,9 +35,9 @@ export function useResult(): ShownResult {
   const id = useNewestEnded();
   const isLinked = useStore(link).status === "open";
   const [shown, setShown] = useState<ShownResult>(kNothing);
-  const has = shown.job_id === id && shown.status !== null;
+  const has = shown.job_id === id && shown.problem === "";
   useEffect(() => {
-    if (id === "" || has) return;
+    if (id === "" || has || !isLinked) return;
     let isOver = false;
     const fetched = Promise.allSettled([look("job.status", { job_id: id }), look("result.get", { job_id: id, format: "complete" })]);
     void fetched.then(([status, got]) => {
@@ -58,5 +58,6 @@ export function useResult(): ShownResult {
   }, [id, has, isLinked]);
   // The id alone lets the map be fetched at the same time as the values.
   const { job } = topics.get();
-  return shown.job_id === id ? shown : { ...kNothing, job_id: id, status: job?.job_id === id ? job : null };
+  const told = job?.job_id === id ? job : null;
+  return shown.job_id === id ? { ...shown, status: shown.status ?? told } : { ...kNothing, job_id: id, status: told };
 }
