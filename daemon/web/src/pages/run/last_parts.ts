@@ -15,6 +15,7 @@ const kMost = 20;
 const kNoSuchMethod = -32601;
 
 interface Strip {
+  isTold: boolean;
   parts: readonly LastPart[];
   isSeenOnly: boolean;  // fvd lists no jobs: these are those that this page has seen end
   problem: string;
@@ -26,7 +27,7 @@ function useStrip(): Strip {
   const count = useStore(resyncs);
   const isLinked = useStore(link).status === "open";
   const seen = useRef<readonly LastPart[]>([]);
-  const [strip, setStrip] = useState<Strip>({ parts: [], isSeenOnly: false, problem: "" });
+  const [strip, setStrip] = useState<Strip>({ isTold: false, parts: [], isSeenOnly: false, problem: "" });
   const ended = job?.done ? job.job_id : "";
   if (job?.done) {
     seen.current = withPart(seen.current, { job_id: job.job_id, part_id: job.part_id, state: job.state, verdict: verdictOf(job.evaluation) }, kMost);
@@ -37,11 +38,11 @@ function useStrip(): Strip {
     listJobs(kMost).then(({ jobs }) => {
       const parts = jobs.filter(({ state }) => state !== "processing")
         .map(({ job_id, part_id, state, verdict }) => ({ job_id, part_id, state, verdict: verdictOf(verdict) }));
-      if (!isOver) setStrip({ parts, isSeenOnly: false, problem: "" });
+      if (!isOver) setStrip({ isTold: true, parts, isSeenOnly: false, problem: "" });
     }, (error: unknown) => {
       if (isOver) return;
       const isUnknown = error instanceof RpcError && error.code === kNoSuchMethod;
-      setStrip((before) => ({ parts: isUnknown ? seen.current : before.parts, isSeenOnly: isUnknown, problem: isUnknown ? "" : messageOf(error) }));
+      setStrip((before) => ({ isTold: isUnknown, parts: isUnknown ? seen.current : before.parts, isSeenOnly: isUnknown, problem: isUnknown ? "" : messageOf(error) }));
     });
     return () => {
       isOver = true;
@@ -60,11 +61,11 @@ function Part({ part }: { part: LastPart }) {
 
 export function LastParts() {
   useLanguage();
-  const { parts, isSeenOnly, problem } = useStrip();
+  const { isTold, parts, isSeenOnly, problem } = useStrip();
   return html`<section class="panel last" aria-labelledby="last-title">
     <h2 id="last-title">${t("run.last_parts")}</h2>
-    ${parts.length === 0 && !problem && html`<p class="help">${t("run.no_parts")}</p>`}
-    <ol class="strip" tabindex="0" aria-labelledby="last-title">${parts.map((part) => html`<${Part} key=${part.job_id} part=${part}/>`)}</ol>
+    ${isTold && parts.length === 0 && html`<p class="help">${t("run.no_parts")}</p>`}
+    ${parts.length > 0 && html`<ol class="strip" tabindex="0" aria-labelledby="last-title">${parts.map((part) => html`<${Part} key=${part.job_id} part=${part}/>`)}</ol>`}
     ${isSeenOnly && html`<p class="help">${t("run.seen_only")}</p>`}
     ${problem && html`<p class="problem" role="alert">${problem}</p>`}
   </section>`;
