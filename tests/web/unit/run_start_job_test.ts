@@ -64,6 +64,22 @@ test("who never answers is given up, and the number is asked for anew", async ()
   assert.equal(looks(), 2);
 });
 
+test("after a stop a lost start is not repeated", async () => {
+  let cancel = (): void => undefined;
+  let asked = 0;
+  const starter = createStarter({
+    start: async () => {
+      ++asked;
+      throw new TypeError("the connection broke in the middle of the answer");
+    },
+    newest: async () => 1,
+    wait: async () => cancel(),  // STOP is pressed while the start waits to be repeated
+  }, "s");
+  cancel = starter.cancel;
+  await assert.rejects(starter.start("p", "r"), { code: kOffline });
+  assert.equal(asked, 1);
+});
+
 test("a number that another tab took: the next one, once", async () => {
   const { starter, asked } = stand([1009, "ok"], [1, 2]);
   assert.equal((await starter.start("p", "r")).seq, 3);

@@ -24,41 +24,45 @@ export interface Starter {
   know(newest: number): void;
   forget(): void;
   start(part_id: string, recipe: string): Promise<Methods["job.start"]["result"]>;
+  // A start whose answer is still awaited is not repeated any more: after a stop nothing may begin by itself.
+  cancel(): void;
 }
 
 // Nobody answered, or who answered was not fvd: the request may have arrived.
-const isLost = (error: unknown): boolean =>
-  (error instanceof RpcError && (error.code === kOffline || error.code === 502 || error.code === 503 || error.code === 504)) ||
-  (error as { name?: string }).name === "AbortError" || (error as { name?: string }).name === "TimeoutError";
+const isLost = (error: unknown): boolean => !(error instanceof RpcError) || [kOffline, 502, 503, 504].includes(error.code);
 
 export function createStarter(calls: Calls, session: string): Starter {
   let newest: number | null = null;
+  let cancels = 0;
 
-  const repeated = async (params: Methods["job.start"]["params"]): Promise<Methods["job.start"]["result"]> => {
+  const repeated = async (params: Methods["job.start"]["params"], isCancelled: () => boolean): Promise<Methods["job.start"]["result"]> => {
     for (let attempt = 0; ; ++attempt) {
       try {
         return await calls.start(params, AbortSignal.timeout(kPatience_ms));
       } catch (error) {
         if (!isLost(error)) throw error;
-        if (attempt >= kRepeats) throw new RpcError(kOffline, "offline", String(error));
+        if (attempt >= kRepeats || isCancelled()) throw new RpcError(kOffline, "offline", String(error));
         await calls.wait(kBetween_ms);
+        if (isCancelled()) throw new RpcError(kOffline, "offline", String(error));
       }
     }
   };
 
   const start = async (part_id: string, recipe: string): Promise<Methods["job.start"]["result"]> => {
+    const before = cancels;
+    const isCancelled = (): boolean => cancels !== before;
     for (let attempt = 0; ; ++attempt) {
       newest ??= await calls.newest();
       const seq = newest + 1;
       try {
-        const started = await repeated({ seq, part_id, recipe, client: kClient, session });
+        const started = await repeated({ seq, part_id, recipe, client: kClient, session }, isCancelled);
         newest = Math.max(newest ?? 0, seq);
         return started;
       } catch (error) {
         // Whatever it was, the number is asked for anew before the next part.
         newest = null;
         const isTaken = error instanceof RpcError && [kConflict, kStale, kInterrupted].includes(error.code);
-        if (!isTaken || attempt > 0) throw error;
+        if (!isTaken || attempt > 0 || isCancelled()) throw error;
       }
     }
   };
@@ -69,6 +73,9 @@ export function createStarter(calls: Calls, session: string): Starter {
     },
     forget: () => {
       newest = null;
+    },
+    cancel: () => {
+      ++cancels;
     },
     start,
   };

@@ -49,6 +49,7 @@ export const stop = (): Promise<void> => during("stop", async () => {
     notice.set({ kind: "problem", text: t("run.why.no_role") });
     return;
   }
+  starter.cancel();
   const { job } = topics.get();
   const { stopped } = await call("stage.stop", {});
   if (stopped !== "job" && job && !job.done) await call("job.abort", { job_id: job.job_id });

@@ -5,12 +5,11 @@ import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
 import { link, topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
-import { call } from "../../rpc/rpc.ts";
 import { mayAs, session } from "../../rpc/session.ts";
-import { ownerName } from "../../run/owner_name.ts";
+import { giveControlBack, isHeldHere, renewalFault, takeControl, watchControl } from "../../run/hold_control.ts";
 
-const kLease_s = 60;
-const kRenew_ms = 20000;
+// For as long as the tab is open, not for as long as this panel is seen.
+watchControl();
 
 // The seconds that the daemon told, less those since: never by this browser's clock.
 function useRemaining(remaining_s: number | undefined, key: string): number {
@@ -25,27 +24,6 @@ function useRemaining(remaining_s: number | undefined, key: string): number {
   return Math.max(0, told.remaining_s - (performance.now() - told.at_ms) / 1000);
 }
 
-// Control that was taken here is renewed while this page is open, and given back when it is closed.
-const held = { by_this_tab: false };
-
-function useRenewal(isOurs: boolean, setProblem: (text: string) => void): void {
-  const { who } = useStore(session);
-  useEffect(() => {
-    if (!isOurs || !held.by_this_tab) return;
-    const timer = setInterval(() => {
-      call("control.acquire", { owner: ownerName(who), lease_s: kLease_s }).catch((error: unknown) => setProblem(messageOf(error)));
-    }, kRenew_ms);
-    const leave = (): void => {
-      if (held.by_this_tab) void call("control.release", {}, { keepalive: true }).catch(() => undefined);
-    };
-    addEventListener("pagehide", leave);
-    return () => {
-      clearInterval(timer);
-      removeEventListener("pagehide", leave);
-    };
-  }, [isOurs, who]);
-}
-
 export function ControlPanel() {
   useLanguage();
   const { control, job } = useStore(topics);
@@ -56,20 +34,16 @@ export function ControlPanel() {
   const isTaken = control !== null && control.owner !== "";
   const isOurs = isTaken && control.who === who;
   const left_s = useRemaining(control?.remaining_s, `${control?.owner} ${control?.who}`);
-  useRenewal(isOurs, setProblem);
+  const isHere = useStore(isHeldHere);
+  const fault = useStore(renewalFault);
 
   const run = (work: Promise<unknown>): void => {
     setProblem("");
     work.catch((error: unknown) => setProblem(messageOf(error)));
   };
   const take = (force: boolean): void => {
-    held.by_this_tab = true;
     dialog.current?.close();
-    run(call("control.acquire", { owner: ownerName(who), lease_s: kLease_s, ...(force ? { force } : {}) }));
-  };
-  const giveBack = (): void => {
-    held.by_this_tab = false;
-    run(call("control.release", {}));
+    run(takeControl(force));
   };
 
   const runs = job !== null && !job.done;
@@ -84,12 +58,12 @@ export function ControlPanel() {
     ${isTaken && html`<p class="help">${t("run.control_left", { seconds: number(Math.ceil(left_s), 0) })}</p>`}
     <p class="buttons">
       ${isOurs
-        ? html`<button type="button" onClick=${giveBack}>${t("run.control_release")}</button>`
+        ? html`<button type="button" onClick=${() => run(giveControlBack())}>${t("run.control_release")}</button>`
         : html`<button type="button" disabled=${why !== null} aria-describedby="control-why"
             onClick=${() => (isTaken ? dialog.current?.showModal() : take(false))}>${t(isTaken ? "run.control_force" : "run.control_take")}</button>`}
     </p>
-    <p id="control-why" class="help">${why !== null ? t(why, names) : isTaken && isOurs && !held.by_this_tab ? t("run.control_elsewhere") : t("run.control_help")}</p>
-    ${problem && html`<p class="problem" role="alert">${problem}</p>`}
+    <p id="control-why" class="help">${why !== null ? t(why, names) : isOurs && !isHere ? t("run.control_elsewhere") : t("run.control_help")}</p>
+    ${(problem || fault !== null) && html`<p class="problem" role="alert">${problem || messageOf(fault)}</p>`}
     <dialog ref=${dialog} aria-labelledby="force-title">
       <h2 id="force-title">${t("run.control_force")}</h2>
       <p>${t("run.control_force_says", names)}</p>

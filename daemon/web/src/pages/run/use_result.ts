@@ -7,13 +7,14 @@ import { look } from "../../rpc/look.ts";
 
 export interface ShownResult {
   job_id: string;                                   // empty = nothing was measured yet
-  status: Full<"job.status"> | null;   // null = not told yet
+  status: Full<"job.status"> | null;                // null = not told yet
   result: unknown;                                  // result.json; null where there is none (yet)
   directory: string;                                // empty = nothing was kept
+  isFinal: boolean;                                 // false = it was asked for before the job's end was stored
   problem: string;
 }
 
-const kNothing: ShownResult = { job_id: "", status: null, result: null, directory: "", problem: "" };
+const kNothing: ShownResult = { job_id: "", status: null, result: null, directory: "", isFinal: false, problem: "" };
 
 // The newest of two jobs: their ids begin with the time.
 function useNewestEnded(): string {
@@ -35,7 +36,10 @@ export function useResult(): ShownResult {
   const id = useNewestEnded();
   const isLinked = useStore(link).status === "open";
   const [shown, setShown] = useState<ShownResult>(kNothing);
-  const has = shown.job_id === id && shown.problem === "";
+  const { job } = useStore(topics);
+  const told = job?.job_id === id ? job : null;
+  const isDone = told?.done === true;
+  const has = shown.job_id === id && shown.problem === "" && shown.isFinal;
   useEffect(() => {
     if (id === "" || has || !isLinked) return;
     let isOver = false;
@@ -49,15 +53,14 @@ export function useResult(): ShownResult {
         status: status.status === "fulfilled" ? (status.value as Full<"job.status">) : null,
         result: value?.result ?? null,
         directory: value?.directory ?? "",
+        isFinal: value !== null && value.state !== "processing",
         problem: fault === null ? "" : messageOf(fault),
       });
     });
     return () => {
       isOver = true;
     };
-  }, [id, has, isLinked]);
+  }, [id, has, isDone, isLinked]);
   // The id alone lets the map be fetched at the same time as the values.
-  const { job } = topics.get();
-  const told = job?.job_id === id ? job : null;
-  return shown.job_id === id ? { ...shown, status: shown.status ?? told } : { ...kNothing, job_id: id, status: told };
+  return shown.job_id === id ? { ...shown, status: told ?? shown.status } : { ...kNothing, job_id: id, status: told };
 }
