@@ -10,9 +10,12 @@ export interface Alarm {
   acknowledged: boolean;
 }
 
+// A topic is told in full: keys that short replies leave out are there.
+export type Full<M extends keyof Methods> = Required<Omit<Methods[M]["result"], "left_out">>;
+
 export interface Topics {
-  state: Methods["system.state"]["result"] | null;
-  job: Methods["job.status"]["result"] | null;  // the running or the latest job
+  state: Full<"system.state"> | null;
+  job: Full<"job.status"> | null;  // the running or the latest job
   control: Methods["control.state"]["result"] | null;
   health: Methods["system.health"]["result"] | null;
   alarms: Alarm[];

@@ -1,0 +1,57 @@
+// What went wrong: when, what, what to do, and who has seen it.
+import { useState } from "preact/hooks";
+import { t, tWord, useLanguage } from "../../i18n/i18n.ts";
+import { html } from "../../lib/html.ts";
+import { useStore } from "../../lib/store.ts";
+import { type Alarm, topics } from "../../live/live.ts";
+import { messageOf } from "../../parts/message_of.ts";
+import { mayAs, session } from "../../rpc/session.ts";
+import { ordered, timeForPeople } from "../../run/alarm_order.ts";
+import { acknowledgeAlarm } from "./to_come.ts";
+import { whatToDo } from "./what_to_do.ts";
+
+// An alarm of an error carries its code where the daemon tells it.
+type CodedAlarm = Alarm & { error_code?: number };
+
+const kShapes: Record<Alarm["level"], string> = {
+  warning: "M12 3 22 21H2Z",
+  error: "M7 2h10l5 5v10l-5 5H7l-5-5V7Z",
+  critical: "M12 1 15 9 23 12 15 15 12 23 9 15 1 12 9 9Z",
+};
+
+function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; mayAcknowledge: boolean; acknowledge: (number: number) => void }) {
+  const language = useLanguage();
+  const todo = whatToDo(alarm.error_code ?? 0) || tWord("run.alarm_todo", alarm.level);
+  return html`<li class=${`alarm alarm-${alarm.level} ${alarm.acknowledged ? "seen" : ""}`}>
+    <svg width="24" height="24" viewBox="0 0 24 24" fill="currentColor" aria-hidden="true"><path d=${kShapes[alarm.level] ?? kShapes.error}/></svg>
+    <div>
+      <p><strong>${tWord("run.alarm_level", alarm.level)}</strong> <time datetime=${alarm.time_utc}>${timeForPeople(alarm.time_utc, language)}</time></p>
+      <p class="alarm-text">${alarm.text}</p>
+      <p class="help">${todo}</p>
+    </div>
+    ${alarm.acknowledged
+      ? html`<span class="help">${t("run.acknowledged")}</span>`
+      : html`<button type="button" disabled=${!mayAcknowledge} title=${mayAcknowledge ? undefined : t("run.why.no_role")}
+          aria-label=${t("run.acknowledge_this", { text: alarm.text })} onClick=${() => acknowledge(alarm.number)}>${t("run.acknowledge")}</button>`}
+  </li>`;
+}
+
+export function AlarmsPanel() {
+  useLanguage();
+  const { alarms } = useStore(topics);
+  const { role } = useStore(session);
+  const [problem, setProblem] = useState("");
+  const acknowledge = (number: number): void => {
+    setProblem("");
+    acknowledgeAlarm(number).catch((error: unknown) => setProblem(messageOf(error)));
+  };
+  const list = ordered(alarms ?? []);
+  const waiting = list.filter(({ acknowledged }) => !acknowledged).length;
+  return html`<section class=${`panel alarms ${waiting > 0 ? "waiting" : ""}`} aria-labelledby="alarms-title">
+    <h2 id="alarms-title">${t("run.alarms")} ${waiting > 0 && html`<span class="tag">${t("run.alarms_waiting", { count: waiting })}</span>`}</h2>
+    ${list.length === 0 && html`<p class="help">${t("run.no_alarms")}</p>`}
+    <div role="alert"><ul class="alarm-list">${list.map((alarm) => html`<${AlarmRow} key=${alarm.number} alarm=${alarm} mayAcknowledge=${mayAs(role, "operate")} acknowledge=${acknowledge}/>`)}</ul></div>
+    ${waiting > 0 && !mayAs(role, "operate") && html`<p class="help">${t("run.why.no_role")}</p>`}
+    ${problem && html`<p class="problem" role="alert">${problem}</p>`}
+  </section>`;
+}

@@ -1,0 +1,67 @@
+// What the one button and the keys do.
+import { t } from "../../i18n/i18n.ts";
+import { topics } from "../../live/live.ts";
+import { messageOf } from "../../parts/message_of.ts";
+import { look } from "../../rpc/look.ts";
+import { call } from "../../rpc/rpc.ts";
+import { mayAs, session } from "../../rpc/session.ts";
+import type { ButtonAction } from "../../run/button_rules.ts";
+import { nextPartId } from "../../run/part_ids.ts";
+import { createStarter, kClient, newSession } from "../../run/start_job.ts";
+import { awaited, countsOn, notice, partId } from "./run_state.ts";
+
+const starter = createStarter({
+  start: (params, signal) => call("job.start", params, { signal }),
+  newest: async () => (await look("job.latest", { client: kClient })).newest_seq,
+  wait: (duration_ms) => new Promise((resolve) => setTimeout(resolve, duration_ms)),
+}, newSession());
+
+// Asks for the newest number ahead of the press that needs it.
+export function askNewest(): void {
+  starter.forget();
+  look("job.latest", { client: kClient }).then(({ newest_seq }) => starter.know(newest_seq), () => undefined);
+}
+
+const problem = (error: unknown): void => notice.set({ kind: "problem", text: messageOf(error) });
+
+async function during(action: ButtonAction | "home", work: () => Promise<void>): Promise<void> {
+  if (awaited.get() === action) return;
+  awaited.set(action);
+  notice.set(null);
+  try {
+    await work();
+  } catch (error) {
+    problem(error);
+  } finally {
+    if (awaited.get() === action) awaited.set(null);
+  }
+}
+
+export const start = (part_id: string, recipe: string): Promise<void> => during("start", async () => {
+  const started = await starter.start(part_id, recipe);
+  if (started.duplicate) notice.set({ kind: "note", text: t("run.duplicate", { seq: started.seq }) });
+  if (partId.get() === part_id) partId.set(countsOn.get() ? nextPartId(part_id) : "");
+});
+
+// The stage first, whatever has it; then the job, which may be computing without it.
+export const stop = (): Promise<void> => during("stop", async () => {
+  if (!mayAs(session.get().role, "operate")) {
+    notice.set({ kind: "problem", text: t("run.why.no_role") });
+    return;
+  }
+  starter.cancel();
+  const { job } = topics.get();
+  const { stopped } = await call("stage.stop", {});
+  if (stopped !== "job" && job && !job.done) await call("job.abort", { job_id: job.job_id });
+  notice.set({ kind: "note", text: t(stopped === "nothing" ? "run.stopped_nothing" : "run.stopped") });
+});
+
+export const reset = (): Promise<void> => during("reset", async () => {
+  const { homed } = await call("error.reset", {});
+  notice.set({ kind: "note", text: t(homed ? "run.reset_done" : "run.reset_not_homed") });
+});
+
+export const home = (): Promise<void> => during("home", async () => {
+  await call("stage.home", {});
+  notice.set({ kind: "note", text: t("run.homed") });
+});

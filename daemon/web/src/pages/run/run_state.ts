@@ -1,0 +1,23 @@
+// What the person at this tab has chosen and was told: kept while other pages are looked at.
+import { createStore } from "../../lib/store.ts";
+import type { ButtonAction } from "../../run/button_rules.ts";
+
+export const partId = createStore("");
+export const recipeChoice = createStore<string | null>(null);  // null = nobody chose: the prepared one, or the last
+export const recipes = createStore<readonly string[] | null>(null);  // null = not told yet
+
+const kCountsOn = "fvd.run.counts_on";
+export const countsOn = createStore(localStorage.getItem(kCountsOn) === "yes");
+export function setCountsOn(wanted: boolean): void {
+  localStorage.setItem(kCountsOn, wanted ? "yes" : "no");
+  countsOn.set(wanted);
+}
+
+// The command whose answer is awaited.
+export const awaited = createStore<ButtonAction | "home" | null>(null);
+
+export interface Notice {
+  kind: "problem" | "note";
+  text: string;
+}
+export const notice = createStore<Notice | null>(null);

@@ -1,0 +1,59 @@
+// Control that this tab has taken: renewed on whatever page, until it is given back, taken away, or the tab closes.
+import { createStore } from "../lib/store.ts";
+import { type Topics, topics } from "../live/live.ts";
+import { call } from "../rpc/rpc.ts";
+import { session } from "../rpc/session.ts";
+import { ownerName } from "./owner_name.ts";
+
+const kLease_s = 60;
+const kRenew_ms = 20000;
+
+export const isHeldHere = createStore(false);
+// Why the last renewal failed; null = it did not.
+export const renewalFault = createStore<unknown>(null);
+
+let timer: ReturnType<typeof setInterval> | undefined;
+
+function letGo(): void {
+  clearInterval(timer);
+  isHeldHere.set(false);
+}
+
+// The answer is newer than what the stream has told.
+const tell = (control: NonNullable<Topics["control"]>): void => topics.update((all) => ({ ...all, control }));
+
+async function acquire(force: boolean): Promise<void> {
+  tell(await call("control.acquire", { owner: ownerName(session.get().who), lease_s: kLease_s, ...(force ? { force } : {}) }));
+}
+
+export async function takeControl(force: boolean): Promise<void> {
+  await acquire(force);
+  renewalFault.set(null);
+  clearInterval(timer);
+  isHeldHere.set(true);
+  timer = setInterval(() => {
+    acquire(false).then(() => renewalFault.set(null), (error: unknown) => renewalFault.set(error));
+  }, kRenew_ms);
+}
+
+export async function giveControlBack(): Promise<void> {
+  letGo();
+  tell(await call("control.release", {}));
+}
+
+// Somebody took it away, or this tab is somebody else now: then it is not ours to renew.
+export function watchControl(): () => void {
+  const look = (): void => {
+    const { control } = topics.get();
+    if (isHeldHere.get() && control !== null && control.owner !== "" && control.who !== session.get().who) letGo();
+  };
+  const leave = (): void => {
+    if (isHeldHere.get()) void call("control.release", {}, { keepalive: true }).catch(() => undefined);
+  };
+  const ends = [topics.watch(look), session.watch(look)];
+  addEventListener("pagehide", leave);
+  return () => {
+    for (const end of ends) end();
+    removeEventListener("pagehide", leave);
+  };
+}
