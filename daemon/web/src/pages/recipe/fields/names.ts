@@ -1,0 +1,20 @@
+// Names and sentences of the schema's keys for people. The schema's own words are English; a word that has a translation is shown by it.
+import { t, tWord } from "../../../i18n/i18n.ts";
+import { html } from "../../../lib/html.ts";
+import { type Schema, labelOf } from "../../../recipe/schema.ts";
+
+export function nameOf(key: string): string {
+  const said = tWord("recipe.key", key);
+  return said === key ? labelOf(key) : said;
+}
+
+// The schema says "um" where people read µm.
+export const withUnits = (text: string): string => text.replace(/\bum\b/g, "µm").replaceAll("um/s", "µm/s");
+
+export function helpOf(schema: Schema) {
+  return schema.description ? html`<span lang="en">${withUnits(schema.description)}${/[.;:]$/.test(schema.description) ? "" : "."}</span>` : null;
+}
+
+// How one says a value that stands for a choice.
+export const choiceOf = (value: unknown): string =>
+  value === true ? t("recipe.yes") : value === false ? t("recipe.no") : String(value);
