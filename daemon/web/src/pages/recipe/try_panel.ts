@@ -17,7 +17,9 @@ import { ValuePairs } from "./value_pairs.ts";
 
 interface Trial {
   id: string;
+  job_id: string;  // whose values are the old ones
   text: string;  // of the draft that was tried
+  before: Value[];
   values: Value[];
   verdict: string | null;
 }
@@ -34,14 +36,21 @@ export function TryPanel({ editor, newest }: { editor: Editor; newest: Newest })
   const whyNotEvaluate = why || (newest.result === null ? t("recipe.no_job") : "");
   const whyNotScan = why || (state !== null && !state.ready ? t("recipe.not_ready", { state: state.state ?? "" }) : "");
 
+  // What the draft's values are set beside: the result's own where it was measured by this recipe, else what the saved recipe makes of it.
+  const old = async (): Promise<Value[]> => {
+    if (newest.result === null) return [];
+    if (newest.recipe === editor.id) return valuesOf(newest.result);
+    return evaluateBy(newest.job_id, editor.id).then(({ result }) => valuesOf(result), () => valuesOf(newest.result));
+  };
   const run = async (what: (recipe: string) => Promise<{ id: string; result: unknown }>): Promise<void> => {
     const { text } = editor;
     setBusy(t("recipe.trying"));
     setProblem("");
     try {
+      const before = trial && trial.job_id === newest.job_id ? trial.before : await old();
       const { id, result } = await what(await keepForTrial(editor.id, text, who));
       const verdict = (result as { verdict?: unknown } | null)?.verdict;
-      setTrial({ id, text, values: valuesOf(result), verdict: typeof verdict === "string" ? verdict : null });
+      setTrial({ id, job_id: newest.job_id, text, before, values: valuesOf(result), verdict: typeof verdict === "string" ? verdict : null });
     } catch (error) {
       setProblem(messageOf(error));
     }
@@ -62,5 +71,5 @@ export function TryPanel({ editor, newest }: { editor: Editor; newest: Newest })
     ${trial && html`
       <h3><${VerdictMark} verdict=${trial.verdict}/> <a href=${`/jobs/${encodeURIComponent(trial.id)}`}>${trial.id}</a></h3>
       ${trial.text !== editor.text && html`<p class="help">${t("recipe.tried_before")}</p>`}
-      <${ValuePairs} before=${valuesOf(newest.result)} after=${trial.values} heads=${[t("recipe.old"), t("recipe.new_value")]}/>`}`;
+      <${ValuePairs} before=${trial.before} after=${trial.values} heads=${[t("recipe.old"), t("recipe.new_value")]}/>`}`;
 }

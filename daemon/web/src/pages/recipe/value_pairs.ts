@@ -2,11 +2,12 @@
 import { number, t } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { VerdictMark } from "../../parts/verdict_mark.ts";
+import { withUnits } from "./fields/names.ts";
 import { type Value, digitsOf, pairs, unitText } from "../../results/values.ts";
 
 function said(value: Value | null) {
   if (value === null) return html`<span class="help">–</span>`;
-  if (value.value === null) return html`<span class="help" lang="en">${value.reason || t("recipe.no_value")}</span>`;
+  if (value.value === null) return html`<span class="help" lang="en">${withUnits(value.reason) || t("recipe.no_value")}</span>`;
   const digits = digitsOf(value.value, value.U);
   return html`${number(value.value, digits)}${value.U !== null && ` ± ${number(value.U, digits)}`} ${unitText(value.unit)}
     ${value.verdict !== null && html`<br/><${VerdictMark} verdict=${value.verdict}/>`}`;
