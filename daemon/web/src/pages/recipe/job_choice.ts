@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 import { t } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
+import { tryId } from "../../recipe/ids.ts";
 import type { Newest } from "./newest_job.ts";
 
 export function JobChoice({ newest, recipe }: { newest: Newest; recipe: string }) {
@@ -9,7 +10,7 @@ export function JobChoice({ newest, recipe }: { newest: Newest; recipe: string }
   return html`
     ${newest.job_id
       ? html`<p>${t("recipe.of_job")} <a href=${`/jobs/${encodeURIComponent(newest.job_id)}`}>${newest.job_id}</a>
-          ${newest.recipe && newest.recipe !== recipe && html` – <strong>${t("recipe.of_other", { recipe: newest.recipe })}</strong>`}</p>`
+          ${newest.recipe && newest.recipe !== recipe && newest.recipe !== tryId(recipe) && html` – <strong>${t("recipe.of_other", { recipe: newest.recipe })}</strong>`}</p>`
       : html`<p>${t("recipe.no_job")}</p>`}
     ${!newest.isSearched && html`<p class="help">${t("recipe.not_searched")}</p>`}
     ${newest.problem && html`<p role="alert" class="problem">${newest.problem}</p>`}

@@ -19,7 +19,7 @@ export function FocusCurvePicture({ points, scan }: { points: readonly CurvePoin
     ${scan && html`<rect class="range" x=${x(scan.start_um)} y="0" width=${Math.max(1, x(end) - x(scan.start_um))} height=${kHeight}/>`}
     <polyline points=${curve.map(([z, value]) => `${x(z).toFixed(1)},${y(value).toFixed(1)}`).join(" ")}/>
     ${curve.map(([z, value]) => html`<circle cx=${x(z)} cy=${y(value)} r="3"/>`)}
-    <text x="0" y=${kHeight + 18}>${number(from, 1)} µm</text>
-    <text x=${kWidth} y=${kHeight + 18} text-anchor="end">${number(to, 1)} µm</text>
+    <text x="0" y=${kHeight + 18}>${number(Math.round(from))} µm</text>
+    <text x=${kWidth} y=${kHeight + 18} text-anchor="end">${number(Math.round(to))} µm</text>
   </svg>`;
 }
