@@ -1,11 +1,13 @@
-// Names and sentences of the schema's keys for people. The schema's own words are English; a word that has a translation is shown by it.
-import { t, tWord } from "../../../i18n/i18n.ts";
+// Names and sentences of the schema's keys for people. The schema's own words are English; names of keys have a German word,
+// and a later key that has none yet is shown by its own.
+import { language, t } from "../../../i18n/i18n.ts";
+import german from "../../../i18n/recipe_names_de.json" with { type: "json" };
 import { html } from "../../../lib/html.ts";
 import { type Schema, labelOf } from "../../../recipe/schema.ts";
 
 export function nameOf(key: string): string {
-  const said = tWord("recipe.key", key);
-  return said === key ? labelOf(key) : said;
+  const words: Record<string, string> = german;
+  return (language.get() === "de" && Object.hasOwn(words, key) ? words[key] : undefined) ?? labelOf(key);
 }
 
 // The schema says "um" where people read µm.
