@@ -17,8 +17,7 @@ async function newestOf(client: string): Promise<JobRow[]> {
   const rows: JobRow[] = [];
   for (let seq = newest_seq; seq > 0 && seq > newest_seq - kNewest; --seq) {
     try {
-      const { job_id } = await call("job.status", { seq, client });
-      if (job_id) rows.push(await rowOf(job_id));
+      rows.push(await rowOf({ seq, client }));
     } catch (error) {
       // A client may leave numbers out.
       if (!(error instanceof RpcError) || error.code < 1000) throw error;
@@ -34,7 +33,8 @@ export async function jobPage(filter: JobFilter, options: { signal?: AbortSignal
     if (!isToCome(error)) throw error;
   }
   const rows = (await Promise.all(kClients.map((client) => newestOf(client).catch(() => [])))).flat();
-  return { jobs: rows.sort((a, b) => (a.ended_utc < b.ended_utc ? 1 : -1)), next: "", isListed: false };
+  // Ids begin with the time of the start, which a job has that has not ended.
+  return { jobs: rows.sort((a, b) => (a.job_id < b.job_id ? 1 : -1)), next: "", isListed: false };
 }
 
 // Oldest first.

@@ -52,9 +52,9 @@ export const valueList = (
 ): Promise<{ points: ValuePoint[] }> => anyCall("value.list", params, options) as Promise<{ points: ValuePoint[] }>;
 
 // The row of one job, of what the daemon tells without a list.
-export async function rowOf(job_id: string): Promise<JobRow> {
-  const status: Methods["job.status"]["result"] = await call("job.status", { job_id });
+export async function rowOf(which: { seq: number; client: string }): Promise<JobRow> {
+  const status: Methods["job.status"]["result"] = await call("job.status", which);
   const verdict = { ok: "pass", nok: "fail", uncertain: "uncertain", invalid: "invalid", undefined: null }[status.evaluation ?? "undefined"];
-  const { seq = 0, client = "", part_id = "", recipe = "", state = "", ended_utc = "", error = "" } = status;
+  const { job_id = "", seq = 0, client = "", part_id = "", recipe = "", state = "", ended_utc = "", error = "" } = status;
   return { job_id, seq, client, part_id, recipe, state, verdict, ended_utc, error };
 }

@@ -33,7 +33,7 @@ export function RecipeEditor({ id, saved, draft, onSaved, onDiscard }: {
   id: string;
   saved: Saved;
   draft: Draft | null;
-  onSaved: () => void;
+  onSaved: (version: number) => void;
   onDiscard: () => void;
 }) {
   const editor = useEditor(id, draft?.text ?? saved.text);

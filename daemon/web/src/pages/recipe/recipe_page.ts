@@ -18,6 +18,7 @@ export function RecipePage({ id }: { id: string }) {
   const [saved, setSaved] = useState<Saved | null>(null);
   const [draft, setDraft] = useState<Draft | null>(null);
   const [problem, setProblem] = useState("");
+  const [said, setSaid] = useState("");
   // Counts loads, so that an editor begins anew with what was loaded.
   const [load, setLoad] = useState(0);
 
@@ -35,7 +36,8 @@ export function RecipePage({ id }: { id: string }) {
     return () => { ended = true; };
   }, [id, load]);
 
-  const again = (): void => {
+  const again = (text: string): void => {
+    setSaid(text);
     dropDraft(id);
     setSaved(null);
     setLoad(load + 1);
@@ -43,6 +45,7 @@ export function RecipePage({ id }: { id: string }) {
   return html`<h1>${t("recipe.title", { id })}</h1>
     <p><a href="/recipes">${t("recipe.back")}</a></p>
     ${problem && html`<p role="alert" class="problem">${problem}</p>`}
-    ${saved && html`<${RecipeEditor} key=${load} id=${id} saved=${saved} draft=${draft} onSaved=${again} onDiscard=${again}/>`}
+    <p aria-live="polite">${said}</p>
+    ${saved && html`<${RecipeEditor} key=${load} id=${id} saved=${saved} draft=${draft} onSaved=${(version: number) => again(t("recipe.saved_as", { version }))} onDiscard=${() => again(t("recipe.discarded"))}/>`}
     ${!saved && !problem && html`<p>${t("recipe.loading")}</p>`}`;
 }

@@ -15,7 +15,7 @@ export function SaveBar({ editor, base, isChanged, onSaved, onDiscard }: {
   editor: Editor;
   base: number;
   isChanged: boolean;
-  onSaved: () => void;
+  onSaved: (version: number) => void;
   onDiscard: () => void;
 }) {
   const { who, role } = useStore(session);
@@ -37,9 +37,9 @@ export function SaveBar({ editor, base, isChanged, onSaved, onDiscard }: {
     setBusy(true);
     setProblem("");
     try {
-      await call("recipe.save", { id: editor.id, text: editor.text, base_version: from, author: name.trim(), comment: comment.trim() });
+      const { version } = await call("recipe.save", { id: editor.id, text: editor.text, base_version: from, author: name.trim(), comment: comment.trim() });
       dropDraft(editor.id);
-      onSaved();
+      onSaved(version);
     } catch (error) {
       if (error instanceof RpcError && error.code === kConflict) {
         const { version } = await call("recipe.get", { id: editor.id }).catch(() => ({ version: -1 }));

@@ -15,7 +15,7 @@ interface Version {
   comment: string;
 }
 
-export function VersionList({ id, version, isChanged, onRestored }: { id: string; version: number; isChanged: boolean; onRestored: () => void }) {
+export function VersionList({ id, version, isChanged, onRestored }: { id: string; version: number; isChanged: boolean; onRestored: (version: number) => void }) {
   const { who, role } = useStore(session);
   const [versions, setVersions] = useState<Version[] | null>(null);
   const [asked, setAsked] = useState<number | null>(null);
@@ -28,9 +28,9 @@ export function VersionList({ id, version, isChanged, onRestored }: { id: string
   }, [id, version]);
   const restore = async (wanted: number): Promise<void> => {
     try {
-      await call("recipe.restore", { id, version: wanted, base_version: version, author: who });
+      const { version: made } = await call("recipe.restore", { id, version: wanted, base_version: version, author: who });
       dropDraft(id);
-      onRestored();
+      onRestored(made);
     } catch (error) {
       setProblem(messageOf(error));
     }
