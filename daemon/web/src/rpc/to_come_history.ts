@@ -43,8 +43,14 @@ export const isToCome = (error: unknown): boolean => error instanceof RpcError &
 type Loose = (method: string, params: object, options?: { signal?: AbortSignal }) => Promise<unknown>;
 const anyCall = call as unknown as Loose;
 
-export const jobList = (filter: JobFilter, options: { signal?: AbortSignal } = {}): Promise<{ jobs: JobRow[]; next: string }> =>
-  anyCall("job.list", filter, options) as Promise<{ jobs: JobRow[]; next: string }>;
+// A status says "ok" where a result says "pass".
+const kVerdicts: Record<string, string | null> = { ok: "pass", nok: "fail", undefined: null, "": null };
+const verdictOf = (word: string | null | undefined): string | null => (word === null || word === undefined ? null : Object.hasOwn(kVerdicts, word) ? kVerdicts[word] ?? null : word);
+
+export async function jobList(filter: JobFilter, options: { signal?: AbortSignal } = {}): Promise<{ jobs: JobRow[]; next: string }> {
+  const { jobs, next } = await anyCall("job.list", filter, options) as { jobs: JobRow[]; next: string };
+  return { jobs: jobs.map((row) => ({ ...row, verdict: verdictOf(row.verdict) })), next };
+}
 
 export const valueList = (
   params: { measurement: string; value: string; recipe?: string; most: number },
@@ -54,7 +60,6 @@ export const valueList = (
 // The row of one job, of what the daemon tells without a list.
 export async function rowOf(which: { seq: number; client: string }): Promise<JobRow> {
   const status: Methods["job.status"]["result"] = await call("job.status", which);
-  const verdict = { ok: "pass", nok: "fail", uncertain: "uncertain", invalid: "invalid", undefined: null }[status.evaluation ?? "undefined"];
   const { job_id = "", seq = 0, client = "", part_id = "", recipe = "", state = "", ended_utc = "", error = "" } = status;
-  return { job_id, seq, client, part_id, recipe, state, verdict, ended_utc, error };
+  return { job_id, seq, client, part_id, recipe, state, verdict: verdictOf(status.evaluation), ended_utc, error };
 }

@@ -6,7 +6,10 @@ import { useStore } from "../../lib/store.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { RpcError, call } from "../../rpc/rpc.ts";
 import { mayAs, session } from "../../rpc/session.ts";
+import { differences } from "../../recipe/difference.ts";
 import { dropDraft, keepDraft } from "../../recipe/draft.ts";
+import type { Json } from "../../recipe/schema.ts";
+import { DifferenceList } from "./difference_list.ts";
 import type { Editor } from "./editor.ts";
 
 const kConflict = 1017;
@@ -23,7 +26,7 @@ export function SaveBar({ editor, base, isChanged, onSaved, onDiscard }: {
   const [comment, setComment] = useState("");
   const [base_version, setBase] = useState(base);
   const [problem, setProblem] = useState("");
-  const [conflict, setConflict] = useState<number | null>(null);  // the version in force meanwhile
+  const [theirs, setTheirs] = useState<{ version: number; text: string } | null>(null);  // what is in force meanwhile
   const [busy, setBusy] = useState(false);
   const name = author ?? who;
 
@@ -42,8 +45,7 @@ export function SaveBar({ editor, base, isChanged, onSaved, onDiscard }: {
       onSaved(version);
     } catch (error) {
       if (error instanceof RpcError && error.code === kConflict) {
-        const { version } = await call("recipe.get", { id: editor.id }).catch(() => ({ version: -1 }));
-        setConflict(version);
+        setTheirs(await call("recipe.get", { id: editor.id }).then(({ version, text }) => ({ version, text }), () => ({ version: -1, text: "" })));
       }
       setProblem(messageOf(error));
     }
@@ -56,17 +58,20 @@ export function SaveBar({ editor, base, isChanged, onSaved, onDiscard }: {
     <button type="button" disabled=${!isChanged} onClick=${onDiscard}>${t("recipe.discard")}</button>
     <span id="save-why" class="help">${why || t("recipe.from_version", { version: base_version })}</span>
     ${problem && html`<p role="alert" class="problem">${problem}</p>`}
-    ${conflict !== null && html`<div class="conflict">
-      <p>${conflict < 0 ? t("recipe.conflict_unknown") : t("recipe.conflict", { base: base_version, version: conflict })}</p>
+    ${theirs && html`<div class="conflict">
+      <p>${theirs.version < 0 ? t("recipe.conflict_unknown") : t("recipe.conflict", { base: base_version, version: theirs.version })}</p>
+      ${theirs.version >= 0 && editor.document !== null && html`
+        <p>${t("recipe.conflict_difference")}</p>
+        <${DifferenceList} changes=${differences(JSON.parse(theirs.text) as Json, editor.document)}/>`}
       <p class="buttons">
-        <button type="button" disabled=${conflict < 0 || why !== ""} onClick=${() => {
-          keepDraft(editor.id, { text: editor.text, base_version: conflict });
-          setBase(conflict);
-          setConflict(null);
-          void save(conflict);
+        <button type="button" disabled=${theirs.version < 0 || why !== ""} onClick=${() => {
+          keepDraft(editor.id, { text: editor.text, base_version: theirs.version });
+          setBase(theirs.version);
+          setTheirs(null);
+          void save(theirs.version);
         }}>${t("recipe.conflict_mine")}</button>
         <button type="button" onClick=${onDiscard}>${t("recipe.conflict_theirs")}</button>
-        <button type="button" onClick=${() => setConflict(null)}>${t("recipe.conflict_look")}</button>
+        <button type="button" onClick=${() => setTheirs(null)}>${t("recipe.conflict_look")}</button>
       </p>
     </div>`}
   </div>`;
