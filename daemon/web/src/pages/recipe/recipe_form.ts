@@ -19,7 +19,7 @@ export function RecipeForm({ editor }: { editor: Editor }) {
   const parts = recipeSchema.properties ?? {};
   const grouped = new Set(kGroups.flatMap(([, keys]) => keys));
   const rest = Object.keys(parts).filter((key) => !grouped.has(key));
-  const unknown = Object.keys(editor.document).filter((key) => !(key in parts));
+  const unknown = Object.keys(editor.document).filter((key) => !Object.hasOwn(parts, key));
   return html`<form class="recipe-form" onSubmit=${(event: Event) => event.preventDefault()}>
     ${[...kGroups, ["other", rest] as const].map(([group, keys]) => html`<section class="panel" key=${group}>
       <h2>${t(`recipe.group_${group}` as TextKey)}</h2>
