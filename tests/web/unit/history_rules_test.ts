@@ -79,6 +79,11 @@ test("values of a result in the recipe's order, with what is missing", () => {
   assert.equal(valuesOf({ measurements: { height_min: { value: 1, unit: "um" } } })[0]?.measurement, "map");
 });
 
+test("a measurement that failed as a whole says why", () => {
+  const [value] = valuesOf({ evaluation: { measurements: { step: { main_value: "height_um", values: {}, reason: "too few points", verdict: "invalid" } } } });
+  assert.deepEqual([value?.measurement, value?.name, value?.value, value?.reason, value?.verdict], ["step", "height_um", null, "too few points", "invalid"]);
+});
+
 test("values side by side, whichever of two results lacks one", () => {
   const value = (measurement: string, name: string) => ({ measurement, name, value: 1, unit: "", U: null, lower: null, upper: null, verdict: null, reason: "" });
   const found = pairs([value("a", "x"), value("b", "x")], [value("b", "x"), value("c", "x")]);

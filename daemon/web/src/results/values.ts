@@ -26,7 +26,9 @@ export function valuesOf(result: unknown): Value[] {
     for (const measurement of order) {
       const about = Object.hasOwn(all, measurement) ? all[measurement] : undefined;
       if (!isObject(about) || !isObject(about["values"])) continue;
-      for (const [name, each] of Object.entries(about["values"])) {
+      // A measurement that failed as a whole has no values; what it should have given is missing for its reason.
+      const own = Object.entries(about["values"]);
+      for (const [name, each] of own.length > 0 ? own : [[textOr(about["main_value"]) || measurement, {}] as const]) {
         if (!isObject(each)) continue;
         const limits = isObject(each["limits"]) ? each["limits"] : {};
         found.push({
@@ -37,8 +39,8 @@ export function valuesOf(result: unknown): Value[] {
           U: numberOr(each["U"]),
           lower: numberOr(limits["lower"]),
           upper: numberOr(limits["upper"]),
-          verdict: typeof each["verdict"] === "string" ? each["verdict"] : null,
-          reason: textOr(each["reason"]),
+          verdict: typeof each["verdict"] === "string" ? each["verdict"] : own.length === 0 && typeof about["verdict"] === "string" ? about["verdict"] : null,
+          reason: textOr(each["reason"]) || (own.length === 0 ? textOr(about["reason"]) : ""),
         });
       }
     }
