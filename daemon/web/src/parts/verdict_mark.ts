@@ -11,13 +11,16 @@ const kShapes = {
   none: () => html`<path d="M5 12H19" fill="none" stroke="currentColor" stroke-width="3"/>`,
 } as const;
 
-export function VerdictMark({ verdict, size = 20 }: { verdict: Verdict | null; size?: number }) {
-  const name = verdict ?? "none";
+const nameOf = (verdict: string | null | undefined): keyof typeof kShapes =>
+  verdict != null && Object.hasOwn(kShapes, verdict) ? (verdict as Verdict) : "none";
+
+export function VerdictMark({ verdict, size = 20 }: { verdict: string | null; size?: number }) {
+  const name = nameOf(verdict);
   return html`<svg class=${`verdict-mark verdict-${name}`} width=${size} height=${size} viewBox="0 0 24 24" fill="currentColor" aria-hidden="true">${kShapes[name]()}</svg>`;
 }
 
-export const verdictWord = (verdict: Verdict | null): string => tWord("run.verdict", verdict ?? "none");
+export const verdictWord = (verdict: string | null | undefined): string => tWord("verdict", nameOf(verdict));
 
-export function VerdictLabel({ verdict, size = 20 }: { verdict: Verdict | null; size?: number }) {
-  return html`<span class=${`verdict verdict-${verdict ?? "none"}`}><${VerdictMark} verdict=${verdict} size=${size}/> ${verdictWord(verdict)}</span>`;
+export function VerdictLabel({ verdict, size = 20 }: { verdict: string | null | undefined; size?: number }) {
+  return html`<span class=${`verdict verdict-${nameOf(verdict)}`}><${VerdictMark} verdict=${verdict ?? null} size=${size}/> ${verdictWord(verdict)}</span>`;
 }

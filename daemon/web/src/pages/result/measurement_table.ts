@@ -5,7 +5,7 @@ import { html } from "../../lib/html.ts";
 import { type EvaluatedValue, type Measurement, type ResultJson, measurementsOf } from "../../result/result_json.ts";
 import { digitsFor, nameOf, unitText } from "../../result/value_text.ts";
 import { MeasurementDetails } from "./measurement_details.ts";
-import { VerdictSign } from "./verdict_sign.ts";
+import { VerdictLabel } from "../../parts/verdict_mark.ts";
 
 export function valueText({ value, U }: EvaluatedValue): string {
   return value === undefined ? "–" : number(value, digitsFor(value, U));
@@ -32,7 +32,7 @@ function ValueRow({ name, value }: { name: string; value: EvaluatedValue }) {
     <td class="number"><data value=${String(value.value ?? "")}>${valueText(value)}</data></td>
     <td class="number">${uncertaintyText(value)}</td>
     <td class="number">${limitsText(value)}</td>
-    <td>${value.verdict ? html`<${VerdictSign} verdict=${value.verdict}/>` : ""}${value.reason && html`<span class="help">${value.reason}</span>`}
+    <td>${value.verdict ? html`<${VerdictLabel} verdict=${value.verdict}/>` : ""}${value.reason && html`<span class="help">${value.reason}</span>`}
       ${(value.warnings ?? []).map(({ text }) => html`<span class="help">${text}</span>`)}</td>
   </tr>`;
 }
@@ -54,7 +54,7 @@ function OneMeasurement({ name, measurement, result, isShown, all, onShow }: One
   return html`<tbody>
     <tr class="measurement-head"><th colspan="4" scope="rowgroup">${name} <span class="help">${tWord("result.kind_of", measurement.kind)}</span>
         ${measurement.reason && html`<span class="problem">${measurement.reason}</span>`}</th>
-      <td>${measurement.verdict && html`<${VerdictSign} verdict=${measurement.verdict}/>`}</td></tr>
+      <td>${measurement.verdict && html`<${VerdictLabel} verdict=${measurement.verdict}/>`}</td></tr>
     ${shown.map(([key, value]) => html`<${ValueRow} name=${key} value=${value}/>`)}
     ${!all && html`<tr><td colspan="5" class="measurement-buttons">
       <button type="button" aria-expanded=${isOpen} onClick=${() => setOpen(!isOpen)}>${t(isOpen ? "result.less" : "result.more", { name })}</button>

@@ -2,13 +2,13 @@
 import { t } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import type { ResultJson } from "../../result/result_json.ts";
-import { VerdictSign } from "./verdict_sign.ts";
+import { VerdictLabel } from "../../parts/verdict_mark.ts";
 
 export function ResultHead({ result, ended_utc }: { result: ResultJson; ended_utc: string }) {
   const { job, source, provenance, warnings } = result;
   return html`<header class="result-head">
     <h1><bdi>${job.part_id || t("result.no_part")}</bdi></h1>
-    <${VerdictSign} verdict=${result.verdict} large/>
+    <${VerdictLabel} verdict=${result.verdict} size=${32}/>
     ${provenance?.simulated && html`<p class="result-simulated">${t("result.simulated")}</p>`}
     <p>${t("result.head", { job: job.job_id, recipe: job.recipe, time: ended_utc || provenance?.created || "" })}</p>
     ${source && html`<p>${t("result.evaluated", { time: result.evaluated ?? "", recipe: source.recipe?.id ?? "" })}

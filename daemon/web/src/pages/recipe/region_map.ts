@@ -1,0 +1,69 @@
+// The recipe's regions and profiles on the newest map: seen, dragged, moved by keys, added.
+import { useEffect, useState } from "preact/hooks";
+import { number, t, type TextKey } from "../../i18n/i18n.ts";
+import { type HeightReply, fetchHeights } from "../../lib/height_reply.ts";
+import { html } from "../../lib/html.ts";
+import { messageOf } from "../../parts/message_of.ts";
+import { freeName, getAt } from "../../recipe/document.ts";
+import { type Drawn, type Edit, drawingsOf, dragged, moved, newShape } from "../../recipe/drawing.ts";
+import type { Editor } from "./editor.ts";
+import { JobChoice } from "./job_choice.ts";
+import { MapCanvas } from "./map_canvas.ts";
+import { type Newest, pitchOf } from "./newest_job.ts";
+
+const kArrows: Record<string, readonly [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+export function RegionMap({ editor, newest }: { editor: Editor; newest: Newest }) {
+  const [heights, setHeights] = useState<HeightReply | null>(null);
+  const [problem, setProblem] = useState("");
+  const [selected, setSelected] = useState("");
+  useEffect(() => {
+    setHeights(null);
+    setProblem("");
+    if (!newest.job_id || !newest.result) return;
+    const ending = new AbortController();
+    fetchHeights(newest.job_id, { max: 512, kind: "height" }, ending.signal).then(setHeights, (error) => {
+      if (!ending.signal.aborted) setProblem(messageOf(error));
+    });
+    return () => ending.abort();
+  }, [newest.job_id, newest.result !== null]);
+
+  const shapes = editor.document === null ? [] : drawingsOf(editor.document);
+  const pitch = pitchOf(newest.result) ?? { x: 1, y: 1 };
+  const size = heights && { x: heights.map_width * pitch.x, y: heights.map_height * pitch.y };
+  const apply = (edits: readonly Edit[]): void => edits.forEach(({ path, value }) => editor.set(path, value));
+  const keyOf = (shape: Drawn): string => shape.path.join("/");
+
+  const add = (kind: Drawn["kind"]): void => {
+    const section = kind === "line" ? "measurements" : "regions";
+    const name = freeName(getAt(editor.document ?? undefined, ["evaluation", section]), kind === "line" ? "profile" : "region");
+    editor.set(["evaluation", section, name], newShape(kind, size?.x ?? 100, size?.y ?? 100));
+    const path = ["evaluation", section, name];
+    setSelected((kind === "line" ? path : [...path, `${kind}_um`]).join("/"));
+  };
+  const key = (event: KeyboardEvent, shape: Drawn): void => {
+    const way = kArrows[event.key];
+    if (!way) return;
+    event.preventDefault();
+    const by = event.shiftKey ? 10 : 1;  // pixels of the map
+    const [dx, dy] = [way[0] * pitch.x * by, way[1] * pitch.y * by];
+    const last = shape.handles.length - 1;
+    const end = shape.handles[last] ?? { x: 0, y: 0 };
+    apply(event.altKey ? dragged(shape, last, { x: end.x + dx, y: end.y + dy }) : moved(shape, dx, dy));
+  };
+  return html`
+    <${JobChoice} newest=${newest} recipe=${editor.id}/>
+    ${problem && html`<p role="alert" class="problem">${problem}</p>`}
+    ${heights && size && html`<${MapCanvas} heights=${heights} size=${size} shapes=${shapes} selected=${selected}
+      label=${t("recipe.map_label", { width: number(size.x, 0), height: number(size.y, 0), count: shapes.length })}
+      keyOf=${keyOf} onSelect=${setSelected} onEdit=${apply}/>`}
+    <p class="buttons">${(["rectangle", "circle", "polygon", "line"] as const).map((kind) => html`
+      <button type="button" disabled=${editor.document === null} onClick=${() => add(kind)}>${t(`recipe.add_${kind}` as TextKey)}</button>`)}</p>
+    <p class="help" id="shape-help">${t("recipe.shape_keys")}</p>
+    <ul class="shapes">${shapes.map((shape) => html`<li key=${keyOf(shape)}>
+      <button type="button" aria-pressed=${selected === keyOf(shape) ? "true" : "false"} aria-describedby="shape-help"
+        onClick=${() => setSelected(keyOf(shape))} onKeyDown=${(event: KeyboardEvent) => key(event, shape)}>
+        ${shape.name} (${t(`recipe.shape_${shape.kind}` as TextKey)})</button>
+      <span class="help">${shape.handles.slice(0, 4).map((point) => `${number(point.x)}; ${number(point.y)}`).join(" → ")} µm</span>
+    </li>`)}</ul>`;
+}
