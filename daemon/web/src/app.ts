@@ -1,5 +1,6 @@
 // The page's frame, and which page is in it.
-import { t, useLanguage } from "./i18n/i18n.ts";
+import { useEffect } from "preact/hooks";
+import { type TextKey, t, useLanguage } from "./i18n/i18n.ts";
 import { html } from "./lib/html.ts";
 import { match, place } from "./lib/router.ts";
 import { useStore } from "./lib/store.ts";
@@ -10,6 +11,14 @@ import { ResultPage } from "./pages/result/result_page.ts";
 import { RunPage } from "./pages/run/run_page.ts";
 import { SetupPage } from "./pages/setup/setup_page.ts";
 import { TopBar } from "./parts/top_bar.ts";
+
+// The browser's name for the page: tabs, history and screen readers tell pages apart by it.
+function titleOf(path: string): string {
+  const first = `/${path.split("/")[1] ?? ""}`;
+  const titles: Record<string, TextKey> = { "/": "nav.run", "/jobs": "nav.history", "/recipes": "nav.recipes", "/setup": "nav.setup" };
+  const key = titles[first];
+  return key ? `${t(key)} – ${t("app.title")}` : t("app.title");
+}
 
 function Content() {
   const { path } = useStore(place);
@@ -25,7 +34,11 @@ function Content() {
 }
 
 export function App() {
-  useLanguage();
+  const language = useLanguage();
+  const { path } = useStore(place);
+  useEffect(() => {
+    document.title = titleOf(path);
+  }, [path, language]);
   return html`<${TopBar}/>
     <main id="main" tabindex="-1"><${Content}/></main>`;
 }

@@ -5,7 +5,8 @@ import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
 import { topics } from "../../../live/live.ts";
 import { call } from "../../../rpc/rpc.ts";
-import { limitsOf, shareOf, stagePlace } from "./stage_place.ts";
+import { limitsOf, shareOf } from "./stage_limits.ts";
+import { stagePlace } from "./stage_place.ts";
 
 interface Objectives {
   objectives: unknown;
