@@ -1,6 +1,6 @@
 // Units as the daemon writes them, and as people read them.
 const kShown: Record<string, string> = {
-  um: "µm", us: "µs", "um/s": "µm/s", "um2": "µm²", "degree Celsius": "°C", deg: "°", percent: "%", "1": "",
+  um: "µm", us: "µs", "um/s": "µm/s", "um2": "µm²", "px/um": "px/µm", "um/mm": "µm/mm", "degree Celsius": "°C", deg: "°", percent: "%", "1": "",
 };
 
 export const shownUnit = (unit: string): string => kShown[unit] ?? unit;
