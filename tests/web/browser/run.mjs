@@ -1,6 +1,7 @@
 // The operator page in a browser, against the daemon and a simulated station. The last line is one JSON object.
 //
-// node tests/web/browser/run.mjs [--only STATE] [--no-walk] [--no-jog] [--no-keys]
+// node tests/web/browser/run.mjs [--only STATE] [--quick] [--no-walk] [--no-jog] [--no-keys]
+// --quick walks in German and light only.
 // FVD_BUILD: a build with fvd, fvdctl and fvd-sim (default build); FVD_CHROMIUM: the browser (default /usr/bin/chromium).
 import { chromium, texts } from "./paths.mjs";
 import { firstView } from "./first_view.mjs";
@@ -27,19 +28,22 @@ const figures = { ...newFigures(), untranslated: lacking(texts.en, texts.de) + l
 const station = await startStation();
 let browser;
 try {
-  browser = await chromium.launch({ executablePath: process.env.FVD_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+  browser = await chromium.launch({ executablePath: process.env.FVD_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"], timeout: 120000 });
   const jobs = await scan(station.call, { recipe, parts: 2 });
   await station.call("verify.noise", { jobs });
   Object.assign(figures, await firstView(browser, station, figures));
-  if (!has("--no-walk")) Object.assign(figures, await walk(browser, station, figures, { jobs, recipe }, only));
+  if (!has("--no-walk")) Object.assign(figures, await walk(browser, station, figures, { jobs, recipe }, { only, isQuick: has("--quick") }));
   if (!has("--no-jog")) figures.jog_halt_ms = await jogEnds(browser, station, figures);
   if (!has("--no-keys")) figures.keyboard_only_job = await keyboardJob(browser, station, figures, recipe);
+} catch (error) {
+  figures.ended_early = String(error.message).split("\n")[0];
 } finally {
   await browser?.close();
   await station.stop();
 }
 const missed = Object.entries(kBounds).filter(([name, bound]) => name in figures && figures[name] > bound).map(([name]) => name);
 if (figures.keyboard_only_job === false) missed.push("keyboard_only_job");
+if (figures.ended_early) missed.push("ended_early");
 if (figures.jog_halt_ms === null) missed.push("jog_halt_ms");
 console.log(JSON.stringify({ ...figures, missed }));
 process.exitCode = missed.length > 0 ? 1 : 0;

@@ -5,6 +5,8 @@ export function newFigures() {
   return { console_errors: 0, csp_violations: 0, third_party_requests: 0, moves_without_press: 0 };
 }
 
+const kPatience_ms = 120000;  // on a busy machine; nothing is judged by it
+
 const kMoves = new Set(["job.start", "stage.move", "stage.home", "stage.jog", "stage.autofocus"]);
 
 // options: language, theme, token, viewport; mayMove: a test that moves the stage on purpose; mayFail: one that cuts the line
@@ -21,6 +23,7 @@ export async function openTab(browser, station, figures, { language = "en", them
     for (const [key, value] of Object.entries(settings)) localStorage.setItem(key, value);
     addEventListener("securitypolicyviolation", (event) => void window.tellBreach(`${event.violatedDirective} ${event.blockedURI}`));
   }, [token, { "fvd.language": language, "fvd.theme": theme }]);
+  context.setDefaultTimeout(kPatience_ms);
   const page = await context.newPage();
   const failed = (text) => {
     if (mayFail && /Failed to load resource|ERR_/.test(text)) return;
@@ -78,6 +81,6 @@ export async function settled(page) {
 export async function visit(page, station, path, { isOnline = true } = {}) {
   await page.goto(new URL(path, station.url).href, { waitUntil: "load" });
   await page.waitForSelector("main > *");
-  if (isOnline) await until(`the events of ${path}`, () => page.evaluate(() => document.querySelector("header .link") === null));
+  if (isOnline) await until(`the events of ${path}`, () => page.evaluate(() => document.querySelector("header .link") === null), kPatience_ms);
   await settled(page);
 }

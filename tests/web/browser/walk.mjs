@@ -23,16 +23,17 @@ async function examine(tab, name, sums) {
   sums.axe_moderate += counts.moderate;
   sums.axe_minor += counts.minor;
   sums.small_targets += await smallTargets(tab.page, name);
+  await tab.page.evaluate(() => scrollTo(0, 0));
   await tab.page.screenshot({ path: join(shots, `${name}.png`), fullPage: true });
 }
 
-// only: part of a state's name; empty = all
-export async function walk(browser, station, figures, about, only = "") {
+// only: part of a state's name; empty = all. isQuick: one language and one theme.
+export async function walk(browser, station, figures, about, { only = "", isQuick = false } = {}) {
   mkdirSync(shots, { recursive: true });
   const sums = { states_checked: 0, states_failed: 0, axe_serious: 0, axe_moderate: 0, axe_minor: 0, small_targets: 0, zoom200_overflow: 0 };
   const states = statesOf(about).filter(({ name }) => name.includes(only));
-  for (const language of ["en", "de"]) {
-    for (const theme of ["light", "dark"]) {
+  for (const language of isQuick ? ["de"] : ["en", "de"]) {
+    for (const theme of isQuick ? ["light"] : ["light", "dark"]) {
       for (const state of states) {
         const name = `${state.name}-${theme}-${language}`;
         const token = state.token === undefined ? station.token : state.token;
@@ -48,6 +49,7 @@ export async function walk(browser, station, figures, about, only = "") {
             await tab.page.screenshot({ path: join(shots, `${name}-640.png`), fullPage: true });
           }
           ++sums.states_checked;
+          console.error(`looked at ${name}`);
         } catch (error) {
           ++sums.states_failed;
           console.error(`state ${name}: ${error.message.split("\n").slice(0, 6).join("\n  ")}`);
