@@ -2,15 +2,18 @@
 import { useEffect } from "preact/hooks";
 import { type TextKey, t, useLanguage } from "./i18n/i18n.ts";
 import { html } from "./lib/html.ts";
+import { later } from "./lib/later.ts";
 import { match, place } from "./lib/router.ts";
 import { useStore } from "./lib/store.ts";
-import { HistoryPage } from "./pages/history/history_page.ts";
-import { RecipeListPage } from "./pages/recipe/recipe_list_page.ts";
-import { RecipePage } from "./pages/recipe/recipe_page.ts";
-import { ResultPage } from "./pages/result/result_page.ts";
 import { RunPage } from "./pages/run/run_page.ts";
-import { SetupPage } from "./pages/setup/setup_page.ts";
 import { TopBar } from "./parts/top_bar.ts";
+
+// The run page is what an operator opens; the others are fetched when somebody goes there.
+const HistoryPage = later(() => import("./pages/history/history_page.ts").then((all) => all.HistoryPage));
+const RecipeListPage = later(() => import("./pages/recipe/recipe_list_page.ts").then((all) => all.RecipeListPage));
+const RecipePage = later(() => import("./pages/recipe/recipe_page.ts").then((all) => all.RecipePage));
+const ResultPage = later(() => import("./pages/result/result_page.ts").then((all) => all.ResultPage));
+const SetupPage = later(() => import("./pages/setup/setup_page.ts").then((all) => all.SetupPage));
 
 // The browser's name for the page: tabs, history and screen readers tell pages apart by it.
 function titleOf(path: string): string {
