@@ -24,7 +24,7 @@ try {
 }
 
 const options = { absWorkingDir: here, bundle: true, minify: true, target: "es2022", legalComments: "none", charset: "utf8", outdir: "dist/assets", write: false };
-// A script for the first view, one for each page that is opened later, one for each language.
+// Scripts: what the first view needs, the pages that are opened later, each language.
 const made = await build({
   ...options,
   entryPoints: { main: "src/main.ts" },
@@ -67,5 +67,10 @@ keep("icon.svg", "image/svg+xml", readFileSync(join(here, "icon.svg")));
 keep("index.html", "text/html; charset=utf-8", Buffer.from(page));
 writeFileSync(join(out, "files.txt"), files.map(({ path, type }) => `${path}\t${type}\n`).join(""));
 const kib = (counted) => (counted.reduce((sum, { packed }) => sum + packed, 0) / 1024).toFixed(1);
-const first = files.filter(({ path }) => !/assets\/(?!main-|en-|chunk-)/.test(path));
-console.log(`page: ${files.length} files, ${kib(files)} KiB compressed, ${kib(first)} KiB of them at the first view`);
+// What a browser fetches before somebody goes on: whatever the first script names, and one language.
+const outputs = made.metafile.outputs;
+const needed = (path) => [path, ...outputs[path].imports.filter(({ kind }) => kind === "import-statement").flatMap((each) => needed(each.path))];
+const main = Object.keys(outputs).find((path) => basename(path).startsWith("main-"));
+const firstNames = new Set(needed(main).map((path) => basename(path)));
+const first = files.filter(({ path }) => firstNames.has(basename(path)) || !path.endsWith(".js") || basename(path).startsWith("en-"));
+console.log(`page: ${files.length} files, ${kib(files)} KiB compressed, ${kib(first)} KiB in ${first.length} files at the first view`);

@@ -9,11 +9,12 @@ import { RunPage } from "./pages/run/run_page.ts";
 import { TopBar } from "./parts/top_bar.ts";
 
 // The run page is what an operator opens; the others are fetched when somebody goes there.
-const HistoryPage = later(() => import("./pages/history/history_page.ts").then((all) => all.HistoryPage));
-const RecipeListPage = later(() => import("./pages/recipe/recipe_list_page.ts").then((all) => all.RecipeListPage));
-const RecipePage = later(() => import("./pages/recipe/recipe_page.ts").then((all) => all.RecipePage));
-const ResultPage = later(() => import("./pages/result/result_page.ts").then((all) => all.ResultPage));
-const SetupPage = later(() => import("./pages/setup/setup_page.ts").then((all) => all.SetupPage));
+const more = () => import("./pages/more_pages.ts");
+const HistoryPage = later(() => more().then((all) => all.HistoryPage));
+const RecipeListPage = later(() => more().then((all) => all.RecipeListPage));
+const RecipePage = later(() => more().then((all) => all.RecipePage));
+const ResultPage = later(() => more().then((all) => all.ResultPage));
+const SetupPage = later(() => more().then((all) => all.SetupPage));
 
 // The browser's name for the page: tabs, history and screen readers tell pages apart by it.
 function titleOf(path: string): string {
