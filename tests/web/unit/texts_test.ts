@@ -35,8 +35,8 @@ test("every text is used", () => {
   // Keys that are put together begin with a prefix that stands in the sources: tWord("role", …), or `unit.${…}`.
   const prefixes = [
     ...[...source.matchAll(/tWord\(\s*"([\w.]+)"/g)].map(([, prefix]) => `${prefix}.`),
-    ...[...source.matchAll(/[`"]([\w.]+\.)\$\{/g)].map(([, prefix]) => prefix ?? ""),
-    ...[...source.matchAll(/"([\w.]+\.)"\s*\+/g)].map(([, prefix]) => prefix ?? ""),
+    ...[...source.matchAll(/`(\w+\.[\w.]*)\$\{/g)].map(([, prefix]) => prefix ?? ""),
+    ...[...source.matchAll(/"(\w+\.[\w.]*)"\s*\+/g)].map(([, prefix]) => prefix ?? ""),
   ].filter((prefix) => prefix.length > 1);
   const unused = Object.keys(english).filter((key) => !source.includes(`"${key}"`) && !prefixes.some((prefix) => key.startsWith(prefix)));
   assert.deepEqual(unused, []);
