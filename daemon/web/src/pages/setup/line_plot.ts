@@ -29,7 +29,7 @@ export function LinePlot({ points, mark, x, y }: Props) {
     </svg>
     <figcaption><span>${told(left)}</span><span>${x}</span><span>${told(right)}</span></figcaption>
     <details><summary>${t("setup.plot.table")}</summary>
-      <div class="scroll tall" tabindex="0" role="region" aria-label=${t("setup.plot.table")}><table>
+      <div class="scroll tall" tabindex="0" role="group" aria-label=${t("setup.plot.table")}><table>
         <tr><th scope="col" class="number">${x}</th><th scope="col" class="number">${y}</th></tr>
         ${points.map(([px, py]) => html`<tr><td class="number">${told(px)}</td><td class="number">${told(py)}</td></tr>`)}
       </table></div>

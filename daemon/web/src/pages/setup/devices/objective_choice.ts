@@ -45,7 +45,7 @@ export function ObjectiveChoice() {
     ${known && list.length === 0 && html`<p class="help">${t("setup.objective.not_configured")}</p>`}
     ${list.length > 0 && html`<label class="field">${t("setup.objective.person")}
         <input value=${person} maxlength="64" onInput=${(event: Event) => setPerson((event.target as HTMLInputElement).value)}/></label>
-      <div class="scroll" tabindex="0" role="region" aria-labelledby="objective-title"><table>
+      <div class="scroll" tabindex="0" role="group" aria-labelledby="objective-title"><table>
         <tr><th scope="col">${t("setup.objective.name")}</th><th scope="col" class="number">NA</th><th scope="col" class="number">×</th><th scope="col" class="number">${t("setup.objective.limits")}</th><th scope="col">${t("setup.objective.confirm")}</th></tr>
         ${list.map((each) => html`<tr key=${each.name}>
           <td>${each.name}</td><td class="number">${told(each.na)}</td><td class="number">${told(each.magnification)}</td>

@@ -31,7 +31,7 @@ export function AlarmJournal() {
     <${Problem} text=${problem}/>
     ${shown.length === 0
       ? html`<p class="help">${t("setup.journal.none")}</p>`
-      : html`<div class="scroll tall" tabindex="0" role="region" aria-labelledby="alarms-title"><table>
+      : html`<div class="scroll tall" tabindex="0" role="group" aria-labelledby="alarms-title"><table>
           <tr><th scope="col">${t("setup.journal.time")}</th><th scope="col">${t("setup.journal.level")}</th><th scope="col">${t("setup.journal.text")}</th><th scope="col">${t("setup.journal.seen")}</th></tr>
           ${shown.map((alarm) => html`<tr key=${alarm.number}>
             <td class="time">${clockTime(alarm.time_utc)}</td>

@@ -41,7 +41,7 @@ export function AuditTable() {
   return html`<section class="panel" aria-labelledby="audit-title">
     <h2 id="audit-title">${t("setup.audit.title")}</h2>
     <${Problem} text=${problem}/>
-    <div class="scroll tall" tabindex="0" role="region" aria-labelledby="audit-title"><table>
+    <div class="scroll tall" tabindex="0" role="group" aria-labelledby="audit-title"><table>
       <tr><th scope="col">${t("setup.journal.time")}</th><th scope="col">${t("setup.audit.who")}</th><th scope="col">${t("setup.audit.what")}</th><th scope="col">${t("setup.audit.outcome")}</th><th scope="col">${t("setup.audit.detail")}</th></tr>
       ${entries.map((entry) => html`<tr key=${entry.number}>
         <td class="time">${clockTime(entry.time_utc)}</td>

@@ -34,7 +34,7 @@ export function AcceptForm({ study, calibration, accepted }: Props) {
   };
   return html`<section aria-labelledby="accept-title">
     <h3 id="accept-title">${t("setup.accept.title")}</h3>
-    <pre class="scroll" tabindex="0" aria-label=${t("setup.accept.proposal")}>${JSON.stringify(study.proposal, null, 2)}</pre>
+    <pre class="scroll" tabindex="0" role="group" aria-label=${t("setup.accept.proposal")}>${JSON.stringify(study.proposal, null, 2)}</pre>
     <p aria-live="polite">${version ? t("setup.accept.valid", { version }) : t("setup.accept.not_yet")}</p>
     <form onSubmit=${submit}>
       <div class="fields">

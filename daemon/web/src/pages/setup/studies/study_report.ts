@@ -23,7 +23,7 @@ export function StudyReport({ reply, calibration, accepted }: Props) {
   return html`<section class="panel" aria-labelledby="report-title">
     <h2 id="report-title" tabindex="-1">${tWord("setup.kind", study.kind)} · ${study.id}</h2>
     <p class="help">${clockTime(study.time)}${study.person && ` · ${study.person}`} · ${t("setup.report.scans", { count: study.jobs.length })}${study.simulated ? ` · ${t("setup.report.simulated")}` : ""}</p>
-    <div class="scroll" tabindex="0" role="region" aria-labelledby="report-title"><table>
+    <div class="scroll" tabindex="0" role="group" aria-labelledby="report-title"><table>
       <tr><th scope="col">${t("setup.report.figure")}</th><th scope="col" class="number">${t("setup.report.value")}</th><th scope="col">${t("setup.report.uncertainty")}</th><th scope="col">${t("setup.report.unit")}</th></tr>
       ${study.figures.map((figure) => {
         const { value, uncertainty, unit } = figureText(figure, number);
