@@ -28,8 +28,7 @@ const figures = { ...newFigures(), untranslated: lacking(texts.en, texts.de) + l
 const station = await startStation();
 let browser;
 try {
-  // On a busy machine the browser's own watchdog would take its drawing process for hanging, and end it all.
-  browser = await chromium.launch({ executablePath: process.env.FVD_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu-watchdog"], timeout: 120000 });
+  browser = await chromium.launch({ executablePath: process.env.FVD_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"], timeout: 120000 });
   const jobs = await scan(station.call, { recipe, parts: 2 });
   await station.call("verify.noise", { jobs });
   Object.assign(figures, await firstView(browser, station, figures));
