@@ -1,5 +1,6 @@
-// Bundles each unit/NAME_test.ts with the page's own sources and runs all of them under node's test runner.
-// node tests/web/run_unit.mjs [NAME ...] : those whose names contain one of the words; none = all.
+// Unit tests of the operator page's pure functions: each *_test.ts is bundled, and Node's own runner runs it.
+//
+// node tests/web/run_unit.mjs [NAME ...] : all tests, or those whose file names contain a NAME. Needs `npm ci` in daemon/web.
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -8,20 +9,38 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const { build } = createRequire(join(here, "../../daemon/web/package.json"))("esbuild");
-const words = process.argv.slice(2);
-const wanted = readdirSync(join(here, "unit")).filter(
-  (name) => name.endsWith("_test.ts") && (words.length === 0 || words.some((word) => name.includes(word))));
+const web = join(here, "../../daemon/web");
+const { build } = createRequire(join(web, "package.json"))("esbuild");
+
+const wanted = process.argv.slice(2);
+const tests = readdirSync(join(here, "unit"))
+  .filter((name) => name.endsWith("_test.ts") && (wanted.length === 0 || wanted.some((part) => name.includes(part))))
+  .sort();
+if (tests.length === 0) {
+  console.error(`no test's file name contains ${wanted.join(", ")}`);
+  process.exit(1);
+}
+
 const out = mkdtempSync(join(tmpdir(), "fvd-web-unit-"));
 let status = 1;
 try {
   await build({
-    entryPoints: wanted.map((name) => join(here, "unit", name)),
-    outdir: out, outExtension: { ".js": ".mjs" }, bundle: true, format: "esm", platform: "node", target: "node18",
-    sourcemap: "inline", logLevel: "warning", nodePaths: [join(here, "../../daemon/web/node_modules")],
+    entryPoints: tests.map((name) => join(here, "unit", name)),
+    bundle: true,
+    platform: "node",
+    format: "esm",
+    target: "node18",
+    outdir: out,
+    outExtension: { ".js": ".mjs" },
+    // What a page imports from the packages is found beside the page, not beside the test.
+    nodePaths: [join(web, "node_modules")],
+    loader: { ".css": "empty" },
+    sourcemap: "inline",
+    logLevel: "warning",
+    define: { WEB_DIR: JSON.stringify(web) },
   });
-  const files = wanted.map((name) => join(out, name.replace(/\.ts$/, ".mjs")));
-  status = files.length === 0 ? 1 : spawnSync(process.execPath, ["--test", ...files], { stdio: "inherit" }).status ?? 1;
+  const files = tests.map((name) => join(out, name.replace(/\.ts$/, ".mjs")));
+  status = spawnSync(process.execPath, ["--enable-source-maps", "--test", ...files], { stdio: "inherit" }).status ?? 1;
 } finally {
   rmSync(out, { recursive: true, force: true });
 }

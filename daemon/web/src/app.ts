@@ -1,15 +1,28 @@
 // The page's frame, and which page is in it.
-import { t, useLanguage } from "./i18n/i18n.ts";
+import { useEffect } from "preact/hooks";
+import { type TextKey, t, useLanguage } from "./i18n/i18n.ts";
 import { html } from "./lib/html.ts";
+import { later } from "./lib/later.ts";
 import { match, place } from "./lib/router.ts";
 import { useStore } from "./lib/store.ts";
-import { HistoryPage } from "./pages/history/history_page.ts";
-import { RecipeListPage } from "./pages/recipe/recipe_list_page.ts";
-import { RecipePage } from "./pages/recipe/recipe_page.ts";
-import { ResultPage } from "./pages/result/result_page.ts";
 import { RunPage } from "./pages/run/run_page.ts";
-import { SetupPage } from "./pages/setup/setup_page.ts";
 import { TopBar } from "./parts/top_bar.ts";
+
+// The run page is what an operator opens; the others are fetched when somebody goes there.
+const more = () => import("./pages/more_pages.ts");
+const HistoryPage = later(() => more().then((all) => all.HistoryPage));
+const RecipeListPage = later(() => more().then((all) => all.RecipeListPage));
+const RecipePage = later(() => more().then((all) => all.RecipePage));
+const ResultPage = later(() => more().then((all) => all.ResultPage));
+const SetupPage = later(() => more().then((all) => all.SetupPage));
+
+// The browser's name for the page: tabs, history and screen readers tell pages apart by it.
+function titleOf(path: string): string {
+  const first = `/${path.split("/")[1] ?? ""}`;
+  const titles: Record<string, TextKey> = { "/": "nav.run", "/jobs": "nav.history", "/recipes": "nav.recipes", "/setup": "nav.setup" };
+  const key = titles[first];
+  return key ? `${t(key)} – ${t("app.title")}` : t("app.title");
+}
 
 function Content() {
   const { path } = useStore(place);
@@ -25,7 +38,11 @@ function Content() {
 }
 
 export function App() {
-  useLanguage();
+  const language = useLanguage();
+  const { path } = useStore(place);
+  useEffect(() => {
+    document.title = titleOf(path);
+  }, [path, language]);
   return html`<${TopBar}/>
     <main id="main" tabindex="-1"><${Content}/></main>`;
 }

@@ -1,6 +1,6 @@
 import { render } from "preact";
 import { App } from "./app.ts";
-import { language } from "./i18n/i18n.ts";
+import { loadTexts } from "./i18n/i18n.ts";
 import { html } from "./lib/html.ts";
 import { followLinks } from "./lib/router.ts";
 import { applyTheme } from "./lib/theme.ts";
@@ -8,7 +8,6 @@ import { link, listen } from "./live/live.ts";
 import { resumeSession } from "./rpc/session.ts";
 import "./style/main.css";
 
-document.documentElement.lang = language.get();
 applyTheme();
 followLinks();
 listen();
@@ -22,4 +21,7 @@ link.watch(() => {
 });
 know();
 const page = document.getElementById("page");
-if (page) render(html`<${App}/>`, page);
+// Without its texts the page says nothing: then it is asked for again, as a whole.
+loadTexts().then(() => {
+  if (page) render(html`<${App}/>`, page);
+}, () => setTimeout(() => location.reload(), 3000));

@@ -1,12 +1,16 @@
 // Texts of the page by language. A test finds keys that one language lacks, and keys that nothing uses.
 import { createStore, useStore } from "../lib/store.ts";
-import de from "./de.json" with { type: "json" };
-import en from "./en.json" with { type: "json" };
+import type en from "./en.json";
 
 export type Language = "en" | "de";
 export type TextKey = keyof typeof en;
 
-const texts: Record<Language, Record<string, string>> = { en, de };
+// Only the language that is read is fetched.
+const kFiles: Record<Language, () => Promise<{ default: Record<string, string> }>> = {
+  en: () => import("./en.json", { with: { type: "json" } }),
+  de: () => import("./de.json", { with: { type: "json" } }),
+};
+let texts: Record<string, string> = {};
 const kKey = "fvd.language";
 
 function preferred(): Language {
@@ -17,15 +21,21 @@ function preferred(): Language {
 
 export const language = createStore<Language>(preferred());
 
-export function setLanguage(wanted: Language): void {
-  localStorage.setItem(kKey, wanted);
+// Before anything is drawn, and whenever another language is wanted.
+export async function loadTexts(wanted: Language = language.get()): Promise<void> {
+  texts = (await kFiles[wanted]()).default;
   document.documentElement.lang = wanted;
   language.set(wanted);
 }
 
+export async function setLanguage(wanted: Language): Promise<void> {
+  await loadTexts(wanted);
+  localStorage.setItem(kKey, wanted);
+}
+
 // The text of a key with {names} replaced; numbers as the language writes them.
 export function t(key: TextKey, values: Record<string, string | number> = {}): string {
-  const text = texts[language.get()][key] ?? en[key];
+  const text = texts[key] ?? key;
   return text.replace(/\{(\w+)\}/g, (whole, name: string) => {
     const value = values[name];
     return value === undefined ? whole : typeof value === "number" ? number(value) : value;
@@ -35,7 +45,7 @@ export function t(key: TextKey, values: Record<string, string | number> = {}): s
 // Text of a key that is put together, e.g. of a state; the word itself where nobody wrote a text for it.
 export function tWord(prefix: string, word: string): string {
   const key = `${prefix}.${word}`;
-  return key in en ? t(key as TextKey) : word;
+  return key in texts ? t(key as TextKey) : word;
 }
 
 // A number for people: the decimal sign is the language's, the digits are those of the value.

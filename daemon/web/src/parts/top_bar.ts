@@ -35,7 +35,7 @@ export function TopBar() {
       </nav>
       <span class="options">
         <label><span class="hidden">${t("language.label")}</span>
-          <select value=${language} onChange=${(event: Event) => setLanguage((event.target as HTMLSelectElement).value as Language)}>
+          <select value=${language} onChange=${(event: Event) => void setLanguage((event.target as HTMLSelectElement).value as Language)}>
             <option value="en" lang="en">English</option>
             <option value="de" lang="de">Deutsch</option>
           </select>

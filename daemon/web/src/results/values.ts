@@ -1,5 +1,5 @@
 // The values of a result.json, in the recipe's order.
-import { isObject } from "../recipe/schema.ts";
+import { type JsonObject, isObject } from "../recipe/schema.ts";
 
 export interface Value {
   measurement: string;
@@ -13,6 +13,7 @@ export interface Value {
   reason: string;
 }
 
+const kNothing: JsonObject = {};
 const numberOr = (value: unknown): number | null => (typeof value === "number" && Number.isFinite(value) ? value : null);
 const textOr = (value: unknown): string => (typeof value === "string" ? value : "");
 
@@ -28,9 +29,9 @@ export function valuesOf(result: unknown): Value[] {
       if (!isObject(about) || !isObject(about["values"])) continue;
       // A measurement that failed as a whole has no values; what it should have given is missing for its reason.
       const own = Object.entries(about["values"]);
-      for (const [name, each] of own.length > 0 ? own : [[textOr(about["main_value"]) || measurement, {}] as const]) {
+      for (const [name, each] of own.length > 0 ? own : [[textOr(about["main_value"]) || measurement, kNothing] as const]) {
         if (!isObject(each)) continue;
-        const limits = isObject(each["limits"]) ? each["limits"] : {};
+        const limits = isObject(each["limits"]) ? each["limits"] : kNothing;
         found.push({
           measurement,
           name,

@@ -1,0 +1,46 @@
+// Pictures for the eye, one after another. Who operates has one taken; who looks on sees what the daemon shows anyhow.
+import { call, headers } from "../../../rpc/rpc.ts";
+import type { LightParams } from "./light.ts";
+
+export interface Picture {
+  seq: number;
+  blob: Blob;
+  width_px: number;
+  height_px: number;
+  z_um: number | null;
+  focus: number | null;
+  saturated_fraction: number | null;
+}
+
+function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+
+export async function takePicture(params: LightParams, signal: AbortSignal): Promise<Picture> {
+  const { seq, width_px, height_px, z_um, focus, saturated_fraction, png_base64 } = await call("camera.preview", params, { signal });
+  return { seq, width_px, height_px, z_um, focus, saturated_fraction, blob: new Blob([bytesOf(png_base64)], { type: "image/png" }) };
+}
+
+// Null: none within the daemon's patience.
+export async function awaitPicture(after: number, signal: AbortSignal): Promise<Picture | null> {
+  const response = await fetch(`/api/v1/preview.jpg?after=${after}`, { signal, cache: "no-store", headers: headers() });
+  if (response.status === 204) return null;
+  if (!response.ok) throw new Error(`HTTP ${response.status}`);
+  const told = (name: string): number | null => {
+    const text = response.headers.get(name);
+    const value = text === null || text === "" ? NaN : Number(text);
+    return Number.isFinite(value) ? value : null;
+  };
+  return {
+    seq: told("X-Fvd-Seq") ?? after + 1,
+    blob: await response.blob(),
+    width_px: told("X-Fvd-Width-Px") ?? 0,
+    height_px: told("X-Fvd-Height-Px") ?? 0,
+    z_um: told("X-Fvd-Z-Um"),
+    focus: told("X-Fvd-Focus"),
+    saturated_fraction: told("X-Fvd-Saturated-Fraction"),
+  };
+}
