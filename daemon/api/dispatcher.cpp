@@ -123,6 +123,11 @@ std::optional<Handled> Dispatcher::try_overtake(std::string_view line, const Cal
   return handle_line(line, caller, false);
 }
 
+bool Dispatcher::is_urgent(std::string_view line) const {
+  const Method* method = method_of(line);
+  return method != nullptr && method->about.is_urgent;
+}
+
 bool Dispatcher::is_log_in(std::string_view line) const {
   const Method* method = method_of(line);
   return method != nullptr && method->about.is_log_in;

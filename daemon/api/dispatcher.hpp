@@ -53,6 +53,8 @@ class Dispatcher {
   /// try_handle() answers while the open one waits for a job or the devices.
   [[nodiscard]] std::optional<Handled> try_overtake(std::string_view line, const Caller& caller, Behind behind) const;
 
+  /// True for a line with a single request that nothing may hold back: a stop.
+  [[nodiscard]] bool is_urgent(std::string_view line) const;
   /// True for a line with a single request that only says who the caller is: nobody waits behind slow calls for that.
   [[nodiscard]] bool is_log_in(std::string_view line) const;
 

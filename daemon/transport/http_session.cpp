@@ -264,6 +264,10 @@ void HttpSession::end_wait_now() {
   check_wait(false);
 }
 
+void HttpSession::give_up() {
+  if (waiting_) end_wait(host_.dispatcher.ended(*waiting_));
+}
+
 void HttpSession::check_wait(bool timed_out) {
   if (!waiting_) return;
   wait_is_over_ = wait_is_over_ || timed_out;
