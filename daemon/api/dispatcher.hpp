@@ -114,8 +114,10 @@ class Dispatcher {
   /// Another row once the task has ended.
   void note_outcome_of(DeviceTask& task, const Call& call) const;
   [[nodiscard]] static AuditEntry audit_entry(const Call& call, std::string_view outcome);
-  /// The same for who may not; of callers without a role few are told, and none is written down.
+  /// The same for who may not; of callers without a role none is written down.
   void note_refusal(const Method& method, const Call& call, const AccessError& error) const;
+  /// Warns of a refusal; of callers without a role few are told.
+  void warn_of(const Caller& caller, const std::string& text) const;
 
   Services services_;
   const MethodTable methods_;

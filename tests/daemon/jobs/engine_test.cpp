@@ -1,20 +1,19 @@
 #include "daemon/jobs/engine.hpp"
 
 #include <memory>
-#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include "tests/daemon/jobs/engine_bench.hpp"
+#include "tests/support/captured_log.hpp"
 
 namespace fvd {
 namespace {
 
 using std::chrono::seconds;
 using test::AnEngine;
+using test::CapturedLog;
 using test::Hold;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -154,24 +153,6 @@ TEST_F(AnEngine, AbortsAJobThatWaitsBehindACommand) {
   EXPECT_EQ(machine().snapshot()->job->state, JobState::kAborted);
   EXPECT_EQ(machine().snapshot()->job->error, ErrorCode::kAborted);
 }
-
-/// What is logged while it lives.
-class CapturedLog {
- public:
-  CapturedLog() : before_(spdlog::default_logger()) {
-    spdlog::set_default_logger(
-        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
-  }
-  ~CapturedLog() { spdlog::set_default_logger(before_); }
-  CapturedLog(const CapturedLog&) = delete;
-  CapturedLog& operator=(const CapturedLog&) = delete;
-  /// Once nobody else logs.
-  [[nodiscard]] std::string text() const { return text_.str(); }
-
- private:
-  std::ostringstream text_;
-  std::shared_ptr<spdlog::logger> before_;
-};
 
 TEST_F(AnEngine, SaysAtEveryStartWhichJobARestartInterruptedUntilThatIsAcknowledged) {
   const std::string job_id = store_->accept({7, "P-1", "part"}).job_id;

@@ -15,6 +15,7 @@
 #include "daemon/access/token_file.hpp"
 #include "daemon/transport/wrong_tokens.hpp"
 #include "tests/daemon/api/fake_job_service.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/http_client.hpp"
 #include "tests/support/rpc_text.hpp"
@@ -158,8 +159,14 @@ TEST_F(AnHttpServer, RecognisesRightTokensWhileWrongOnesWait) {
 
 TEST_F(AnHttpServer, SaysThatItsTokensCannotBeRead) {
   std::filesystem::remove(folder_ / "tokens");
-  EXPECT_EQ(ask(call("session.info"), bearer()), 503);
+  const test::CapturedLog log;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(ask(call("session.info"), bearer()), 503);
   EXPECT_EQ(ask(call("session.info"))["result"]["role"], "view");
+  server_.reset();
+  const auto seconds = (std::chrono::steady_clock::now() - begin) / std::chrono::seconds(1);
+  EXPECT_GE(log.lines_with("nobody can be recognised"), 1U);
+  EXPECT_LE(log.lines_with("nobody can be recognised"), 1 + static_cast<std::size_t>(seconds));
 }
 
 TEST_F(AnHttpServer, RefusesWhatAForeignPageSends) {
