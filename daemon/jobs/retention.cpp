@@ -103,16 +103,19 @@ void Retention::finish() {
 void Retention::set_limits(const StoreConfig& limits) {
   const MutexLock lock(mutex_);
   config_ = limits;
+  has_other_limits_ = true;
+  limits_changed_.notify_all();
 }
 
 void Retention::run(const std::stop_token& stop) {
-  Mutex mutex;
-  Condition never;
   while (!stop.stop_requested()) {
     if (has_limits(config())) run_once(stop);
     ticks_.rest();
-    MutexLock lock(mutex);
-    (void)never.wait_for(lock, stop, kPeriod, [] { return false; });
+    MutexLock lock(mutex_);
+    (void)limits_changed_.wait_for(lock, stop, kPeriod, [this] {
+      mutex_.assert_held();
+      return std::exchange(has_other_limits_, false);
+    });
   }
 }
 
