@@ -103,17 +103,27 @@ void Retention::finish() {
 void Retention::set_limits(const StoreConfig& limits) {
   const MutexLock lock(mutex_);
   config_ = limits;
+  has_other_limits_ = true;
+  limits_changed_.notify_all();
 }
 
 void Retention::run(const std::stop_token& stop) {
+<<<<<<< HEAD
   Mutex mutex;
   Condition never;
   // At the start in any case: removals that were cut off are finished, whatever the limits are now.
   for (bool first = true; !stop.stop_requested(); first = false) {
     if (first || has_limits(config())) run_once(stop);
+=======
+  while (!stop.stop_requested()) {
+    if (has_limits(config())) run_once(stop);
+>>>>>>> m1
     ticks_.rest();
-    MutexLock lock(mutex);
-    (void)never.wait_for(lock, stop, kPeriod, [] { return false; });
+    MutexLock lock(mutex_);
+    (void)limits_changed_.wait_for(lock, stop, kPeriod, [this] {
+      mutex_.assert_held();
+      return std::exchange(has_other_limits_, false);
+    });
   }
 }
 

@@ -32,7 +32,7 @@ class Retention {
 
   /// Looks at once, and once a minute, while a limit is set.
   void start();
-  /// Other limits from the next look on. context: any thread.
+  /// Other limits, by which it looks at once. context: any thread.
   void set_limits(const StoreConfig& limits);
   void finish();
 
@@ -60,7 +60,9 @@ class Retention {
 
   JobStore& store_;
   mutable Mutex mutex_;
+  Condition limits_changed_;
   StoreConfig config_ FVD_GUARDED_BY(mutex_);
+  bool has_other_limits_ FVD_GUARDED_BY(mutex_) = false;  // that it has not looked by
   const std::filesystem::path results_;
   std::map<std::string, Size> sizes_;                            // of results that do not change any more
   std::map<std::string, std::vector<std::string>> evaluations_;  // on the disk, by job

@@ -66,7 +66,8 @@ void describe_audit(Fields& fields) {
   ResultFields(fields).any(
       "entries",
       "list, the newest first: number, time_utc, who, role, peer, client, what, detail (parameters, "
-      "shortened), outcome (ok, or an error's name)");
+      "shortened; of many refusals how many), outcome (ok, accepted: a row with its end follows, or an error's "
+      "name)");
 }
 
 Reply identity_json(const Identity& who) { return {{"who", who.name}, {"role", role_name(who.role)}}; }

@@ -1,5 +1,6 @@
 /// Which configurations can be used, and how one that stands in several files is read.
 
+#include <algorithm>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -113,6 +114,27 @@ TEST_F(AUsableConfig, NeedsAPortForEachListener) {
   EXPECT_THAT(check_config(config_), ElementsAre(problem("/metrics/port", "/rpc/port")));
   config_.http.port = config_.metrics.port = config_.rpc.port = 0;
   EXPECT_THAT(check_config(config_), IsEmpty()) << "any that is free";
+}
+
+TEST_F(AUsableConfig, MayHaveOnePortAtAddressesThatDoNotMeet) {
+  config_.rpc.port = 0;
+  config_.rpc.access.token_file = folder_ / "tokens";
+  test::write_text(folder_ / "tokens", "");
+  config_.http.port = config_.metrics.port = 7413;
+  const auto meet = [this](const char* http, const char* metrics) {
+    config_.http.address = http;
+    config_.metrics.address = metrics;
+    const Problems found = check_config(config_);
+    return std::any_of(found.begin(), found.end(), [](const Problem& one) { return one.pointer == "/metrics/port"; });
+  };
+  EXPECT_FALSE(meet("0.0.0.0", "::1"));
+  EXPECT_FALSE(meet("::1", "0.0.0.0"));
+  EXPECT_FALSE(meet("fe80::1%eth0", "fe80::1%eth1"));
+  EXPECT_TRUE(meet("fe80::1%eth0", "fe80::1%eth0"));
+  EXPECT_TRUE(meet("0.0.0.0", "::"));
+  EXPECT_TRUE(meet("127.0.0.1", "::"));
+  EXPECT_TRUE(meet("::", "::1"));
+  EXPECT_TRUE(meet("0.0.0.0", "127.0.0.1"));
 }
 
 TEST_F(AUsableConfig, NeedsRangesOfAddresses) {
