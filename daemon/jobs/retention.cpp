@@ -108,16 +108,9 @@ void Retention::set_limits(const StoreConfig& limits) {
 }
 
 void Retention::run(const std::stop_token& stop) {
-<<<<<<< HEAD
-  Mutex mutex;
-  Condition never;
   // At the start in any case: removals that were cut off are finished, whatever the limits are now.
   for (bool first = true; !stop.stop_requested(); first = false) {
     if (first || has_limits(config())) run_once(stop);
-=======
-  while (!stop.stop_requested()) {
-    if (has_limits(config())) run_once(stop);
->>>>>>> m1
     ticks_.rest();
     MutexLock lock(mutex_);
     (void)limits_changed_.wait_for(lock, stop, kPeriod, [this] {
