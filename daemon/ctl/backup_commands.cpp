@@ -1,7 +1,10 @@
 #include "daemon/ctl/backup_commands.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -10,6 +13,7 @@
 #include "daemon/backup/restore.hpp"
 #include "daemon/config/config_file.hpp"
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/store/store_marker.hpp"
 
 namespace fvd::ctl {
 
@@ -43,6 +47,17 @@ int backup(const BackupArguments& arguments, const Terminal& terminal) {
   return kExitOk;
 }
 
+/// The newer results, which have no job any more.
+void tell_unknown(const std::vector<std::string>& names, const Terminal& terminal) {
+  constexpr std::size_t kNamed = 10;
+  if (names.empty()) return;
+  terminal.out << names.size()
+               << " results or evaluations are not known to the backup; no call gives them, and the next start leaves "
+                  "their folders where they are:\n";
+  for (std::size_t i = 0; i < std::min(names.size(), kNamed); ++i) terminal.out << "  " << names[i] << "\n";
+  if (names.size() > kNamed) terminal.out << "  and " << names.size() - kNamed << " more\n";
+}
+
 int restore(const BackupArguments& arguments, const Terminal& terminal) {
   const fs::path folder = arguments.folder;
   const Restored restored = restore_backup(folder, paths_of(arguments.config, folder));
@@ -56,9 +71,10 @@ int restore(const BackupArguments& arguments, const Terminal& terminal) {
   for (const std::string& kept : restored.kept) {
     terminal.out << kept << " is there and stays as it is; the backup's is in " << folder.string() << "\n";
   }
-  terminal.out << (restored.numbers_are_exact
-                       ? "sequence numbers that were used since the backup stay used\n"
-                       : "sequence numbers may have been used since the backup: clients go on behind newest_seq\n")
+  tell_unknown(restored.unknown, terminal);
+  terminal.out << (restored.margin == 0 ? "sequence numbers that were used since the backup stay used"
+                                        : unknown_numbers_text(restored.margin))
+               << "\n"
                << std::flush;
   return kExitOk;
 }
