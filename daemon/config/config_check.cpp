@@ -177,7 +177,7 @@ class ConfigCheck {
   void check_travel(const StageConfig& stage) {
     const bool in_order = stage.min < stage.max;
     report_if(!in_order, "/stage/min_um", {"/stage/max_um"},
-              text(stage.min.value) + " is not below max_um, " + text(stage.max.value));
+              text(stage.min.value) + " is not below /stage/max_um, " + text(stage.max.value));
     report_if(in_order && stage.take_up >= stage.max - stage.min, "/stage/take_up_um",
               {"/stage/min_um", "/stage/max_um"},
               text(stage.take_up.value) + " leaves no room between min_um and max_um, " +
