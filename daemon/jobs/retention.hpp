@@ -57,6 +57,8 @@ class Retention {
   /// Of the job's result and of its evaluations.
   void remove_folders(const std::string& job_id);
   void remove_slices(const StoredJob& job);
+  /// Warns once where all that may go has gone, and the disk still has less free than it should.
+  void note_shortage();
 
   JobStore& store_;
   mutable Mutex mutex_;
@@ -64,6 +66,7 @@ class Retention {
   StoreConfig config_ FVD_GUARDED_BY(mutex_);
   bool has_other_limits_ FVD_GUARDED_BY(mutex_) = false;  // that it has not looked by
   const std::filesystem::path results_;
+  bool is_short_ = false;                                        // and that was told
   std::map<std::string, Size> sizes_;                            // of results that do not change any more
   std::map<std::string, std::vector<std::string>> evaluations_;  // on the disk, by job
   ThreadTicks ticks_;

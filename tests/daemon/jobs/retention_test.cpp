@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/export/result_json.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -141,6 +142,18 @@ TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
   retention.run_once();
   EXPECT_FALSE(fs::exists(results_ / old));
   EXPECT_TRUE(fs::exists(results_ / waiting));
+}
+
+TEST_F(ARetention, SaysOnceThatTheDiskIsNotFreeEnoughThoughAllIsRemoved) {
+  add(1, true, kLongAgo);
+  const test::CapturedLog log;
+  Retention never(store_, {.keep_free_gib = 1048576}, results_);
+  for (int i = 0; i < 2; ++i) never.run_once();
+  EXPECT_EQ(log.lines_with("store.keep_free_gib: 1048576 GiB are to be free"), 1U) << log.text();
+  EXPECT_EQ(log.lines_with("the disk is smaller than that"), 1U) << log.text();
+  Retention without(store_, {}, results_);
+  without.run_once();
+  EXPECT_EQ(log.lines_with("store.keep_free_gib"), 1U);
 }
 
 TEST_F(ARetention, GoesOnAtTheStartWithARemovalThatWasCutOffWhateverTheLimitsAre) {
