@@ -201,7 +201,8 @@ void Dispatcher::run_method(const json& request, const json& id, Caller caller, 
   if (!may_call(caller, method.about)) {
     const AccessError error(AccessCode::kNotAllowed,
                             name + " needs the role " + std::string(role_name(method.about.role)) +
-                                ", this caller has " + std::string(role_name(caller.who.role)));
+                                ", this caller has " + std::string(role_name(caller.who.role)) +
+                                "; a token gives another: session.login, by HTTP Authorization: Bearer");
     note_refusal(method, {caller, name, request.value("params", json())}, error);
     throw error;
   }

@@ -197,8 +197,9 @@ void HttpSession::recognise() {
 
 void HttpSession::take_identity(std::pair<std::optional<Identity>, std::string> found) {
   if (!found.second.empty()) {
-    note_refusal("nobody can be recognised by a token: " + found.second);
-    return refuse({503, "no_tokens", "the file of tokens cannot be read; the log says why"});
+    const std::string why = "nobody can be recognised by a token: " + found.second;
+    note_refusal(why);
+    return refuse({503, "no_tokens", why});
   }
   if (!found.first) return refuse_token("nobody has this token");
   caller_.who = *std::move(found.first);
