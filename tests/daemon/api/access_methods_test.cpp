@@ -66,6 +66,12 @@ TEST_F(AnInstrumentWithSeveralCallers, GivesControlToForceOnlyBetweenJobs) {
   }
 }
 
+TEST_F(AnInstrumentWithSeveralCallers, TellsWhetherStandstillIsKnownAfterAStop) {
+  EXPECT_EQ(answer_to(plc_, call("stage.stop"))["result"], (json{{"stopped", "command"}, {"standstill", true}}));
+  service_.machine.emplace();  // of a stage that was lost in motion nothing is known
+  EXPECT_EQ(answer_to(plc_, call("stage.stop"))["result"]["standstill"], false);
+}
+
 TEST_F(AnInstrumentWithSeveralCallers, StopsWithoutAWorker) {
   service_.current = JobStatus{};
   service_.current->job_id = "J1";
