@@ -13,6 +13,7 @@
 #include "daemon/backup/restore.hpp"
 #include "daemon/config/config_file.hpp"
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/process_command.hpp"
 #include "daemon/store/store_marker.hpp"
 
 namespace fvd::ctl {
@@ -28,6 +29,10 @@ InstrumentPaths paths_of(const fs::path& config, const fs::path& instead) {
   const fs::path parts = base / "conf.d";
   const bool has_parts = fs::is_directory(parts, error) && !fs::is_empty(parts, error);
   const fs::path& source = fs::exists(config, error) || instead.empty() ? config : instead / "fvd.json";
+  if (!fs::exists(source, error)) {
+    throw Error(ErrorCode::kBadConfig,
+                "there is no " + source.string() + ": name the daemon's configuration by --config");
+  }
   const LoadedConfig loaded = merge_config(source, has_parts || instead.empty() ? parts : instead / "conf.d", base);
   throw_if_any(loaded.problems, ErrorCode::kBadConfig, source.string());
   const Config& read = loaded.config;
@@ -79,6 +84,15 @@ int restore(const BackupArguments& arguments, const Terminal& terminal) {
   return kExitOk;
 }
 
+/// Another instrument than the one that was meant must not be copied, or overwritten.
+void require_no_daemon_named(const CLI::App& app, const std::string& command) {
+  for (const char* option : {"--address", "--runtime-dir"}) {
+    if (app.count(option) == 0) continue;
+    throw UsageError(command + " asks no daemon, so that " + option +
+                     " says nothing of whose data is meant: name the daemon's configuration by --config");
+  }
+}
+
 }  // namespace
 
 void add_backup_commands(CLI::App& app, BackupArguments& a, const Terminal& terminal, std::function<int()>& chosen) {
@@ -86,7 +100,12 @@ void add_backup_commands(CLI::App& app, BackupArguments& a, const Terminal& term
     CLI::App* sub = app.add_subcommand(name, help);
     sub->add_option("folder", a.folder, folder)->required();
     sub->add_option("--config", a.config, "the daemon's configuration")->capture_default_str()->type_name("FILE");
-    sub->callback([&a, &chosen, terminal, run] { chosen = [&a, terminal, run] { return run(a, terminal); }; });
+    sub->callback([&app, &a, &chosen, terminal, run, name] {
+      chosen = [&app, &a, terminal, run, name] {
+        require_no_daemon_named(app, name);
+        return run(a, terminal);
+      };
+    });
     return sub;
   };
   add("backup", "copy all that the instrument knows, also while it measures", "to be made; must not exist", backup)

@@ -35,7 +35,6 @@ namespace fvd::ctl {
 namespace {
 
 constexpr std::chrono::seconds kCommandTimeout{330};  ///< the daemon gives a command up after 5 minutes
-constexpr int kNotAllowedCode = 1004;
 
 /// The options of all commands; CLI11 fills them.
 struct Arguments {

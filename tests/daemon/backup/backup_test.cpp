@@ -159,7 +159,7 @@ TEST_F(AnInstrument, IsRestoredAndNoNumberRunsTwice) {
   const std::string third = measure(3);
   const std::int64_t epoch = store_->epoch();
   test::write_text(paths_.state_dir / "stage_history.json", "{\"scans\": 2}");
-  FVD_EXPECT_ERROR_SAYING(kDatabase, (void)restore_backup(backup_, paths_), HasSubstr("another fvd"));
+  FVD_EXPECT_ERROR_SAYING(kBusy, (void)restore_backup(backup_, paths_), HasSubstr("another fvd"));
   store_.reset();
   fs::remove_all(paths_.state_dir / "results" / first);
 
