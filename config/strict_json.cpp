@@ -81,17 +81,17 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t mos
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) throw fail(std::strerror(errno));
-  if (const auto size = std::filesystem::file_size(file, error); !error && size > most_bytes) {
-    throw fail("it is larger than " + std::to_string(most_bytes >> 20U) + " MiB");
-  }
   // Not "<< in.rdbuf()": that takes a disk that fails for the end of the file.
   std::string text;
   std::vector<char> piece(std::size_t{1} << 16U);
+  errno = 0;
   while (in) {
     in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    // Not by its size alone: a device has none, and a file may grow meanwhile.
+    if (text.size() > most_bytes) throw fail("it is larger than " + std::to_string(most_bytes >> 20U) + " MiB");
   }
-  if (in.bad()) throw fail("the disk does not give it");
+  if (in.bad()) throw fail(std::string("the disk does not give it: ") + std::strerror(errno));
   return text;
 }
 

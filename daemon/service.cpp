@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "core/base/error.hpp"
 #include "core/base/exception_text.hpp"
 #include "core/runtime/guarded_thread.hpp"
 #include "daemon/app.hpp"
@@ -85,12 +86,20 @@ void reload(const Options& options, Config& config, App& app, const std::string&
   const Reload plan = plan_reload(config, wanted);
   if (!plan.refusal.empty()) {
     spdlog::error("the configuration was read again and nothing of it is taken: {}", plan.refusal);
+    app.engine().note_configuration(config, "SIGHUP: nothing of it was taken, the log says why",
+                                    error_name(ErrorCode::kBadConfig));
     return notify_ready(status + "; the last reload was refused, the log says why");
   }
-  for (const std::string& change : plan.changes) spdlog::info("reloaded {}", change);
+  std::string changes;
+  for (const std::string& change : plan.changes) {
+    spdlog::info("reloaded {}", change);
+    changes += (changes.empty() ? "" : ", ") + change;
+  }
   if (plan.changes.empty()) spdlog::info("the configuration was read again: nothing differs");
   config = wanted.config;
   spdlog::set_level(spdlog::level::from_str(config.log.level));
+  // Before it removes anything.
+  app.engine().note_configuration(config, "SIGHUP: " + (changes.empty() ? "nothing differs" : changes));
   app.engine().take(config.store);
   notify_ready(status);
 }

@@ -44,9 +44,10 @@ std::vector<StalledThread> stalled_threads(HostTime now) {
   const MutexLock lock(registry.mutex);
   std::vector<StalledThread> stalled;
   for (const ThreadTicks* thread : registry.threads) {
+    const auto allowed = thread->allowed();  // before its age, see tick()
     const auto age = thread->age(now);
-    if (age <= thread->allowed()) continue;
-    stalled.push_back({thread->name(), std::chrono::duration_cast<std::chrono::milliseconds>(age), thread->allowed()});
+    if (age <= allowed) continue;
+    stalled.push_back({thread->name(), std::chrono::duration_cast<std::chrono::milliseconds>(age), allowed});
   }
   return stalled;
 }

@@ -25,8 +25,9 @@ class ThreadTicks {
   void tick(HostTime now) noexcept { tick(now, longest_); }
   /// Before a step that may take longer, or must not take as long: until the next tick `allowed` holds.
   void tick(HostTime now, std::chrono::milliseconds allowed) noexcept {
-    allowed_ = allowed;
+    // In this order: whoever sees the new limit sees the new tick. A look takes the limit first.
     last_ = now;
+    allowed_ = allowed;
   }
   void rest() noexcept { last_ = kResting; }
 

@@ -123,6 +123,11 @@ std::optional<Handled> Dispatcher::try_overtake(std::string_view line, const Cal
   return handle_line(line, caller, false);
 }
 
+bool Dispatcher::is_urgent(std::string_view line) const {
+  const Method* method = method_of(line);
+  return method != nullptr && method->about.is_urgent;
+}
+
 bool Dispatcher::is_log_in(std::string_view line) const {
   const Method* method = method_of(line);
   return method != nullptr && method->about.is_log_in;
@@ -196,12 +201,14 @@ void Dispatcher::run_method(const json& request, const json& id, Caller caller, 
   if (!may_call(caller, method.about)) {
     const AccessError error(AccessCode::kNotAllowed,
                             name + " needs the role " + std::string(role_name(method.about.role)) +
-                                ", this caller has " + std::string(role_name(caller.who.role)));
+                                ", this caller has " + std::string(role_name(caller.who.role)) +
+                                "; a token gives another: session.login, by HTTP Authorization: Bearer");
     note_refusal(method, {caller, name, request.value("params", json())}, error);
     throw error;
   }
   if (method.about.needs_id && is_notification) {
-    spdlog::warn("a {} without an id was refused to {}: it could not be told what became of it", name, text_of(caller));
+    warn_of(caller, "a " + name + " without an id was refused to " + text_of(caller) +
+                        ": it could not be told what became of it");
     throw ProtocolError{json_rpc::kInvalidRequest, name + " needs an id"};
   }
   if (mode.in_batch && method.about.is_urgent) {
@@ -256,8 +263,8 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
     throw;
   } catch (const Error& error) {
     if (about.needs_id) {
-      spdlog::warn("{} was refused to {}: {}: {}", call.method, text_of(call.caller), error_name(error.code()),
-                   error.what());
+      warn_of(call.caller, call.method + " was refused to " + text_of(call.caller) + ": " +
+                               std::string(error_name(error.code())) + ": " + error.what());
     }
     note(method, call, error_name(error.code()));
     throw;
@@ -300,15 +307,13 @@ AuditEntry Dispatcher::audit_entry(const Call& call, std::string_view outcome) {
 }
 
 void Dispatcher::note_refusal(const Method& method, const Call& call, const AccessError& error) const {
-  const Caller& caller = call.caller;
-  if (caller.who.role > Role::kNone) {
-    spdlog::warn("{} was refused to {}: {}", call.method, text_of(caller), error.what());
-    return note(method, call, error_name(error.code()));
-  }
-  const auto count = refused_calls_.count_to_tell(caller.who.name, HostClock::now());
-  if (!count) return;
-  spdlog::warn("{} was refused to {}: {}; {} calls from there since the last that was told", call.method,
-               text_of(caller), error.what(), *count);
+  warn_of(call.caller, call.method + " was refused to " + text_of(call.caller) + ": " + error.what());
+  if (call.caller.who.role > Role::kNone) note(method, call, error_name(error.code()));
+}
+
+void Dispatcher::warn_of(const Caller& caller, const std::string& text) const {
+  if (caller.who.role == Role::kNone) return refused_calls_.tell(caller.who.name, text);
+  spdlog::warn("{}", text);
 }
 
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {

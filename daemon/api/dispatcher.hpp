@@ -53,6 +53,8 @@ class Dispatcher {
   /// try_handle() answers while the open one waits for a job or the devices.
   [[nodiscard]] std::optional<Handled> try_overtake(std::string_view line, const Caller& caller, Behind behind) const;
 
+  /// True for a line with a single request that nothing may hold back: a stop.
+  [[nodiscard]] bool is_urgent(std::string_view line) const;
   /// True for a line with a single request that only says who the caller is: nobody waits behind slow calls for that.
   [[nodiscard]] bool is_log_in(std::string_view line) const;
 
@@ -112,8 +114,10 @@ class Dispatcher {
   /// Another row once the task has ended.
   void note_outcome_of(DeviceTask& task, const Call& call) const;
   [[nodiscard]] static AuditEntry audit_entry(const Call& call, std::string_view outcome);
-  /// The same for who may not; of callers without a role few are told, and none is written down.
+  /// The same for who may not; of callers without a role none is written down.
   void note_refusal(const Method& method, const Call& call, const AccessError& error) const;
+  /// Warns of a refusal; of callers without a role few are told.
+  void warn_of(const Caller& caller, const std::string& text) const;
 
   Services services_;
   const MethodTable methods_;

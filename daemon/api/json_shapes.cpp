@@ -53,7 +53,7 @@ void describe_job_status(Fields& fields) {
               kSometimes);
   result.choice("phase", {"preparing", "acquiring", "computing", "storing", ""},
                 "of a job that is processing; empty when ended; not in compact", kSometimes);
-  result.boolean("done", "the job has ended");
+  result.boolean("done", "the job has ended; whether its result was removed since (1018) result.get tells");
   result.boolean("acquired", "the part may be moved: no more slices, and standstill was measured");
   result.number("progress", {0.0, 1.0}, "of the slices");
   result.integer("slices_done", kAnyCount, "so far; not in compact", kSometimes);

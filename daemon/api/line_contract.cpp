@@ -15,8 +15,9 @@ constexpr std::array<std::string_view, 10> kOrder{
     "session another text than before",
     "a part is there: system.state until `ready`, for it opens the devices later than its port; while `state` is error "
     "look at error_code",
-    "job.start with seq, part_id, session; without a reply in time a new connection, and the same again: nothing moves "
-    "twice",
+    "job.start with seq, part_id, session, and recipe by its name: without one the part is measured by the prepared "
+    "one, which is that of the last job or recipe.prepare of any client; without a reply in time a new connection, "
+    "and the same again: nothing moves twice",
     "job.status until `acquired`: the part may go, until the next one is there; remember that it was let go",
     "job.status until `done`: the result is there; result_valid of system.state says so of any client's completed jobs",
     "result.get; compare seq and part_id, look at state and error_code, then keep it",

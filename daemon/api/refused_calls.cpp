@@ -3,24 +3,38 @@
 #include <algorithm>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 namespace fvd {
+
+void RefusedCalls::tell(const std::string& who, const std::string& what) {
+  if (const auto count = count_to_tell(who, HostClock::now())) {
+    spdlog::warn("{}; {} were refused since the last that was told", what, *count);
+  }
+}
 
 std::optional<std::uint64_t> RefusedCalls::count_to_tell(const std::string& who, HostTime now) {
   const MutexLock lock(mutex_);
-  auto found = callers_.find(who);
-  if (found != callers_.end() && now - found->second.told < kPause) {
-    ++found->second.untold;
-    return std::nullopt;
+  ++untold_;
+  if (!is_told(who, now)) return std::nullopt;
+  return std::exchange(untold_, 0);
+}
+
+bool RefusedCalls::is_told(const std::string& who, HostTime now) {
+  const auto known = told_.find(who);
+  if (known != told_.end() && now - known->second < kPause) return false;
+  if (now - begun_ >= kPause) {
+    begun_ = now;
+    told_in_it_ = 0;
   }
-  if (found == callers_.end()) {
-    if (callers_.size() == kMostCallers) {
-      callers_.erase(std::min_element(callers_.begin(), callers_.end(),
-                                      [](const auto& a, const auto& b) { return a.second.told < b.second.told; }));
-    }
-    found = callers_.emplace(who, Caller{}).first;
+  if (told_in_it_ == kMostAPause) return false;
+  ++told_in_it_;
+  if (known == told_.end() && told_.size() == kMostCallers) {
+    told_.erase(
+        std::min_element(told_.begin(), told_.end(), [](const auto& a, const auto& b) { return a.second < b.second; }));
   }
-  found->second.told = now;
-  return std::exchange(found->second.untold, 0) + 1;
+  told_[who] = now;
+  return true;
 }
 
 }  // namespace fvd

@@ -17,19 +17,22 @@ namespace fvd {
 class RefusedCalls {
  public:
   static constexpr std::chrono::seconds kPause{1};   ///< between two that are told, of one caller
+  static constexpr std::size_t kMostAPause = 16;     ///< that are told meanwhile, of all: addresses cost nothing either
   static constexpr std::size_t kMostCallers = 1024;  ///< that are known at a time; the one told longest ago gives way
 
-  /// One more is refused. If it is to be told, how many there were since the last that was, with this one.
+  /// Warns that one more is refused, unless enough were told. who: the caller; what: what the log is to say.
+  void tell(const std::string& who, const std::string& what);
+  /// One more is refused. If it is to be told, how many there were since the last that was, of whomever, with this one.
   [[nodiscard]] std::optional<std::uint64_t> count_to_tell(const std::string& who, HostTime now);
 
  private:
-  struct Caller {
-    std::uint64_t untold = 0;
-    HostTime told{};
-  };
+  [[nodiscard]] bool is_told(const std::string& who, HostTime now) FVD_REQUIRES(mutex_);
 
   Mutex mutex_;
-  std::map<std::string, Caller> callers_ FVD_GUARDED_BY(mutex_);
+  std::map<std::string, HostTime> told_ FVD_GUARDED_BY(mutex_);  // by caller
+  HostTime begun_ FVD_GUARDED_BY(mutex_){};                      // a pause, in which so many were told
+  std::size_t told_in_it_ FVD_GUARDED_BY(mutex_) = 0;
+  std::uint64_t untold_ FVD_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace fvd

@@ -5,8 +5,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "core/base/error.hpp"
 #include "daemon/backup/copied_files.hpp"
@@ -41,17 +43,42 @@ Known known_to(const Database& database) {
   return {epoch.step() ? epoch.integer(0) : 0, newest_seqs_in(database)};
 }
 
+/// What a database that is replaced tells of its numbers.
+struct Replaced {
+  Known known;
+  bool is_older = false;  ///< than what the marker tells of: it does not know all numbers
+};
+
 /// Of a database that can be read.
-std::optional<Known> known_to_the_replaced(const Database& database) {
+std::optional<Replaced> known_to_the_replaced(const Database& database, const std::optional<StoreMarker>& marker) {
   try {
-    return known_to(database);
+    return Replaced{known_to(database), marker && is_older(database, *marker)};
   } catch (const Error&) {
     return std::nullopt;  // damaged, or of an older version
   }
 }
 
+/// How many numbers above the newest that are known may have been used. A database that a restoration put here, and
+/// that no start has taken over since, knows no more than its backup: then it is as the marker says.
+std::int64_t margin_of(const std::optional<StoreMarker>& marker, const std::optional<Replaced>& replaced) {
+  if (replaced && !replaced->is_older) return 0;
+  return marker ? marker->margin : kSeqJump;
+}
+
+struct Incoming {
+  Known known;
+  std::set<std::string> results;  ///< names of the folders that it has rows for
+};
+
+Incoming known_to_the_incoming(const Database& database) {
+  Incoming incoming{known_to(database), {}};
+  Statement names(database, "SELECT job_id FROM jobs UNION ALL SELECT evaluation_id FROM evaluations");
+  while (names.step()) incoming.results.insert(names.text(0));
+  return incoming;
+}
+
 /// The backup's database as this version reads it, with the results where they are here.
-Known prepare_database(const fs::path& from, const fs::path& copy, const fs::path& results) {
+Incoming prepare_database(const fs::path& from, const fs::path& copy, const fs::path& results) {
   for (const char* log : {"-wal", "-shm"}) {  // of a restoration that was cut off
     remove_file(copy.string() + log);
   }
@@ -67,7 +94,7 @@ Known prepare_database(const fs::path& from, const fs::path& copy, const fs::pat
   Statement(database, "UPDATE evaluations SET result_dir = ? || '/' || evaluation_id").bind(results.string()).run();
   transaction.commit();
   database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
-  return known_to(database);
+  return known_to_the_incoming(database);
 }
 
 void move(const fs::path& from, const fs::path& to) {
@@ -182,6 +209,18 @@ int add_results(const fs::path& from, const fs::path& to) {
   return added;
 }
 
+/// The results that are newer than the backup.
+std::vector<std::string> results_without(const std::set<std::string>& rows, const fs::path& results) {
+  std::vector<std::string> unknown;
+  std::error_code error;
+  for (fs::directory_iterator entry(results, error), end; !error && entry != end; entry.increment(error)) {
+    std::string name = entry->path().filename().string();
+    if (!name.starts_with('.') && !rows.contains(name)) unknown.push_back(std::move(name));
+  }
+  std::sort(unknown.begin(), unknown.end());
+  return unknown;
+}
+
 }  // namespace
 
 Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrument) {
@@ -194,23 +233,24 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   // Held to the end: no daemon starts meanwhile.
   std::error_code ignored;
   const auto held = fs::exists(file, ignored) ? std::make_unique<Database>(file) : nullptr;
-  const auto replaced = held ? known_to_the_replaced(*held) : std::nullopt;
+  const auto noted = read_marker(file);
+  const auto replaced = held ? known_to_the_replaced(*held, noted) : std::nullopt;
   const fs::path incoming = state / "fvd.restored";
-  const Known backup = prepare_database(folder / kDatabaseFile, incoming, state / "results");
+  const Incoming backup = prepare_database(folder / kDatabaseFile, incoming, state / "results");
 
   Restored restored;
-  restored.numbers_are_exact = replaced.has_value();
-  StoreMarker marker = read_marker(file).value_or(StoreMarker{});
+  restored.margin = margin_of(noted, replaced);
+  StoreMarker marker = noted.value_or(StoreMarker{});
   const bool blind = !replaced && marker.epoch == 0;
-  marker.epoch = std::max(marker.epoch, backup.epoch) + (blind ? kUnknownStarts : 1);
-  join(marker.newest_seq, backup.newest_seq);
+  marker.epoch = std::max(marker.epoch, backup.known.epoch) + (blind ? kUnknownStarts : 1);
+  join(marker.newest_seq, backup.known.newest_seq);
   if (replaced) {
-    marker.epoch = std::max(marker.epoch, replaced->epoch + 1);
-    join(marker.newest_seq, replaced->newest_seq);
+    marker.epoch = std::max(marker.epoch, replaced->known.epoch + 1);
+    join(marker.newest_seq, replaced->known.newest_seq);
   }
-  marker.margin = replaced ? 0 : kSeqJump;
+  marker.margin = restored.margin;
   restored.epoch = marker.epoch;
-  write_marker(file, marker);  // first: whatever happens from here on, no number runs twice
+  write_marker(file, marker);  // first: whatever happens from here on, it is not forgotten which numbers may be used
 
   const fs::path aside = unused_folder(state);
   for (const char* name : {kDatabaseFile, "fvd.sqlite-wal", "fvd.sqlite-shm"}) move(state / name, aside / name);
@@ -221,6 +261,7 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
     give_to_owner_of(state, state / name);
   }
   restored.results = add_results(folder / "results", state / "results");
+  restored.unknown = results_without(backup.results, state / "results");
   put_back_where_missing(folder / "recipes", instrument.recipe_dir, restored.kept);
   put_back_where_missing(folder / kConfigFile, instrument.config_file, restored.kept);
   put_back_where_missing(folder / kConfigParts, instrument.config_file.parent_path() / kConfigParts, restored.kept);

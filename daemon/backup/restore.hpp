@@ -15,9 +15,11 @@ struct Restored {
   std::int64_t epoch = 0;                        ///< the next start has a higher one
   std::filesystem::path replaced;                ///< where what was there before is now; empty = there was nothing
   std::vector<std::filesystem::path> dropped{};  ///< what earlier restorations replaced: the two newest are kept
-  bool numbers_are_exact = false;   ///< the replaced database told which numbers were used since the backup
-  int results = 0;                  ///< that were added
-  std::vector<std::string> kept{};  ///< what was there and was left as it is
+  /// So many numbers above the newest known may have been used since the backup; 0 = what was there before told all.
+  std::int64_t margin = 0;
+  int results = 0;                     ///< that were added
+  std::vector<std::string> unknown{};  ///< folders of results and evaluations that the backup does not know; they stay
+  std::vector<std::string> kept{};     ///< what was there and was left as it is
 };
 
 /// The daemon must not run. Database, edited recipes, calibration, studies and history take the place of those that are

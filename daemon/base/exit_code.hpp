@@ -30,6 +30,7 @@ namespace fvd {
     case ErrorCode::kStorageFull:
     case ErrorCode::kStorageWrite:
     case ErrorCode::kDatabase:
+    case ErrorCode::kBusy:  // another fvd has the database
       return exit_code::kIo;
     default:
       return exit_code::kInternal;

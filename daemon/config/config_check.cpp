@@ -37,14 +37,26 @@ bool is_host_name(const std::string& name) {
   });
 }
 
+/// True if a listener at the one address has the other too: "::" is of both families.
+bool has_too(const AddressBytes& every, const AddressBytes& other) {
+  static const AddressRange kIpv4 = AddressRange::parse("0.0.0.0/0").value();
+  return every == address_bytes("::") || (every == address_bytes("0.0.0.0") && kIpv4.contains(other));
+}
+
+/// With its mark, of an address like fe80::1%eth0; two links may have the same address.
+std::string_view zone_of(std::string_view address) {
+  return address.substr(std::min(address.find('%'), address.size()));
+}
+
 /// True if two listeners cannot have their ports at a time. Absent: there is no listener; 0 is any that is free.
 bool are_one_port(const std::string& address, std::optional<int> port, const std::string& other_address,
                   std::optional<int> other_port) {
   if (port.value_or(0) == 0 || port != other_port) return false;
   const auto bytes = address_bytes(address);
   const auto other_bytes = address_bytes(other_address);
-  const auto has_every = [](const auto& all) { return all == address_bytes("0.0.0.0") || all == address_bytes("::"); };
-  return bytes && other_bytes && (bytes == other_bytes || has_every(bytes) || has_every(other_bytes));
+  if (!bytes || !other_bytes) return false;
+  const bool are_same = bytes == other_bytes && zone_of(address) == zone_of(other_address);
+  return are_same || has_too(*bytes, *other_bytes) || has_too(*other_bytes, *bytes);
 }
 
 /// Empty if the folder can be listed.
@@ -165,7 +177,7 @@ class ConfigCheck {
   void check_travel(const StageConfig& stage) {
     const bool in_order = stage.min < stage.max;
     report_if(!in_order, "/stage/min_um", {"/stage/max_um"},
-              text(stage.min.value) + " is not below max_um, " + text(stage.max.value));
+              text(stage.min.value) + " is not below /stage/max_um, " + text(stage.max.value));
     report_if(in_order && stage.take_up >= stage.max - stage.min, "/stage/take_up_um",
               {"/stage/min_um", "/stage/max_um"},
               text(stage.take_up.value) + " leaves no room between min_um and max_um, " +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <regex>
 
 #include <nlohmann/json.hpp>
 
@@ -102,13 +103,29 @@ void add_file(LoadedConfig& loaded, const std::filesystem::path& file, const std
   if (document) loaded.origins.add_document(name.empty() ? file.string() : name, std::move(*document));
 }
 
-/// Says which of several documents a refused value stands in.
+/// Names where a value comes from that stands elsewhere than in the main file; empty otherwise.
+std::string origin_text(const ConfigOrigins& origins, const std::string& pointer, const std::string& main_file) {
+  const std::string origin = origins.of(pointer);
+  if (origin.starts_with(kPartFolder.string() + "/")) return "in " + origin + ", beside " + main_file;
+  return origin == "--set" ? "from --set" : "";
+}
+
+/// Says which of several documents a refused value stands in, and the other values that the message names.
 void name_origins(LoadedConfig& loaded, const std::string& main_file) {
+  static const std::regex kPointer("/[a-z_]+(/[a-z0-9_]+)+");
   for (Problem& problem : loaded.problems) {
     if (problem.pointer.empty()) continue;
-    const std::string origin = loaded.origins.of(problem.pointer);
-    if (origin.starts_with(kPartFolder.string() + "/"))
-      problem.message += " (in " + origin + ", beside " + main_file + ")";
+    std::string added;
+    const std::string& message = problem.message;
+    for (std::sregex_iterator name(message.begin(), message.end(), kPointer), end; name != end; ++name) {
+      if (name->str() == problem.pointer) continue;
+      const std::string origin = origin_text(loaded.origins, name->str(), main_file);
+      if (!origin.empty()) added += " (" + name->str() + " " + origin + ")";
+    }
+    if (const std::string origin = origin_text(loaded.origins, problem.pointer, main_file); !origin.empty()) {
+      added = " (" + origin + ")" + added;
+    }
+    problem.message += added;
   }
 }
 
@@ -119,6 +136,15 @@ bool read_documents(LoadedConfig& loaded, const std::filesystem::path& file, con
     add_file(loaded, part, (kPartFolder / part.filename()).string());
   }
   return loaded.problems.empty();
+}
+
+/// What is relative to the file, or to the current directory, is so no more: the text may be read from elsewhere.
+void make_absolute(Config& config) {
+  for (std::filesystem::path* path : {&config.stage.profile, &config.stage.replay_z_file, &config.camera.replay_dir,
+                                      &config.paths.recipe_dir, &config.paths.state_dir, &config.paths.runtime_dir,
+                                      &config.rpc.socket, &config.rpc.access.token_file, &config.temperature.file}) {
+    if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal();
+  }
 }
 
 }  // namespace
@@ -151,6 +177,7 @@ LoadedConfig load_config(const std::filesystem::path& file, const Overrides& ove
 std::string config_text(Config config) { return fields_to_json(description_of(config)).dump(2) + "\n"; }
 
 std::string config_text_with_origins(LoadedConfig loaded) {
+  make_absolute(loaded.config);
   return text_with_origins(fields_to_json(description_of(loaded.config)), loaded.origins);
 }
 

@@ -47,7 +47,7 @@ struct LoadedConfig {
 
 /// The configuration in force, as JSON text.
 [[nodiscard]] std::string config_text(Config config);
-/// The same with the origin of every value in a comment behind it; load_config() reads it.
+/// The same with the origin of every value in a comment behind it, and absolute paths: load_config() reads it anywhere.
 [[nodiscard]] std::string config_text_with_origins(LoadedConfig loaded);
 /// JSON Schema of the file; config/fvd.schema.json is this text.
 [[nodiscard]] std::string config_schema_text();

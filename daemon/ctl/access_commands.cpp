@@ -1,7 +1,9 @@
 #include "daemon/ctl/access_commands.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
+#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -35,9 +37,29 @@ int audit(const AccessArguments& arguments, RpcClient client, const Terminal& te
   return kExitOk;
 }
 
+constexpr std::chrono::seconds kStandstillTime{5};  ///< an axis halts, and is measured, within less
+constexpr std::chrono::milliseconds kLookPeriod{50};
+constexpr int kStageLost = 1111;  ///< nobody but the drive itself can tell any more
+
+/// True once the daemon says that the stage stands still; false where it does not in time, or cannot.
+bool await_standstill(RpcClient& client) {
+  const auto deadline = std::chrono::steady_clock::now() + kStandstillTime;
+  do {
+    const Json state = client.call("system.state");
+    if (state.value("part_release", false)) return true;
+    if (state.value("error_code", 0) == kStageLost) return false;
+    std::this_thread::sleep_for(kLookPeriod);
+  } while (std::chrono::steady_clock::now() < deadline);
+  return false;
+}
+
 int stop(RpcClient client, const Terminal& terminal) {
-  terminal.out << "stopped: " << client.call("stage.stop").at("stopped").get<std::string>() << std::endl;
-  return kExitOk;
+  const Json reply = client.call("stage.stop");
+  terminal.out << "stopped: " << reply.at("stopped").get<std::string>() << std::endl;
+  if (reply.value("standstill", false) || await_standstill(client)) return kExitOk;
+  throw Error(ErrorCode::kStagePosition,
+              "it is NOT confirmed that the stage stands still: look at the axis, and use the emergency stop if it "
+              "moves; 'fvdctl state' tells what is wrong");
 }
 
 int new_token(const AccessArguments& arguments, const Terminal& terminal) {
@@ -89,7 +111,7 @@ void add_access_commands(CLI::App& app, AccessArguments& a, const std::function<
   sub->callback(
       [&a, &chosen, connect, terminal] { chosen = [&a, connect, terminal] { return audit(a, connect(), terminal); }; });
 
-  sub = app.add_subcommand("stop", "stop whatever moves the stage, a job too");
+  sub = app.add_subcommand("stop", "stop whatever moves the stage, a job too, and see that it stands still");
   sub->callback([&chosen, connect, terminal] { chosen = [connect, terminal] { return stop(connect(), terminal); }; });
 
   CLI::App* token = app.add_subcommand("token", "make secrets by which callers are recognised");
@@ -101,9 +123,10 @@ void add_access_commands(CLI::App& app, AccessArguments& a, const std::function<
       ->check(CLI::IsMember({"view", "operate", "set_up", "administer"}));
   sub->callback([&a, &chosen, terminal] { chosen = [&a, terminal] { return new_token(a, terminal); }; });
 
-  sub = app.add_subcommand("kiosk-url",
-                           "print the address of the page for a kiosk that may operate, and the line of its "
-                           "new token for the credential file; asks no daemon");
+  sub = app.add_subcommand(
+      "kiosk-url",
+      "print the address of a page of your own (fvd serves none) for a kiosk that may operate, and the "
+      "line of its new token for the credential file; asks no daemon");
   sub->add_option("page", a.page, "address of the page, e.g. http://microscope-3/")->required();
   sub->add_option("name", a.name, "of the kiosk")->required();
   sub->callback([&a, &chosen, terminal] { chosen = [&a, terminal] { return kiosk_url(a, terminal); }; });

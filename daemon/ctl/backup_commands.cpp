@@ -1,7 +1,10 @@
 #include "daemon/ctl/backup_commands.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -10,6 +13,8 @@
 #include "daemon/backup/restore.hpp"
 #include "daemon/config/config_file.hpp"
 #include "daemon/ctl/exit_codes.hpp"
+#include "daemon/ctl/process_command.hpp"
+#include "daemon/store/store_marker.hpp"
 
 namespace fvd::ctl {
 
@@ -24,6 +29,10 @@ InstrumentPaths paths_of(const fs::path& config, const fs::path& instead) {
   const fs::path parts = base / "conf.d";
   const bool has_parts = fs::is_directory(parts, error) && !fs::is_empty(parts, error);
   const fs::path& source = fs::exists(config, error) || instead.empty() ? config : instead / "fvd.json";
+  if (!fs::exists(source, error)) {
+    throw Error(ErrorCode::kBadConfig,
+                "there is no " + source.string() + ": name the daemon's configuration by --config");
+  }
   const LoadedConfig loaded = merge_config(source, has_parts || instead.empty() ? parts : instead / "conf.d", base);
   throw_if_any(loaded.problems, ErrorCode::kBadConfig, source.string());
   const Config& read = loaded.config;
@@ -43,6 +52,17 @@ int backup(const BackupArguments& arguments, const Terminal& terminal) {
   return kExitOk;
 }
 
+/// The newer results, which have no job any more.
+void tell_unknown(const std::vector<std::string>& names, const Terminal& terminal) {
+  constexpr std::size_t kNamed = 10;
+  if (names.empty()) return;
+  terminal.out << names.size()
+               << " results or evaluations are not known to the backup; no call gives them, and the next start leaves "
+                  "their folders where they are:\n";
+  for (std::size_t i = 0; i < std::min(names.size(), kNamed); ++i) terminal.out << "  " << names[i] << "\n";
+  if (names.size() > kNamed) terminal.out << "  and " << names.size() - kNamed << " more\n";
+}
+
 int restore(const BackupArguments& arguments, const Terminal& terminal) {
   const fs::path folder = arguments.folder;
   const Restored restored = restore_backup(folder, paths_of(arguments.config, folder));
@@ -56,11 +76,21 @@ int restore(const BackupArguments& arguments, const Terminal& terminal) {
   for (const std::string& kept : restored.kept) {
     terminal.out << kept << " is there and stays as it is; the backup's is in " << folder.string() << "\n";
   }
-  terminal.out << (restored.numbers_are_exact
-                       ? "sequence numbers that were used since the backup stay used\n"
-                       : "sequence numbers may have been used since the backup: clients go on behind newest_seq\n")
+  tell_unknown(restored.unknown, terminal);
+  terminal.out << (restored.margin == 0 ? "sequence numbers that were used since the backup stay used"
+                                        : unknown_numbers_text(restored.margin))
+               << "\n"
                << std::flush;
   return kExitOk;
+}
+
+/// Another instrument than the one that was meant must not be copied, or overwritten.
+void require_no_daemon_named(const CLI::App& app, const std::string& command) {
+  for (const char* option : {"--address", "--runtime-dir"}) {
+    if (app.count(option) == 0) continue;
+    throw UsageError(command + " asks no daemon, so that " + option +
+                     " says nothing of whose data is meant: name the daemon's configuration by --config");
+  }
 }
 
 }  // namespace
@@ -70,7 +100,12 @@ void add_backup_commands(CLI::App& app, BackupArguments& a, const Terminal& term
     CLI::App* sub = app.add_subcommand(name, help);
     sub->add_option("folder", a.folder, folder)->required();
     sub->add_option("--config", a.config, "the daemon's configuration")->capture_default_str()->type_name("FILE");
-    sub->callback([&a, &chosen, terminal, run] { chosen = [&a, terminal, run] { return run(a, terminal); }; });
+    sub->callback([&app, &a, &chosen, terminal, run, name] {
+      chosen = [&app, &a, terminal, run, name] {
+        require_no_daemon_named(app, name);
+        return run(a, terminal);
+      };
+    });
     return sub;
   };
   add("backup", "copy all that the instrument knows, also while it measures", "to be made; must not exist", backup)

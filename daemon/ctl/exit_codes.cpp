@@ -22,6 +22,7 @@ int exit_code(ErrorCode code) noexcept {
       return kExitBadData;
     case ErrorCode::kStorageFull:
     case ErrorCode::kStorageWrite:
+    case ErrorCode::kDatabase:
       return kExitIo;
     case ErrorCode::kNotReady:
     case ErrorCode::kBusy:

@@ -12,7 +12,8 @@ inline constexpr int kExitVerdictFail = 2;       ///< `process`, `measure`: valu
 inline constexpr int kExitVerdictUncertain = 3;  ///< their uncertainty lets neither be stated
 inline constexpr int kExitVerdictInvalid = 4;    ///< a value with limits could not be measured
 inline constexpr int kExitUsage = 64;            ///< wrong arguments
-inline constexpr int kExitBadData = 65;          ///< a file, parameter, job or recipe that cannot be used
+inline constexpr int kExitBadData = 65;          ///< a file, parameter, job, recipe, address or token that cannot be
+                                                 ///< used, or a role that may not
 inline constexpr int kExitUnavailable =
     69;  ///< no daemon, camera or drive, no answer in time, or it takes no commands now
 inline constexpr int kExitInternal = 70;  ///< a bug on either side

@@ -8,7 +8,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "config/nearest_name.hpp"
 #include "core/base/error.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/ctl/access_commands.hpp"
@@ -29,13 +28,13 @@
 #include "daemon/ctl/stage_command.hpp"
 #include "daemon/ctl/study_commands.hpp"
 #include "daemon/ctl/suggest_command.hpp"
+#include "daemon/ctl/wrong_words.hpp"
 
 namespace fvd::ctl {
 
 namespace {
 
 constexpr std::chrono::seconds kCommandTimeout{330};  ///< the daemon gives a command up after 5 minutes
-constexpr int kNotAllowedCode = 1004;
 
 /// The options of all commands; CLI11 fills them.
 struct Arguments {
@@ -321,24 +320,6 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
   add_choice_options(*sub, a.suggest_choice);
 }
 
-/// What is wrong with a word that stands where a command should; empty where that is not what went wrong.
-std::string unknown_command(const CLI::App& app) {
-  const CLI::App* parent = &app;
-  for (auto inner = parent->get_subcommands(); !inner.empty(); inner = parent->get_subcommands()) {
-    parent = inner.front();
-  }
-  const std::vector<std::string> words = parent->remaining();
-  if (parent->get_require_subcommand_min() == 0 || words.empty() || words.front().starts_with('-')) return {};
-  std::vector<std::string> names;
-  std::string listed;
-  for (const CLI::App* command : parent->get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-    listed += (listed.empty() ? "" : ", ") + command->get_name();
-  }
-  return "'" + words.front() + "' is not a command" + (parent == &app ? "" : " of " + parent->get_name()) +
-         "; expected one of " + listed + did_you_mean(words.front(), names);
-}
-
 int run(std::vector<std::string> arguments, const Terminal& terminal) {
   Arguments values;
   Command chosen;
@@ -361,6 +342,9 @@ int run(std::vector<std::string> arguments, const Terminal& terminal) {
     app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {
     if (const std::string unknown = unknown_command(app); !unknown.empty()) return fail(terminal, unknown, kExitUsage);
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
+      return fail(terminal, unexpected_words(app), kExitUsage);
+    }
     return app.exit(error, terminal.out, terminal.err) == 0 ? kExitOk : kExitUsage;
   }
   try {

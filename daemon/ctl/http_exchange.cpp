@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.hpp"
+#include "daemon/ctl/rpc_client.hpp"
 
 namespace fvd::ctl {
 
@@ -60,8 +61,12 @@ std::string http_exchange(LineSocket& socket, std::string_view body, const std::
   socket.send_bytes(bytes.str(), timeout);
   const auto answer = receive(socket, timeout);
   if (http::to_status_class(answer.result()) != http::status_class::successful) {
-    throw Error(ErrorCode::kNotReady, "http://" + socket.peer() + " refused with status " +
-                                          std::to_string(answer.result_int()) + ": " + reason_of(answer));
+    const std::string refusal =
+        "http://" + socket.peer() + " refused with status " + std::to_string(answer.result_int()) + ": ";
+    if (answer.result() == http::status::unauthorized || answer.result() == http::status::forbidden) {
+      throw RpcError(kNotAllowedCode, refusal + reason_of(answer), {});  // as by the other ways
+    }
+    throw Error(ErrorCode::kNotReady, refusal + reason_of(answer));
   }
   return answer.body();
 }

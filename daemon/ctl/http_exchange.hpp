@@ -11,8 +11,9 @@
 namespace fvd::ctl {
 
 /// Posts the body to /api/jsonrpc on a connection that is kept. token: who calls; empty = nobody says. The body of the
-/// answer; empty for one without a body. Throws Error as LineSocket does; kNotReady for an answer that is no success of
-/// HTTP, with what the server says; kBadInput for one that is no HTTP.
+/// answer; empty for one without a body. Throws Error as LineSocket does; RpcError of code 1004 for status 401
+/// and 403, Error kNotReady for another answer that is no success of HTTP, with what the server says; kBadInput for one
+/// that is no HTTP.
 [[nodiscard]] std::string http_exchange(LineSocket& socket, std::string_view body, const std::string& token,
                                         std::chrono::milliseconds timeout);
 

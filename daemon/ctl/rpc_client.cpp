@@ -41,6 +41,10 @@ Json RpcClient::call(const std::string& method, const Json& params, std::chrono:
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     const std::string line = is_http_ ? http_exchange(socket_, text, token_, timeout) : socket_.receive_line(left);
+    if (line.starts_with("HTTP/")) {
+      throw Error(ErrorCode::kBadInput,
+                  socket_.peer() + " answers in HTTP: give --address http://" + socket_.peer() + " if it is an fvd");
+    }
     Json reply = Json::parse(line, nullptr, false);
     if (!reply.is_object() || reply.value("jsonrpc", Json()) != "2.0") refuse_reply(line, "is not JSON-RPC 2.0");
     if (reply.contains("method")) continue;  // a notification

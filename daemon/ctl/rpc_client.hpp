@@ -14,6 +14,8 @@ namespace fvd::ctl {
 
 using Json = nlohmann::ordered_json;
 
+inline constexpr int kNotAllowedCode = 1004;
+
 /// The daemon answered with an error object. what() is its message.
 class RpcError : public std::runtime_error {
  public:
@@ -40,8 +42,8 @@ class RpcClient {
   void log_in(const std::string& token);
 
   /// Returns the result. params: object or array. Notifications that arrive meanwhile are skipped.
-  /// Throws RpcError for an error reply; Error kNotReady, kTimeout; kInternal for a reply that is not JSON-RPC 2.0 or
-  /// answers another request.
+  /// Throws RpcError for an error reply; Error kNotReady, kTimeout; kBadInput for one in HTTP; kInternal for a reply
+  /// that is not JSON-RPC 2.0 or answers another request.
   [[nodiscard]] Json call(const std::string& method, const Json& params = Json::object(),
                           std::chrono::milliseconds timeout = kReplyTimeout);
 

@@ -86,7 +86,10 @@ DevicesHealth DeviceHub::health() const {
   if (health.camera.open) health.frames = camera_.get().health();
   if (!health.stage.open) return health;
   health.link = axis_.get().link_stats();
-  if (const auto seen = axis_.get().last_seen()) health.temperatures = seen->temperatures;
+  if (const auto seen = axis_.get().last_seen()) {
+    health.temperatures = seen->temperatures;
+    health.position = seen->position;
+  }
   return health;
 }
 

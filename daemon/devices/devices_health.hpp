@@ -22,6 +22,7 @@ struct DevicesHealth {
   CameraHealth frames{};
   std::optional<StageLinkStats> link{};          ///< nothing for an axis without a line
   std::vector<StageTemperature> temperatures{};  ///< that the drive tells
+  std::optional<Micrometers> position{};         ///< where the stage was seen last; nothing if that is not known
 };
 
 }  // namespace fvd

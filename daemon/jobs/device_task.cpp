@@ -15,24 +15,17 @@ void DeviceTask::foretell(const Outcome& outcome) noexcept {
 
 void DeviceTask::end(Outcome outcome) noexcept {
   foretell(outcome);
-  std::function<void(const Outcome&)> look;
-  {
-    const MutexLock lock(mutex_);
-    if (outcome_) return;
-    outcome_ = outcome;
-    look = std::exchange(look_, {});
-  }
-  if (look) look(outcome);
+  const MutexLock lock(mutex_);
+  if (outcome_) return;
+  // Before anybody sees the outcome: whoever has his answer finds what was noted of it.
+  if (look_) std::exchange(look_, {})(outcome);
+  outcome_ = std::move(outcome);
 }
 
 void DeviceTask::note_outcome(std::function<void(const Outcome&)> look) {
-  std::optional<Outcome> outcome;
-  {
-    const MutexLock lock(mutex_);
-    outcome = outcome_;
-    if (!outcome) look_ = std::move(look);
-  }
-  if (outcome) look(*outcome);
+  const MutexLock lock(mutex_);
+  if (outcome_) return look(*outcome_);
+  look_ = std::move(look);
 }
 
 DeviceTask::Outcome DeviceTask::perform(const Devices& devices, std::stop_token stop) const noexcept {

@@ -51,7 +51,8 @@ class DeviceTask {
   [[nodiscard]] Outcome perform(const Devices& devices, std::stop_token stop) const noexcept;
   /// Tells when_ended what the answer will be: while the devices are not free yet.
   void foretell(const Outcome& outcome) noexcept;
-  /// Calls `look` once with the answer, at once where it is there; must not throw.
+  /// Calls `look` once with the answer, at once where it is there, else before outcome() gives it. It must not throw,
+  /// nor ask this task.
   void note_outcome(std::function<void(const Outcome&)> look);
   /// Gives the answer; only the first call counts.
   void end(Outcome outcome) noexcept;

@@ -32,18 +32,6 @@ std::size_t memory_budget_bytes(const Config& config) {
   return static_cast<std::size_t>(config.compute.memory_budget_mib) << 20U;
 }
 
-/// A start loads a configuration.
-AuditEntry start_entry(const Config& config) {
-  AuditEntry entry;
-  entry.who = "fvd";
-  entry.role = role_name(Role::kAdminister);
-  entry.what = "configuration.load";
-  entry.detail =
-      std::string("fvd ") + kVersion + ", sha256 of the configuration in force " + sha256_of(config_text(config));
-  entry.outcome = "ok";
-  return entry;
-}
-
 }  // namespace
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
@@ -105,7 +93,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
         note_health();
       }) {
   board_.update([&](MachineRecord& machine) { machine.recipe = deps.store.prepared_recipe(); });
-  audit_.note(start_entry(config));
+  note_configuration(config, std::string("start of fvd ") + kVersion);
   const auto last = deps.store.latest();
   if (last && last->error == ErrorCode::kInterrupted && !last->acknowledged) {
     spdlog::warn("job {} of client {}, seq {}, part '{}': {}", last->job_id, last->request.client, last->request.seq,
@@ -114,6 +102,16 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
 }
 
 Engine::~Engine() { finish(); }
+
+void Engine::note_configuration(const Config& in_force, const std::string& what, std::string_view outcome) {
+  AuditEntry entry;
+  entry.who = "fvd";
+  entry.role = role_name(Role::kAdminister);
+  entry.what = "configuration.load";
+  entry.detail = what + "; sha256 of the configuration in force " + sha256_of(config_text(in_force));
+  entry.outcome = outcome;
+  audit_.note(std::move(entry));
+}
 
 void Engine::note_health() {
   std::error_code error;

@@ -3,6 +3,8 @@
 /// The parts that measure, wired: one machine, its devices, its thread, its jobs and commands.
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "core/base/clock.hpp"
 #include "core/runtime/worker_pool.hpp"
@@ -64,6 +66,9 @@ class Engine {
 
   /// What a reload changes while all goes on. context: any thread.
   void take(const StoreConfig& limits) { retention_.set_limits(limits); }
+
+  /// A row of the audit: a configuration was read. what: why, and what it changed. context: any thread.
+  void note_configuration(const Config& in_force, const std::string& what, std::string_view outcome = "ok");
 
   /// The instrument's constants, in <state_dir>/calibration. context: any thread.
   [[nodiscard]] CalibrationBook& calibrations() { return calibrations_; }

@@ -28,6 +28,7 @@ void require_result(const StoredJob& source) {
   if (job.state == JobState::kProcessing) {
     throw Error(ErrorCode::kBusy, "job " + job.job_id + " is still running; evaluate it when it has ended");
   }
+  require_not_removed(job);
   if (!source.result_json.empty() && !source.result_dir.empty()) return;
   throw Error(ErrorCode::kBadInput, "job " + job.job_id + " has no result that could be evaluated: it " +
                                         std::string(job_state_name(job.state)) +

@@ -34,8 +34,8 @@ class ResultEvaluator {
   ResultEvaluator& operator=(const ResultEvaluator&) = delete;
 
   /// The task ends with a JSON object: id, job_id, recipe, verdict (may be null), directory. Throws Error kBadInput
-  /// where the job has no result, kBadRecipe where the recipe measures nothing, kMemoryBudget with the figures, kBusy
-  /// while another one is under way, kShuttingDown.
+  /// where the job has no result, kResultRemoved where it has none any more, kBadRecipe where the recipe measures
+  /// nothing, kMemoryBudget with the figures, kBusy while another one is under way, kShuttingDown.
   [[nodiscard]] std::shared_ptr<DeviceTask> begin(const StoredJob& source, const Recipe& recipe);
 
   /// Takes no more. Waits for what runs, seconds at most; what has not begun is answered with kShuttingDown. May be

@@ -1,5 +1,6 @@
 #include "daemon/jobs/retention.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <exception>
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::minutes kPeriod{1};
+constexpr double kGib = 1U << 30U;
 constexpr std::chrono::minutes kLongestStep{10};  // of one result
 
 bool has_limits(const StoreConfig& config) {
@@ -103,17 +105,20 @@ void Retention::finish() {
 void Retention::set_limits(const StoreConfig& limits) {
   const MutexLock lock(mutex_);
   config_ = limits;
+  has_other_limits_ = true;
+  limits_changed_.notify_all();
 }
 
 void Retention::run(const std::stop_token& stop) {
-  Mutex mutex;
-  Condition never;
   // At the start in any case: removals that were cut off are finished, whatever the limits are now.
   for (bool first = true; !stop.stop_requested(); first = false) {
     if (first || has_limits(config())) run_once(stop);
     ticks_.rest();
-    MutexLock lock(mutex);
-    (void)never.wait_for(lock, stop, kPeriod, [] { return false; });
+    MutexLock lock(mutex_);
+    (void)limits_changed_.wait_for(lock, stop, kPeriod, [this] {
+      mutex_.assert_held();
+      return std::exchange(has_other_limits_, false);
+    });
   }
 }
 
@@ -169,6 +174,29 @@ void Retention::make_room(const std::stop_token& stop) {
     step.slices_alone ? remove_slices(job) : remove_result(job);
     sizes_.erase(job.status.job_id);
   }
+  note_shortage();
+}
+
+void Retention::note_shortage() {
+  const int wanted_gib = config().keep_free_gib;
+  const fs::space_info disk = fs::space(results_);
+  const auto free_gib = static_cast<double>(disk.available) / kGib;
+  const auto may_go = [](const StoredJob& job) { return job.status.acknowledged && !job.files_pending; };
+  const auto any_may_go = [&] {  // what was freed by the last steps may be less than was counted: the next look goes on
+    const std::vector<StoredJob> left = store_.results().on_disk();
+    return std::any_of(left.begin(), left.end(), may_go);
+  };
+  const bool is_short = wanted_gib > 0 && free_gib < wanted_gib && !any_may_go();
+  const bool was_short = std::exchange(is_short_, is_short);
+  if (!is_short_ || was_short) return;
+  const auto whole_gib = static_cast<double>(disk.capacity) / kGib;
+  spdlog::warn(
+      "store.keep_free_gib: {} GiB are to be free, {:.1f} of the disk's {:.1f} are, and no acknowledged result is left "
+      "to remove: {}",
+      wanted_gib, free_gib, whole_gib,
+      whole_gib < wanted_gib ? "the disk is smaller than that, and every result is removed once it is acknowledged: "
+                               "give less"
+                             : "acknowledge results, or make room on the disk");
 }
 
 void Retention::remove_slices(const StoredJob& job) {

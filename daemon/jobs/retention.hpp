@@ -32,7 +32,7 @@ class Retention {
 
   /// Looks at once, and once a minute, while a limit is set.
   void start();
-  /// Other limits from the next look on. context: any thread.
+  /// Other limits, by which it looks at once. context: any thread.
   void set_limits(const StoreConfig& limits);
   void finish();
 
@@ -57,11 +57,16 @@ class Retention {
   /// Of the job's result and of its evaluations.
   void remove_folders(const std::string& job_id);
   void remove_slices(const StoredJob& job);
+  /// Warns once where all that may go has gone, and the disk still has less free than it should.
+  void note_shortage();
 
   JobStore& store_;
   mutable Mutex mutex_;
+  Condition limits_changed_;
   StoreConfig config_ FVD_GUARDED_BY(mutex_);
+  bool has_other_limits_ FVD_GUARDED_BY(mutex_) = false;  // that it has not looked by
   const std::filesystem::path results_;
+  bool is_short_ = false;                                        // and that was told
   std::map<std::string, Size> sizes_;                            // of results that do not change any more
   std::map<std::string, std::vector<std::string>> evaluations_;  // on the disk, by job
   ThreadTicks ticks_;

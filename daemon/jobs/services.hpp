@@ -134,7 +134,7 @@ class ResultService {
   virtual int acknowledge(const JobKey& key) = 0;
 
   /// Evaluates the result's surface by another recipe into a record of its own; see ResultEvaluator. Throws Error
-  /// kUnknownJob, kUnknownRecipe, kBadRecipe, kBadInput, kMemoryBudget, kBusy, kShuttingDown.
+  /// kUnknownJob, kResultRemoved, kUnknownRecipe, kBadRecipe, kBadInput, kMemoryBudget, kBusy, kShuttingDown.
   [[nodiscard]] virtual std::shared_ptr<DeviceTask> evaluate(const JobKey& key, const std::string& recipe_id) = 0;
 };
 

@@ -14,6 +14,7 @@ import sys
 import time
 
 HERE = pathlib.Path(__file__).parent
+COLUMN = 30  # where --help begins the texts
 
 
 class Entry:
@@ -40,14 +41,17 @@ class Command:
     @staticmethod
     def _read(text):
         sections, entries, about = {}, None, []
-        for line in text.splitlines():
+        lines = text.splitlines()
+        for line, following in zip(lines, lines[1:] + [""]):
             if re.match(r"\S.*:$", line):
                 entries = sections.setdefault(line[:-1], [])
             elif entries is None:
                 if line.strip() and not line.startswith("Usage:"):
                     about.append(line.strip())
             elif re.match(r"  \S", line):
-                head, _, rest = line[2:].partition("  ")
+                # A name that fills its column has one blank behind it; a longer one has its text in the next line.
+                fills = line[COLUMN - 1:COLUMN] == " " and not following.startswith(" " * COLUMN)
+                head, rest = (line[2:COLUMN], line[COLUMN:]) if fills else (line[2:], "")
                 entries.append(Entry(head.strip(), rest.strip()))
             elif line.strip() and entries:
                 entries[-1].text = (entries[-1].text + " " + line.strip()).strip()

@@ -65,9 +65,12 @@ void Database::take_the_file() {
   lock_ = UniqueFd(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
   for (int waited_ms = 0; ::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0; waited_ms += kLockPoll_ms) {
     const int reason = errno;
-    if (reason != EWOULDBLOCK || waited_ms >= kBusyTimeout_ms) {
-      throw Error(ErrorCode::kDatabase, "database " + file_.string() + ": locking: " + std::strerror(reason) +
-                                            (reason == EWOULDBLOCK ? advice(SQLITE_BUSY) : std::string()));
+    if (reason != EWOULDBLOCK) {
+      throw Error(ErrorCode::kDatabase, "database " + file_.string() + ": locking: " + std::strerror(reason));
+    }
+    if (waited_ms >= kBusyTimeout_ms) {
+      throw Error(ErrorCode::kBusy, "database " + file_.string() +
+                                        " is in use; is another fvd running with the same state_dir? Stop it first");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(kLockPoll_ms));  // flock() knows no deadline
   }

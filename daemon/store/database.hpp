@@ -20,7 +20,7 @@ class Database {
  public:
   /// Opens or creates the file; its folder must exist. Writes nothing to a file that is there. No other Database of
   /// this kind, of this or another process, opens the file until destruction. Throws Error kDatabase naming the file
-  /// and the reason, kStorageFull.
+  /// and the reason, kBusy while another one has it, kStorageFull.
   explicit Database(const std::filesystem::path& file);
   /// A second connection to an open one's file, which sees what was committed and waits for no commit. Writing through
   /// it fails. `owner` outlives it. Throws Error kDatabase.
@@ -30,8 +30,8 @@ class Database {
   /// do not wait for it. Throws Error kDatabase, also where the file system cannot do that, kStorageFull.
   void use_write_ahead_log();
 
-  /// Moves what the write-ahead log holds into the file, as far as no reader still needs it there; waits for nobody, and
-  /// no commit waits for it. Throws Error kDatabase, kStorageFull.
+  /// Moves what the write-ahead log holds into the file, as far as no reader still needs it there; waits for nobody,
+  /// and no commit waits for it. Throws Error kDatabase, kStorageFull.
   void move_log();
 
   /// Runs statements without results. Throws Error kDatabase, kStorageFull.

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <ctime>
 
+#include "core/base/error.hpp"
+
 namespace fvd {
 
 std::string_view job_state_name(JobState state) noexcept {
@@ -20,6 +22,13 @@ std::string_view job_state_name(JobState state) noexcept {
       return "failed";
   }
   return "failed";
+}
+
+void require_not_removed(const JobStatus& job) {
+  if (job.removed_utc.empty()) return;
+  throw Error(ErrorCode::kResultRemoved, "the result of job " + job.job_id + " was removed at " + job.removed_utc +
+                                             " to make room, as the configuration's group store says: job.status " +
+                                             "tells what the job came to");
 }
 
 std::string utc_now() {

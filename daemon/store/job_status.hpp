@@ -50,6 +50,9 @@ struct JobStatus {
   std::string removed_utc;    ///< when its result was removed to make room; empty = it was not
 };
 
+/// Throws Error kResultRemoved where the job's result was removed, and says when.
+void require_not_removed(const JobStatus& job);
+
 /// This moment as ended_utc tells it.
 [[nodiscard]] std::string utc_now();
 /// Seconds since a moment that utc_now() told; 0 for one that lies ahead, because clocks are set, and for no moment.

@@ -32,17 +32,6 @@ std::filesystem::path checked_file(const std::filesystem::path& file, const JobS
   return with_folder(file);
 }
 
-/// An older copy was put in the place of the database that the marker tells of.
-bool is_older(const Database& database, const StoreMarker& marker) {
-  if (marker.epoch > scalar(database, "SELECT epoch FROM starts")) return true;
-  if (!marker.file.empty() && marker.file != file_mark(database.file())) return true;  // a copy of the same epoch
-  const NewestSeqs newest = newest_seqs_in(database);
-  return std::any_of(marker.newest_seq.begin(), marker.newest_seq.end(), [&newest](const auto& noted) {
-    const auto known = newest.find(noted.first);
-    return known == newest.end() || known->second < noted.second;
-  });
-}
-
 void remember_in(const Database& database, const std::string& recipe_id) {
   Statement(database, "INSERT OR REPLACE INTO prepared_recipe (one, recipe) VALUES (1, ?)").bind(recipe_id).run();
 }
@@ -100,10 +89,10 @@ void JobStore::Impl::count_start() {
   migrate(database);
   Transaction transaction(database);
   if (found && is_older(database, *found)) {
-    spdlog::warn(
-        "database {}: it is older than the one of before, or another file: its epoch goes on behind {}; numbers that "
-        "may have been used are not run again",
-        database.file().string(), found->epoch);
+    spdlog::warn("database {}: it is older than the one of before, or another file: its epoch goes on behind {}; {}",
+                 database.file().string(), found->epoch,
+                 found->margin == 0 ? std::string("the numbers that were used since are known, and are not run again")
+                                    : unknown_numbers_text(found->margin));
     Statement(database, "UPDATE starts SET epoch = max(epoch, ?)").bind(found->epoch).run();
     raise_seq_floors(database, found->newest_seq, found->margin);
   }

@@ -1,5 +1,6 @@
 #include "daemon/store/store_marker.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -67,6 +68,22 @@ void write_marker(const fs::path& database, const StoreMarker& marker) {
   const nlohmann::ordered_json json{
       {"epoch", marker.epoch}, {"newest_seq", marker.newest_seq}, {"margin", marker.margin}, {"file", marker.file}};
   replace_file(marker_file(database), [text = json.dump() + "\n"](const ByteSink& sink) { sink(text); });
+}
+
+bool is_older(const Database& database, const StoreMarker& marker) {
+  if (marker.epoch > scalar(database, "SELECT epoch FROM starts")) return true;
+  if (!marker.file.empty() && marker.file != file_mark(database.file())) return true;  // a copy of the same epoch
+  const NewestSeqs newest = newest_seqs_in(database);
+  return std::any_of(marker.newest_seq.begin(), marker.newest_seq.end(), [&newest](const auto& noted) {
+    const auto known = newest.find(noted.first);
+    return known == newest.end() || known->second < noted.second;
+  });
+}
+
+std::string unknown_numbers_text(std::int64_t margin) {
+  return "which numbers were used since is not known here: of each client those up to " + std::to_string(margin) +
+         " above its newest that is known are not run again; a client that may have used higher ones goes on behind "
+         "its own highest";
 }
 
 void require_no_lost_database(const fs::path& database) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/store/database.hpp"
 #include "daemon/store/sequence_numbers.hpp"
 
 namespace fvd {
@@ -31,6 +32,13 @@ struct StoreMarker {
 
 /// Durable at the return, the old one or the new one at any moment. Throws Error kStorageWrite, kStorageFull.
 void write_marker(const std::filesystem::path& database, const StoreMarker& marker);
+
+/// An older copy was put in the place of the database that the marker tells of, or another database. Throws Error
+/// kDatabase for one that cannot be read.
+[[nodiscard]] bool is_older(const Database& database, const StoreMarker& marker);
+
+/// For people: which numbers are refused where nobody knows what was used since, and what a client does beyond them.
+[[nodiscard]] std::string unknown_numbers_text(std::int64_t margin);
 
 /// Throws Error kDatabase, with what to do, if the database is missing where there was one: its marker or results of
 /// jobs are there.

@@ -155,8 +155,14 @@ struct HttpServer::Impl {
     acceptor.close(ignored);
     const auto all = sessions;  // a copy, as in resume_all()
     for (const auto& session : all) session->end_wait_now();
-    const bool is_quiet = std::none_of(sessions.begin(), sessions.end(), is_answered);
-    if (is_quiet || std::chrono::steady_clock::now() >= deadline) return context.stop();
+    const bool is_quiet = std::none_of(sessions.begin(), sessions.end(), [](const auto& session) {
+      return session->at_work() != HttpSession::AtWork::kNothing;
+    });
+    if (is_quiet) return context.stop();
+    if (std::chrono::steady_clock::now() >= deadline) {
+      for (const auto& session : all) session->give_up();
+      return context.stop();
+    }
     pause.expires_after(kShutdownPollPeriod);
     pause.async_wait([this, deadline](ErrorCodeOf) { shut_down(deadline); });
   }

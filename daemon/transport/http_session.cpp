@@ -197,8 +197,9 @@ void HttpSession::recognise() {
 
 void HttpSession::take_identity(std::pair<std::optional<Identity>, std::string> found) {
   if (!found.second.empty()) {
-    spdlog::error("nobody can be recognised by a token: {}", found.second);
-    return refuse({503, "no_tokens", "the file of tokens cannot be read; the log says why"});
+    const std::string why = "nobody can be recognised by a token: " + found.second;
+    note_refusal(why);
+    return refuse({503, "no_tokens", why});
   }
   if (!found.first) return refuse_token("nobody has this token");
   caller_.who = *std::move(found.first);
@@ -218,10 +219,7 @@ void HttpSession::refuse_token(const std::string& why) {
 }
 
 void HttpSession::note_refusal(const std::string& why) {
-  const auto count = host_.refused_calls.count_to_tell(address_, HostClock::now());
-  if (!count) return;
-  spdlog::warn("HTTP from {} was refused: {}; {} requests from there since the last that was told", caller_.peer, why,
-               *count);
+  host_.refused_calls.tell(address_, "HTTP from " + caller_.peer + " was refused: " + why);
 }
 
 void HttpSession::answer() {
@@ -262,6 +260,10 @@ void HttpSession::watch_client() {
 void HttpSession::end_wait_now() {
   is_ending_ = true;
   check_wait(false);
+}
+
+void HttpSession::give_up() {
+  if (waiting_) end_wait(host_.dispatcher.ended(*waiting_));
 }
 
 void HttpSession::check_wait(bool timed_out) {

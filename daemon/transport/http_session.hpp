@@ -54,6 +54,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void resume() { check_wait(false); }
   /// The same at the daemon's end, which answers it in any case.
   void end_wait_now();
+  /// Answers what waits for the worker too, which does not come back in time.
+  void give_up();
   /// What a connection has at work, which says when it gives way to another one.
   enum class AtWork { kNothing, kLogIn, kAnswer };
   /// kAnswer: from a whole request of a known caller to the last byte of its answer; it never gives way.

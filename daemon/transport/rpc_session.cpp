@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
 /// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
-/// A line waits for its turn after so many looks: with a client's many waits and lines, no work by their product.
+/// A line waits for its turn after so many looks, unless it is urgent: with a client's many waits and lines, no work by
+/// their product.
 constexpr int kMostLooks = 4;
 constexpr std::string_view kTerminators("\n\r\0", 3);
 constexpr std::chrono::milliseconds kLongestLineEnd{3000};  // from a text to its end: networks repeat what they lose
@@ -202,17 +203,17 @@ void RpcSession::overtake() {
   const auto behind = waiting_ ? Dispatcher::Behind::kWait : Dispatcher::Behind::kWork;
   while (!refused_ && looked_at_ < lines_.size()) {
     const auto line = lines_.begin() + static_cast<std::ptrdiff_t>(looked_at_);
+    // A line of another protocol is refused when its turn comes, and nothing behind it is read.
+    if (begins_foreign_protocol(line->text) || mistake_in(line->text, line->end)) return;
     if (line->looks == kMostLooks) {
       ++looked_at_;
       continue;
     }
-    ++line->looks;
-    // A line of another protocol is refused when its turn comes, and nothing behind it is read.
-    if (begins_foreign_protocol(line->text) || mistake_in(line->text, line->end)) return;
     Caller caller = caller_;
     caller.received = line->received;
     auto handled = host_.dispatcher.try_overtake(line->text, caller, behind);
     if (!handled) {
+      if (!host_.dispatcher.is_urgent(line->text)) ++line->looks;
       ++looked_at_;
       continue;
     }

@@ -73,7 +73,7 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
     std::string text;
     LineEnd end = LineEnd::kBreak;
     HostTime received;  ///< when its end came, however long it waits then
-    int looks = 0;      ///< so often it was asked whether it may overtake
+    int looks = 0;      ///< so often it was asked in vain whether it may overtake; not of what is urgent
   };
 
   /// Restarts the idle timeout; an unfinished line does not restart it, an empty one does.

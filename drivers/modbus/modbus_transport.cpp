@@ -136,7 +136,7 @@ bool ModbusTransport::connect(std::string& error) {
     error = modbus_strerror(code);
     if (code == EINPROGRESS || code == ETIMEDOUT) {
       error = "nobody answered the connection within " + std::to_string(config_.response_timeout.count() * 9 / 10) +
-              " ms: is the host on and its address right, or does a firewall drop it?";
+              " ms, or a firewall drops it";
     } else if (code == ECONNREFUSED && is_tcp()) {
       explain_name(std::get<ModbusTcpEndpoint>(config_.endpoint).host, error);
     }

@@ -1,7 +1,8 @@
 #pragma once
 
-/// What the program logs.
+/// The log of a test.
 
+#include <cstddef>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -23,6 +24,13 @@ class CapturedLog {
   CapturedLog& operator=(const CapturedLog&) = delete;
   /// Once nobody else logs.
   [[nodiscard]] std::string text() const { return text_.str(); }
+  /// So many lines have these words. Once nobody else logs.
+  [[nodiscard]] std::size_t lines_with(const std::string& words) const {
+    std::istringstream lines(text());
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line);) count += line.find(words) == std::string::npos ? 0 : 1;
+    return count;
+  }
 
  private:
   std::ostringstream text_;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One part after the other, as the program of a line does it: line_loop.py [HOST [PORT]], part ids on standard input."""
+"""One part after the other, as the program of a line does it: line_loop.py RECIPE [HOST [PORT]], part ids on standard input."""
 
 import json
 import socket
@@ -11,8 +11,9 @@ SEQ_CONFLICT, SEQ_STALE, UNKNOWN_JOB, INTERRUPTED = 1009, 1010, 1007, 1014
 
 
 class Line:
-    def __init__(self, host, port):
+    def __init__(self, host, port, recipe=None):
         self.address, self.socket, self.id = (host, port), None, 0
+        self.recipe = recipe  # by its name: the prepared one is that of whoever came last
         self.session, self.is_free = None, False  # is_free: the part was let go
 
     def ask(self, method, expected=(), **params):
@@ -59,7 +60,8 @@ class Line:
         while not self.ask("system.state", format="compact")["ready"]:
             time.sleep(POLL_S)
         known = (SEQ_CONFLICT, SEQ_STALE, INTERRUPTED)
-        started = self.ask("job.start", known, seq=seq, part_id=part, session=self.session)
+        started = self.ask("job.start", known, seq=seq, part_id=part, session=self.session,
+                           recipe=self.recipe)
         if started.get("code") == SEQ_CONFLICT:
             return self.measure(part, self.begin())
         while True:  # also after 1010, 1014: the first request may have come through
@@ -91,8 +93,8 @@ class Line:
                 time.sleep(POLL_S)
 
 
-def run(host="127.0.0.1", port=7411):
-    line = Line(host, int(port))
+def run(recipe, host="127.0.0.1", port=7411):
+    line = Line(host, int(port), recipe)
     seq = line.begin()
     for part in map(str.strip, sys.stdin):
         result = line.measure(part, seq)
@@ -102,4 +104,6 @@ def run(host="127.0.0.1", port=7411):
 
 
 if __name__ == "__main__":
+    if not 2 <= len(sys.argv) <= 4:
+        sys.exit(__doc__)
     run(*sys.argv[1:])

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "daemon/access/access_error.hpp"
 #include "daemon/api/methods/device_task.hpp"
@@ -58,15 +59,16 @@ void describe_control(Fields& fields) {
   const ResultFields result(fields);
   result.text("owner", "who has control, as he calls himself; empty = nobody");
   result.text("who", "as whom he was recognised; empty = nobody");
-  result.number("remaining_s", "until it ends by itself");
-  result.boolean("yours", "the caller has it");
+  result.number("remaining_s", "until it ends by itself; 0: nobody has it, or a job still runs, and it ends with that");
+  result.boolean("yours", "the caller has it, by this or by another connection that is recognised as the same");
 }
 
 void describe_audit(Fields& fields) {
   ResultFields(fields).any(
       "entries",
       "list, the newest first: number, time_utc, who, role, peer, client, what, detail (parameters, "
-      "shortened), outcome (ok, or an error's name)");
+      "shortened; of many refusals how many), outcome (ok, accepted: a row with its end follows, or an error's "
+      "name)");
 }
 
 Reply identity_json(const Identity& who) { return {{"who", who.name}, {"role", role_name(who.role)}}; }
@@ -76,7 +78,7 @@ Reply control_json(const std::optional<ControlLease::Holder>& holder, const Call
   const auto left = std::chrono::duration<double>(holder->until - HostClock::now()).count();
   return {{"owner", holder->owner},
           {"who", holder->who},
-          {"remaining_s", std::max(0.0, left)},
+          {"remaining_s", std::round(std::max(0.0, left) * 1000) / 1000},
           {"yours", holder->who == caller.who.name}};
 }
 

@@ -19,7 +19,8 @@ void describe_health(Fields& fields) {
   result.any("stage",
              "an object: open, openings; if it has a line also, since it was opened: requests, retries, unanswered, "
              "refused, put_off, reconnects, implausible, discarded_bytes, latency_p50_us, latency_p99_us; "
-             "temperatures_c by name where the drive tells them");
+             "temperatures_c by name where the drive tells them; z_um, where it was at the last look between jobs and "
+             "commands, not its place while one runs, if that is known");
   result.any("disk", "an object: free_bytes, size_bytes of the file system of the results", Presence::kSometimes);
 }
 
@@ -48,6 +49,7 @@ Reply stage_of(const DevicesHealth& health) {
                   {"latency_p50_us", link->latency_p50_us},
                   {"latency_p99_us", link->latency_p99_us}});
   }
+  if (health.position) stage["z_um"] = health.position->value;
   for (const StageTemperature& temperature : health.temperatures) {
     stage["temperatures_c"][temperature.name] = temperature.celsius;
   }

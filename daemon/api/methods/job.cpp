@@ -28,7 +28,9 @@ struct StartParams {
     fields.require("seq");
     fields.text("part_id", part_id, kMaxForeignText_bytes, "1 to 64 printable ASCII characters");
     fields.require("part_id");
-    fields.text("recipe", recipe, kMaxForeignText_bytes, "recipe id; empty = the prepared one");
+    fields.text("recipe", recipe, kMaxForeignText_bytes,
+                "recipe id, the prepared one from then on; empty = the prepared one, which any client's job.start and "
+                "recipe.prepare change");
     client.describe(fields);
     fields.optional("temperature_c", temperature_c, [](Fields& inner, double& value) {
       inner.number("temperature_c", value, {-50.0, 100.0},
@@ -112,7 +114,8 @@ Answer wait_for_job(const Services& services, const Call& call, const WaitParams
 void add_job_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
   methods["job.start"] = {
-      .about = {.summary = "Starts a measurement; answers once its row is on disk",
+      .about = {.summary =
+                    "Starts a measurement, and makes its recipe the prepared one; answers once its row is on disk",
                 .role = Role::kOperate,
                 .params = described<StartParams>(),
                 .result = describe_started,

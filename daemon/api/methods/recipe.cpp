@@ -194,7 +194,8 @@ void add_recipe_methods(MethodTable& methods, const Services& services) {
   using enum ErrorCode;
   add_reading_methods(methods, services);
   methods["recipe.prepare"] = {
-      .about = {.summary = "Checks a recipe and makes it the one for jobs that name none",
+      .about = {.summary = "Checks a recipe and makes it the one for jobs that name none, of all clients, until "
+                           "another is prepared or any job names another",
                 .role = Role::kOperate,
                 .params = described<RecipeParams>(),
                 .result = describe_prepared,

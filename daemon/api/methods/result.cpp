@@ -55,12 +55,7 @@ void describe_acknowledged(Fields& fields) {
 
 Reply result_of(const Services& services, const JobKey& key, const ReplyForm& form, std::size_t envelope_bytes) {
   const StoredJob stored = services.results.stored(key);
-  if (!stored.status.removed_utc.empty()) {
-    throw Error(ErrorCode::kResultRemoved, "the result of job " + stored.status.job_id + " was removed at " +
-                                               stored.status.removed_utc +
-                                               " to make room, as the configuration's group store says: job.status " +
-                                               "tells what the job came to");
-  }
+  require_not_removed(stored.status);
   return result_reply(stored, form, envelope_bytes);
 }
 
@@ -84,8 +79,8 @@ void add_result_methods(MethodTable& methods, const Services& services) {
                 .role = Role::kSetUp,
                 .params = described<EvaluateParams>(),
                 .result = describe_new_record,
-                .errors = {kBusy, kUnknownJob, kUnknownRecipe, kBadRecipe, kBadInput, kSurfaceFile, kMemoryBudget,
-                           kTimeout, kShuttingDown, kStorageFull, kStorageWrite, kDatabase},
+                .errors = {kBusy, kUnknownJob, kResultRemoved, kUnknownRecipe, kBadRecipe, kBadInput, kSurfaceFile,
+                           kMemoryBudget, kTimeout, kShuttingDown, kStorageFull, kStorageWrite, kDatabase},
                 .may_wait = true,
                 .needs_id = true},
       .run = with<EvaluateParams>([&results = services.results](const Call& call, const EvaluateParams& params) {

@@ -94,7 +94,12 @@ std::string_view stopped_name(JobService::Stopped stopped) {
 }
 
 void describe_stopped(Fields& fields) {
-  ResultFields(fields).text("stopped", "what had the stage: job, command, nothing");
+  const ResultFields result(fields);
+  result.text("stopped", "what had the stage: job, command, nothing");
+  result.boolean("standstill",
+                 "true: measured, and nothing moves the stage. false: not known, the motion is just being ended or the "
+                 "stage is lost: part_release of system.state tells; where it does not follow within seconds look at "
+                 "the axis, and use the emergency stop");
 }
 
 void describe_moved(Fields& fields) { ResultFields(fields).number("z_um", "where the stage stands now"); }
@@ -112,8 +117,10 @@ void add_stop_and_jog(MethodTable& methods, const Services& services) {
                 .result = describe_stopped,
                 .is_urgent = true,
                 .is_audited = true},
-      .peek = [&jobs = services.jobs](const Call&) -> std::optional<Answer> {
-        return Reply{{"stopped", stopped_name(jobs.stop_motion())}};
+      .peek = [services](const Call&) -> std::optional<Answer> {
+        const auto stopped = services.jobs.stop_motion();
+        return Reply{{"stopped", stopped_name(stopped)},
+                     {"standstill", services.machine.snapshot()->signals.part_release}};
       }};
   auto errors = kMotionErrors;
   errors.insert(errors.end(), {ErrorCode::kNotReady, ErrorCode::kBusy, ErrorCode::kTimeout, ErrorCode::kAborted,

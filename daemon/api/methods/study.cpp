@@ -146,8 +146,8 @@ Reply calibration(const StudyService& studies, const CalibrationParams& params) 
     return params.id.empty() ? version.objective == params.objective : version.id == params.id;
   });
   if (found == versions.end()) {
-    const std::string which =
-        params.id.empty() ? "for the objective '" + params.objective + "'" : "'" + params.id + "'";
+    const std::string objective = params.objective.empty() ? "yet" : "for the objective '" + params.objective + "'";
+    const std::string which = params.id.empty() ? objective : "'" + params.id + "'";
     throw Error(ErrorCode::kCalibrationMissing, "there are no constants " + which + "; see calibrate.accept");
   }
   Reply reply{

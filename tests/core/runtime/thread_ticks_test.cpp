@@ -1,5 +1,8 @@
 #include "core/runtime/thread_ticks.hpp"
 
+#include <atomic>
+#include <future>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,6 +68,25 @@ TEST(ThreadTicks, IsNotOlderThanNowWhenItTicksDuringTheLook) {
   ThreadTicks ticks("camera", milliseconds(500));
   ticks.tick(kStart + milliseconds(1));
   EXPECT_THAT(stalled_threads(kStart), IsEmpty());
+}
+
+TEST(ThreadTicks, DoesNotStallBetweenALongStepAndAShortOne) {
+  ThreadTicks ticks("machine", milliseconds(10));
+  std::atomic<HostTime> now{kStart};
+  std::atomic<bool> is_over{false};
+  auto looks = std::async(std::launch::async, [&] {
+    std::size_t stalled = 0;
+    while (!is_over) stalled += stalled_threads(now).size();
+    return stalled;
+  });
+  for (int i = 0; i < 200'000; ++i) {
+    ticks.tick(now, milliseconds(1000));
+    now = now.load() + milliseconds(900);
+    ticks.tick(now);
+    now = now.load() + milliseconds(9);
+  }
+  is_over = true;
+  EXPECT_EQ(looks.get(), 0U);
 }
 
 }  // namespace

@@ -66,6 +66,18 @@ TEST_F(AnInstrumentWithSeveralCallers, GivesControlToForceOnlyBetweenJobs) {
   }
 }
 
+TEST_F(AnInstrumentWithSeveralCallers, TellsWhetherStandstillIsKnownAfterAStop) {
+  EXPECT_EQ(answer_to(plc_, call("stage.stop"))["result"], (json{{"stopped", "command"}, {"standstill", true}}));
+  service_.machine.emplace();  // of a stage that was lost in motion nothing is known
+  EXPECT_EQ(answer_to(plc_, call("stage.stop"))["result"]["standstill"], false);
+}
+
+TEST_F(AnInstrumentWithSeveralCallers, TellsWhereTheStageIsWhereThatIsKnown) {
+  EXPECT_FALSE(answer_to(page_, call("system.health"))["result"]["stage"].contains("z_um"));
+  service_.machine.emplace().health.position = Micrometers{-12.5};
+  EXPECT_EQ(answer_to(page_, call("system.health"))["result"]["stage"]["z_um"], -12.5);
+}
+
 TEST_F(AnInstrumentWithSeveralCallers, StopsWithoutAWorker) {
   service_.current = JobStatus{};
   service_.current->job_id = "J1";

@@ -145,6 +145,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     job.job_id = "job-" + (request.client == kDefaultClient ? "" : request.client + "-") + std::to_string(request.seq);
     job.request = request;
     job.slices_planned = 21;
+    if (shows_started) current = job;
     return {jobs_[key] = job, false};
   }
   [[nodiscard]] JobStatus job(const JobKey& key) const override {
@@ -167,6 +168,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   JobStatus abort(const JobKey& key) override { return job(key); }
   std::optional<JobStatus> try_abort(const JobKey& key) override {
     require_works();
+    const std::lock_guard lock(mutex_);
     if (!current || !names(key, *current)) return std::nullopt;
     ++aborts;
     return current;
@@ -223,6 +225,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     if (recipe_id != "chapter") throw Error(ErrorCode::kUnknownRecipe, "no recipe '" + recipe_id + "'");
   }
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
+    const std::lock_guard lock(mutex_);
     if (machine) return std::make_shared<const MachineStatus>(*machine);
     MachineStatus status;
     status.state = ScanState::kReady;
@@ -275,6 +278,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   std::function<void()> before_preview;
   /// The snapshot's job.
   std::optional<JobStatus> current;
+  bool shows_started = false;  ///< in the snapshot
   int starts = 0;
   std::optional<ErrorCode> refusal;
   /// What every question for jobs and results fails with.

@@ -28,6 +28,7 @@ class TheStructuredText : public ADispatcher {
     plc_.set("pause.Q", std::int64_t{1});
     plc_.set("ask.busy", std::int64_t{0});
     plc_.set("ask.reply", std::string());
+    plc_.set("recipe", std::string("chapter"));
     take_away();
     answer_result(false);
     MachineStatus machine;
@@ -137,6 +138,18 @@ TEST_F(TheStructuredText, MeasuresOnePartAfterTheOther) {
   run_until_started(2);
   EXPECT_EQ(job(2).request.part_id, "B");
   EXPECT_TRUE(job(1).acknowledged);
+}
+
+TEST_F(TheStructuredText, NamesTheRecipeAndMeasuresNothingWithoutOne) {
+  plc_.set("recipe", std::string());
+  put("A");
+  run_on();
+  EXPECT_EQ(service_.starts, 0) << "it would be measured by whatever another client used last";
+  plc_.set("recipe", std::string("chapter"));
+  run_until([&] { return plc_.number("step") == 1; });
+  plc_.set("recipe", std::string("groove"));  // for the next one
+  run_until_started(1);
+  EXPECT_EQ(job(1).request.recipe, "chapter");
 }
 
 TEST_F(TheStructuredText, MeasuresNothingTwiceThatStaysWhereItIs) {
@@ -362,6 +375,7 @@ TEST_F(TheStructuredText, KeepsToTheLengthOfAControllersString) {
   constexpr std::int64_t kLongestSeq = 9007199254740990;
   let_know(kLongestSeq - 1, "x");
   const std::string part(64, 'p');
+  plc_.set("recipe", std::string(40, 'r'));
   put(part);
   run_until_started(2);
   acquire(kLongestSeq);

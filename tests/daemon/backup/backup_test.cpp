@@ -155,18 +155,20 @@ TEST_F(AnInstrument, IsHeldUntilItIsRestored) {
 TEST_F(AnInstrument, IsRestoredAndNoNumberRunsTwice) {
   const std::string first = measure(1);
   (void)make_backup(paths_, backup_, true);
-  measure(2);
-  measure(3);
+  const std::string second = measure(2);
+  const std::string third = measure(3);
   const std::int64_t epoch = store_->epoch();
   test::write_text(paths_.state_dir / "stage_history.json", "{\"scans\": 2}");
-  FVD_EXPECT_ERROR_SAYING(kDatabase, (void)restore_backup(backup_, paths_), HasSubstr("another fvd"));
+  FVD_EXPECT_ERROR_SAYING(kBusy, (void)restore_backup(backup_, paths_), HasSubstr("another fvd"));
   store_.reset();
   fs::remove_all(paths_.state_dir / "results" / first);
 
   const Restored restored = restore_backup(backup_, paths_);
 
-  EXPECT_TRUE(restored.numbers_are_exact);
+  EXPECT_EQ(restored.margin, 0);
   EXPECT_EQ(restored.results, 1);
+  EXPECT_EQ(restored.unknown, (std::vector{second, third})) << "measured since the backup: they stay";
+  EXPECT_TRUE(fs::exists(paths_.state_dir / "results" / second / "result.json"));
   EXPECT_EQ(test::read_text(paths_.state_dir / "stage_history.json"), "{\"scans\": 1}");
   EXPECT_EQ(test::read_text(restored.replaced / "stage_history.json"), "{\"scans\": 2}");
   EXPECT_TRUE(fs::exists(restored.replaced / "fvd.sqlite"));
@@ -191,7 +193,8 @@ TEST_F(AnInstrument, IsRestoredOnAnotherMachine) {
 
   const Restored restored = restore_backup(backup_, other);
 
-  EXPECT_FALSE(restored.numbers_are_exact);
+  EXPECT_GT(restored.margin, 0);
+  EXPECT_TRUE(restored.unknown.empty());
   EXPECT_TRUE(restored.replaced.empty());
   EXPECT_EQ(test::read_text(other.recipe_dir / "masks" / "a.png"), "png");
   EXPECT_TRUE(fs::exists(other.config_file));
@@ -200,6 +203,33 @@ TEST_F(AnInstrument, IsRestoredOnAnotherMachine) {
   EXPECT_EQ(store.find(ClientSeq{1}).result_dir, (other.state_dir / "results" / first).string());
   EXPECT_TRUE(fs::exists(store.find(ClientSeq{1}).result_dir));
   FVD_EXPECT_ERROR(kSeqStale, (void)store.accept({2, "part", "chapter"}));
+}
+
+TEST_F(AnInstrument, IsRestoredTwiceAndForgetsNotThatNumbersMayBeUsed) {
+  measure(1);
+  (void)make_backup(paths_, backup_, true);
+  measure(2);
+  const InstrumentPaths other{folder_ / "other" / "state", folder_ / "other" / "recipes",
+                              folder_ / "other" / "fvd.json"};
+  for (int i = 0; i < 3; ++i) EXPECT_GT(restore_backup(backup_, other).margin, 0) << "no database here knew of 2";
+  {
+    JobStore store(other.state_dir / "fvd.sqlite");
+    FVD_EXPECT_ERROR(kSeqStale, (void)store.accept({2, "part", "chapter"}));
+  }
+  EXPECT_EQ(restore_backup(backup_, other).margin, 0) << "the one that ran since knows which numbers are refused";
+  JobStore store(other.state_dir / "fvd.sqlite");
+  FVD_EXPECT_ERROR(kSeqStale, (void)store.accept({2, "part", "chapter"}));
+}
+
+TEST_F(AnInstrument, IsRestoredTwiceInItsPlaceAndKnowsItsNumbersStill) {
+  measure(1);
+  (void)make_backup(paths_, backup_, true);
+  measure(2);
+  store_.reset();
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(restore_backup(backup_, paths_).margin, 0);
+  open();
+  EXPECT_EQ(newest(), 2);
+  EXPECT_NO_THROW(measure(3));
 }
 
 /// The permissions of a file when it is made and when its first bytes are written.

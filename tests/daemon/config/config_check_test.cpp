@@ -1,5 +1,6 @@
 /// Which configurations can be used, and how one that stands in several files is read.
 
+#include <algorithm>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -115,6 +116,27 @@ TEST_F(AUsableConfig, NeedsAPortForEachListener) {
   EXPECT_THAT(check_config(config_), IsEmpty()) << "any that is free";
 }
 
+TEST_F(AUsableConfig, MayHaveOnePortAtAddressesThatDoNotMeet) {
+  config_.rpc.port = 0;
+  config_.rpc.access.token_file = folder_ / "tokens";
+  test::write_text(folder_ / "tokens", "");
+  config_.http.port = config_.metrics.port = 7413;
+  const auto meet = [this](const char* http, const char* metrics) {
+    config_.http.address = http;
+    config_.metrics.address = metrics;
+    const Problems found = check_config(config_);
+    return std::any_of(found.begin(), found.end(), [](const Problem& one) { return one.pointer == "/metrics/port"; });
+  };
+  EXPECT_FALSE(meet("0.0.0.0", "::1"));
+  EXPECT_FALSE(meet("::1", "0.0.0.0"));
+  EXPECT_FALSE(meet("fe80::1%eth0", "fe80::1%eth1"));
+  EXPECT_TRUE(meet("fe80::1%eth0", "fe80::1%eth0"));
+  EXPECT_TRUE(meet("0.0.0.0", "::"));
+  EXPECT_TRUE(meet("127.0.0.1", "::"));
+  EXPECT_TRUE(meet("::", "::1"));
+  EXPECT_TRUE(meet("0.0.0.0", "127.0.0.1"));
+}
+
 TEST_F(AUsableConfig, NeedsRangesOfAddresses) {
   config_.rpc.access.allow = {
       {"192.168.1.10/24", Role::kView}, {"10.0.0.0/8", Role::kView}, {"10.0.0.0/8", Role::kOperate}};
@@ -143,7 +165,7 @@ TEST_F(AUsableConfig, NeedsAnAddressToSearchAt) {
 
 TEST_F(AUsableConfig, NeedsLimitsInOrder) {
   config_.stage.max = config_.stage.min;
-  EXPECT_THAT(check_config(config_), ElementsAre(problem("/stage/min_um", "not below max_um")));
+  EXPECT_THAT(check_config(config_), ElementsAre(problem("/stage/min_um", "not below /stage/max_um")));
 }
 
 TEST_F(AUsableConfig, NeedsRoomForTheTakeUp) {
@@ -270,6 +292,26 @@ TEST_F(AConfigInParts, SaysWhichPartIsWrong) {
   const Problems problems = load().problems;
   EXPECT_THAT(problems, Contains(problem("/rpc/port", "within 0..65535")));
   EXPECT_THAT(problems, Contains(problem("/log/level", "(in conf.d/10-site.json, beside fvd.json)")));
+}
+
+TEST_F(AConfigInParts, SaysWhereBothValuesStandThatDoNotFit) {
+  put("fvd.json", R"({"stage": {"min_um": -500}})");
+  put("conf.d/20-a.json", R"({"stage": {"max_um": -900}})");
+  EXPECT_THAT(load().problems, Contains(problem("/stage/min_um",
+                                                "-500 is not below /stage/max_um, -900 (/stage/max_um in "
+                                                "conf.d/20-a.json, beside fvd.json)")));
+  EXPECT_THAT(load({"stage.min_um=-400"}).problems,
+              Contains(problem("/stage/min_um", "-900 (from --set) (/stage/max_um in conf.d/20-a.json")));
+}
+
+TEST_F(AConfigInParts, IsShownWithPathsThatHoldElsewhere) {
+  put("fvd.json", R"({"paths": {"state_dir": "state", "recipe_dir": "../recipes"}, "rpc": {"token_file": "tokens"}})");
+  const std::string folder = folder_.path().string();
+  const std::string text = config_text_with_origins(load());
+  EXPECT_THAT(text, HasSubstr("\"state_dir\": \"" + std::filesystem::absolute("state").string() + "\""));
+  EXPECT_THAT(text, HasSubstr("\"token_file\": \"" + folder + "/tokens\""));
+  EXPECT_THAT(text, HasSubstr("\"recipe_dir\": \"" + folder_.path().parent_path().string() + "/recipes\""));
+  EXPECT_EQ(config_text_with_origins(parse_config(text, "/elsewhere")).find("/elsewhere"), std::string::npos);
 }
 
 TEST_F(AConfigInParts, SaysNothingMoreOfWhatCannotBeRead) {

@@ -124,12 +124,32 @@ TEST_F(FvdctlByEachWay, StopsAndTellsWhoAskedForWhat) {
   EXPECT_THAT(run(by_http(), {"audit", "--json"}).out, HasSubstr("\"entries\""));
 }
 
+TEST_F(FvdctlByEachWay, SaysWhereAStopDidNotBringStandstill) {
+  MachineStatus lost;
+  lost.state = ScanState::kError;
+  lost.error = ErrorCode::kStageDisconnected;
+  service_.machine = lost;
+  const auto stopped = run(by_socket(), {"stop"});
+  EXPECT_EQ(stopped.code, 69);
+  EXPECT_EQ(stopped.out, "stopped: command\n");
+  EXPECT_THAT(stopped.err, AllOf(HasSubstr("NOT confirmed"), HasSubstr("emergency stop")));
+}
+
 TEST_F(FvdctlByEachWay, SaysWhyHttpRefuses) {
   const auto refused = run(by_http(), {"stop"});
-  EXPECT_NE(refused.code, 0);
+  EXPECT_EQ(refused.code, 65);
+  EXPECT_EQ(refused.out, "") << "nothing was stopped";
   EXPECT_THAT(refused.err, HasSubstr("needs the role operate"));
   test::write_text(folder_ / "secret", "fvd-unknown\n");
-  EXPECT_THAT(run(with_token(by_http()), {"stop"}).err, AllOf(HasSubstr("401"), HasSubstr("nobody has this token")));
+  const auto by_tcp = run(with_token({"--address", tcp_address_}), {"stop"});
+  EXPECT_THAT(by_tcp.err, HasSubstr("nobody has this token"));
+  const auto unknown = run(with_token(by_http()), {"stop"});
+  EXPECT_THAT(unknown.err, AllOf(HasSubstr("401"), HasSubstr("nobody has this token")));
+  EXPECT_EQ(unknown.code, 65);
+  EXPECT_EQ(by_tcp.code, unknown.code);
+  const auto by_lines = run({"--address", http_address_.substr(std::string("http://").size())}, {"state"});
+  EXPECT_THAT(by_lines.err, AllOf(HasSubstr("answers in HTTP"), HasSubstr("--address " + http_address_)));
+  EXPECT_EQ(by_lines.code, 65);
   EXPECT_THAT(run({"--address", "http://" + tcp_address_}, {"state"}).err, HasSubstr("does not answer in HTTP"));
   EXPECT_EQ(service_.stops, 0);
 }

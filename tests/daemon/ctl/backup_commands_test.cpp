@@ -33,7 +33,9 @@ TEST_F(BackupCommands, CopyAndPutBack) {
     (void)store.accept({1, "part", "chapter"});
     const auto made = run_command({"backup", backup_, "--config", config_, "--results"});
     ASSERT_EQ(made.code, ctl::kExitOk) << made.err;
-    EXPECT_NE(run_command({"restore", backup_, "--config", config_}).code, ctl::kExitOk) << "the daemon runs";
+    const auto refused = run_command({"restore", backup_, "--config", config_});
+    EXPECT_EQ(refused.code, ctl::kExitUnavailable) << "the daemon runs, which is no bug";
+    EXPECT_THAT(refused.err, HasSubstr("Stop it first"));
   }
   fs::remove(config_);
   const auto restored = run_command({"restore", backup_, "--config", config_});
@@ -78,7 +80,22 @@ TEST_F(BackupCommands, SayWhatIsWrong) {
   const auto none = run_command({"backup", backup_, "--config", config_});
   EXPECT_NE(none.code, ctl::kExitOk);
   EXPECT_THAT(none.err, HasSubstr("fvd.sqlite"));
+  EXPECT_EQ(none.code, ctl::kExitIo);
   EXPECT_THAT(run_command({"restore", backup_, "--config", config_}).err, HasSubstr("no backup"));
+  const auto no_config = run_command({"backup", backup_, "--config", (folder_ / "none.json").string()});
+  EXPECT_THAT(no_config.err, HasSubstr("--config"));
+  EXPECT_EQ(no_config.code, ctl::kExitBadData);
+}
+
+TEST_F(BackupCommands, RefuseWhatWouldNameADaemonAndNotItsFiles) {
+  for (const char* command : {"backup", "restore"}) {
+    for (const char* option : {"--runtime-dir", "--address"}) {
+      const auto refused = run_command({option, "127.0.0.1:1", command, backup_, "--config", config_});
+      EXPECT_EQ(refused.code, ctl::kExitUsage) << option;
+      EXPECT_THAT(refused.err, ::testing::AllOf(HasSubstr(option), HasSubstr("--config")));
+    }
+  }
+  EXPECT_FALSE(fs::exists(backup_));
 }
 
 }  // namespace

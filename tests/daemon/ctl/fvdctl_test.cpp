@@ -182,6 +182,14 @@ TEST(Fvdctl, ExitsWithUsageForWrongArguments) {
   }
 }
 
+TEST(Fvdctl, SaysThatOptionsOfAllCommandsStandBeforeTheCommand) {
+  const Outcome outcome = run_command({"wait", "4730", "--client", "plc"});
+  EXPECT_EQ(outcome.code, kExitUsage);
+  EXPECT_THAT(outcome.err, HasSubstr("not expected here: --client plc; --client stands before the command: fvdctl "
+                                     "--client ... COMMAND"));
+  EXPECT_THAT(run_command({"wait", "4730", "--bogus"}).err, HasSubstr("not expected here: --bogus\n"));
+}
+
 TEST(Fvdctl, NamesAnUnknownCommandAndTheNearest) {
   const Outcome near = run_command({"--runtime-dir", "/r", "stat"});
   EXPECT_EQ(near.code, kExitUsage);

@@ -61,9 +61,9 @@ TEST(RpcClient, TakesAnErrorWithoutIdForItsOwn) {
 }
 
 TEST(RpcClient, RefusesRepliesThatAreNoJsonRpc) {
-  for (const char* reply : {"HTTP/1.1 400 Bad Request\r\n", "[]\n", "{\"jsonrpc\":\"1.0\",\"id\":1,\"result\":1}\n",
-                            "{\"jsonrpc\":\"2.0\",\"id\":99,\"result\":1}\n", "{\"jsonrpc\":\"2.0\",\"id\":$ID}\n",
-                            "{\"jsonrpc\":\"2.0\",\"id\":$ID,\"error\":\"no\"}\n", "\xFF\xFE\n"}) {
+  for (const char* reply :
+       {"[]\n", "{\"jsonrpc\":\"1.0\",\"id\":1,\"result\":1}\n", "{\"jsonrpc\":\"2.0\",\"id\":99,\"result\":1}\n",
+        "{\"jsonrpc\":\"2.0\",\"id\":$ID}\n", "{\"jsonrpc\":\"2.0\",\"id\":$ID,\"error\":\"no\"}\n", "\xFF\xFE\n"}) {
     FakeRpcServer server({{"a", FakeRpcServer::raw(reply)}});
     expect_error(ErrorCode::kInternal, {"the reply"}, [&] { (void)RpcClient(server.endpoint()).call("a"); });
   }

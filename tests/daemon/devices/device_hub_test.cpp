@@ -100,6 +100,16 @@ TEST_F(ADeviceHub, OpensTheAxisFirstAndEachDeviceOnce) {
   EXPECT_EQ(hub_.facts().camera.sensor_height, 12);
 }
 
+TEST_F(ADeviceHub, TellsWhereTheAxisWasSeenAsLongAsItIsThere) {
+  EXPECT_EQ(hub_.health().position, std::nullopt);
+  cables_.seen_um = 0.0;
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  ASSERT_TRUE(hub_.health().position.has_value());
+  EXPECT_EQ(hub_.health().position->value, 0.0);
+  cables_.axis = false;
+  EXPECT_EQ(hub_.health().position, std::nullopt) << "it may be anywhere";
+}
+
 TEST_F(ADeviceHub, TriesAMissingDeviceAgainAndStopsTheAxisMeanwhile) {
   cables_.camera = false;
   cables_.axis_moves = true;

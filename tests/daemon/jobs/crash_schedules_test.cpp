@@ -127,7 +127,7 @@ TEST_F(ACrash, IsSeenToBreakAResultThatIsNotSynced) {
   fs::create_directories(results_);
   {
     const ReplacedFileCalls replaced(disk_);
-    const int fd = disk_.create(results_ / "file");
+    const int fd = disk_.create(results_ / "file", 0644);
     ASSERT_EQ(disk_.write(fd, "abcd", 4), 4);
     disk_.close(fd);
   }

@@ -105,6 +105,13 @@ TEST_F(AStoredResult, StaysAsItWasHoweverOftenItIsEvaluated) {
   EXPECT_EQ(machine().snapshot()->job->job_id, job_id_);
 }
 
+TEST_F(AStoredResult, IsNotEvaluatedAnyMoreOnceItWasRemoved) {
+  (void)results().acknowledge(ClientSeq{1});
+  ASSERT_TRUE(store_->results().mark_removed(job_id_));
+  FVD_EXPECT_ERROR_SAYING(kResultRemoved, (void)results().evaluate(ClientSeq{1}, "texture"),
+                          HasSubstr("was removed at"));
+}
+
 TEST_F(AStoredResult, PassesOverAFolderThatADeadProcessLeft) {
   std::filesystem::create_directories(results_dir() / (job_id_ + "-e1"));
 

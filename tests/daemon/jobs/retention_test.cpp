@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/export/result_json.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
@@ -143,6 +144,18 @@ TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
   EXPECT_TRUE(fs::exists(results_ / waiting));
 }
 
+TEST_F(ARetention, SaysOnceThatTheDiskIsNotFreeEnoughThoughAllIsRemoved) {
+  add(1, true, kLongAgo);
+  const test::CapturedLog log;
+  Retention never(store_, {.keep_free_gib = 1048576}, results_);
+  for (int i = 0; i < 2; ++i) never.run_once();
+  EXPECT_EQ(log.lines_with("store.keep_free_gib: 1048576 GiB are to be free"), 1U) << log.text();
+  EXPECT_EQ(log.lines_with("the disk is smaller than that"), 1U) << log.text();
+  Retention without(store_, {}, results_);
+  without.run_once();
+  EXPECT_EQ(log.lines_with("store.keep_free_gib"), 1U);
+}
+
 TEST_F(ARetention, GoesOnAtTheStartWithARemovalThatWasCutOffWhateverTheLimitsAre) {
   const std::string old = add(1, true, kLongAgo);
   const std::string kept = add(2, true, kLongAgo);
@@ -159,11 +172,14 @@ TEST_F(ARetention, GoesOnAtTheStartWithARemovalThatWasCutOffWhateverTheLimitsAre
 TEST_F(ARetention, TakesOtherLimitsWhileItRuns) {
   const std::string old = add(1, true, kLongAgo);
   Retention retention(store_, {}, results_);
-  retention.run_once();
+  retention.start();
   EXPECT_TRUE(fs::exists(results_ / old));
   retention.set_limits({.keep_days = 30});
-  retention.run_once();
-  EXPECT_FALSE(fs::exists(results_ / old));
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (fs::exists(results_ / old)) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "it does not wait for its minute";
+    std::this_thread::yield();
+  }
 }
 
 }  // namespace

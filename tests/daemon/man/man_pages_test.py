@@ -61,6 +61,11 @@ class ThePages(unittest.TestCase):
             self.assertGreater(seen, 5)
         self.assertIn("--motion-log", plain(self.out / "fvd-sim.1"))
 
+    def test_have_the_text_of_a_name_that_fills_its_column(self):
+        text = plain(self.out / "fvdctl.1")
+        self.assertRegex(text, r"(?m)^--recipe TEXT:FILE REQUIRED\nfile of a recipe with a section evaluation$")
+        self.assertRegex(text, r"(?m)^--speed-um-per-s FLOAT=1000\nspeed of moves$")
+
     def test_have_every_key(self):
         def paths(schema, prefix=""):
             for name, value in schema["properties"].items():

@@ -4,10 +4,13 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/store/job_store.hpp"
 #include "tests/daemon/program/taken_port.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/line_client.hpp"
@@ -16,6 +19,8 @@
 namespace fvd {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class AService : public test::AServiceManager {
@@ -53,6 +58,15 @@ class AService : public test::AServiceManager {
     program_->signal(SIGTERM);
     log_ = program_->rest();
     return program_->wait();
+  }
+
+  /// The loads of the configuration, the oldest first: "detail; outcome"; after end().
+  std::vector<std::string> audited() {
+    std::vector<std::string> rows;
+    for (const AuditEntry& entry : JobStore(folder_.path() / "state" / "fvd.sqlite").audit().newest(100, 0)) {
+      if (entry.what == "configuration.load") rows.insert(rows.begin(), entry.detail + "; " + entry.outcome);
+    }
+    return rows;
   }
 
   test::ScratchDir folder_;
@@ -106,6 +120,8 @@ TEST_F(AService, TakesTheLogLevelWhileItRuns) {
   EXPECT_EQ(told("READY"), ready);
   EXPECT_EQ(end(), 0);
   EXPECT_THAT(log_, HasSubstr("reloaded /log/level: info -> debug"));
+  EXPECT_THAT(audited(), ElementsAre(AllOf(HasSubstr("start of fvd"), HasSubstr("; ok")),
+                                     AllOf(HasSubstr("/log/level: info -> debug; sha256"), HasSubstr("; ok"))));
 }
 
 TEST_F(AService, TakesNothingOfAConfigurationThatNeedsAStart) {
@@ -123,6 +139,7 @@ TEST_F(AService, TakesNothingOfAConfigurationThatNeedsAStart) {
   EXPECT_EQ(end(), 0);
   EXPECT_THAT(log_, HasSubstr("changed keys that only a restart takes: /compute/threads"));
   EXPECT_THAT(log_, HasSubstr("nothing differs")) << "at level info still";
+  EXPECT_THAT(audited(), ElementsAre(HasSubstr("start of fvd"), HasSubstr("bad_config"), HasSubstr("nothing differs")));
 }
 
 TEST_F(AService, RefusesABrokenFileWith78) {

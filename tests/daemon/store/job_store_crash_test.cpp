@@ -84,7 +84,7 @@ TEST(JobStoreCrash, CountsEveryStartThatWasKilled) {
 TEST(JobStoreCrash, RefusesAFileThatAnotherConnectionHolds) {
   const test::ScratchDir folder;
   const JobStore first(folder.path() / "jobs.db");
-  FVD_EXPECT_ERROR_SAYING(kDatabase, JobStore(folder.path() / "jobs.db"), HasSubstr("another fvd"));
+  FVD_EXPECT_ERROR_SAYING(kBusy, JobStore(folder.path() / "jobs.db"), HasSubstr("another fvd"));
 }
 
 TEST(JobStoreCrash, RefusesAFileThatIsNoDatabase) {

@@ -15,6 +15,7 @@
 #include "daemon/access/token_file.hpp"
 #include "daemon/transport/wrong_tokens.hpp"
 #include "tests/daemon/api/fake_job_service.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/http_client.hpp"
 #include "tests/support/rpc_text.hpp"
@@ -147,17 +148,25 @@ TEST_F(AnHttpServer, RefusesWrongTokensEverMoreSlowly) {
 
 TEST_F(AnHttpServer, RecognisesRightTokensWhileWrongOnesWait) {
   std::vector<std::unique_ptr<HttpClient>> guessing;
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 8; ++i) {
     guessing.push_back(std::make_unique<HttpClient>(server_->port()));
     guessing.back()->send(guessing.back()->request(call("system.ping"), "Authorization: Bearer wrong\r\n"));
   }
+  ASSERT_TRUE(guessing.front()->reply()) << "by now each of them was looked up";
   EXPECT_EQ(ask(call("session.info"), bearer())["result"]["role"], "operate");
+  EXPECT_FALSE(guessing.back()->reply(std::chrono::milliseconds(50))) << "it did not wait for the last of them";
 }
 
 TEST_F(AnHttpServer, SaysThatItsTokensCannotBeRead) {
   std::filesystem::remove(folder_ / "tokens");
-  EXPECT_EQ(ask(call("session.info"), bearer()), 503);
+  const test::CapturedLog log;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(ask(call("session.info"), bearer()), 503);
   EXPECT_EQ(ask(call("session.info"))["result"]["role"], "view");
+  server_.reset();
+  const auto seconds = (std::chrono::steady_clock::now() - begin) / std::chrono::seconds(1);
+  EXPECT_GE(log.lines_with("nobody can be recognised"), 1U);
+  EXPECT_LE(log.lines_with("nobody can be recognised"), 1 + static_cast<std::size_t>(seconds));
 }
 
 TEST_F(AnHttpServer, RefusesWhatAForeignPageSends) {
@@ -300,6 +309,29 @@ TEST_F(AnHttpServer, AnswersWhatIsOwedWhenItEnds) {
   ASSERT_TRUE(reply);
   EXPECT_EQ(json::parse(reply->body)["error"]["code"], 1013) << reply->body;
   EXPECT_TRUE(waiting.closes());
+}
+
+TEST_F(AnHttpServer, SaysAtItsEndThatItStopsWhereTheDiskIsStuck) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  // The snapshot tells nothing of this job: only the worker could.
+  ASSERT_TRUE(ask(call("job.start", {{"seq", 5}, {"part_id", "p"}}), bearer()).contains("result"));
+  HttpClient waiting(server_->port());
+  waiting.send(waiting.request(call("job.wait", {{"seq", 5}, {"timeout_ms", 30000}})));
+  ASSERT_FALSE(waiting.reply(std::chrono::milliseconds(100)));
+  service_.before_start = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  HttpClient starting(server_->port());
+  starting.send(starting.request(call("job.start", {{"seq", 6}, {"part_id", "p"}}), bearer()));
+  begun.get_future().wait();
+  auto ended = std::async(std::launch::async, [this] { server_.reset(); });
+  const auto reply = waiting.reply();
+  released.set_value();
+  ended.wait();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(json::parse(reply->body)["error"]["code"], 1013) << reply->body;
 }
 
 TEST_F(AnHttpServer, RefusesAPortThatIsTaken) {

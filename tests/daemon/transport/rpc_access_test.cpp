@@ -1,5 +1,6 @@
 /// Who gets a connection, as whom, and what overtakes what.
 
+#include <chrono>
 #include <future>
 #include <memory>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "daemon/transport/rpc_server.hpp"
 #include "gtest/gtest.h"
 #include "tests/daemon/api/fake_job_service.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/line_client.hpp"
 #include "tests/support/rpc_text.hpp"
 #include "tests/support/scratch_dir.hpp"
@@ -62,6 +64,21 @@ TEST_F(AGuardedRpcServer, TurnsAwayWhoMayNothingAndCannotLogIn) {
   ASSERT_TRUE(line);
   EXPECT_EQ(json::parse(*line)["error"]["data"]["error"], "not_allowed");
   EXPECT_TRUE(client.closes());
+}
+
+TEST_F(AGuardedRpcServer, WarnsOnceASecondOfConnectionsFromWhereNobodyMayDoAnything) {
+  config_.access.loopback_role = Role::kNone;
+  serve();
+  const test::CapturedLog log;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20; ++i) {
+    LineClient client(server_->port());
+    EXPECT_TRUE(client.line());
+  }
+  server_.reset();
+  const auto seconds = (std::chrono::steady_clock::now() - begin) / std::chrono::seconds(1);
+  EXPECT_GE(log.lines_with("a connection is refused"), 1U);
+  EXPECT_LE(log.lines_with("a connection is refused"), 1 + static_cast<std::size_t>(seconds));
 }
 
 TEST_F(AGuardedRpcServer, GivesATokensRoleToItsConnectionAlone) {

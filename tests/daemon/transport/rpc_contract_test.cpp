@@ -26,6 +26,9 @@ using testing::HasSubstr;
 
 const std::string kWait = R"({"jsonrpc":"2.0","id":2,"method":"job.wait","params":{"seq":5}})";
 
+const std::string kShortWait = R"({"jsonrpc":"2.0","id":3,"method":"job.wait","params":{"seq":5,"timeout_ms":0}})"
+                               "\n";
+
 /// As a client encodes the text that keeps it in two bytes a character.
 std::string utf16(const std::string& text, bool little_endian) {
   std::string bytes;
@@ -69,15 +72,22 @@ class AtItsSocket : public testing::Test {
     config.first_request_s = first_request_s;
     config.access.loopback_role = Role::kAdminister;
     service_.access.emplace(config.access);
-    server_ = std::make_unique<RpcServer>(config, runtime_.path(), service_.services());
+    const Services all = service_.services();
+    const Services counted{machine_,       all.jobs,    all.results, all.tasks, all.recipes,
+                           all.objectives, all.studies, all.control, all.audit, all.access};
+    server_ = std::make_unique<RpcServer>(config, runtime_.path(), counted);
   }
-  /// A job of number 5 that runs, and a client that waits for it.
-  void wait_for_a_job(LineClient& client) {
+  /// A job of number 5 that runs.
+  void start_a_job(LineClient& client) {
     JobStatus running;
     running.job_id = "job-5";
     running.request.seq = 5;
     service_.current = running;
     client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[5,"p"]})");
+  }
+  /// And a client that waits for it.
+  void wait_for_a_job(LineClient& client) {
+    start_a_job(client);
     client.send(kWait + "\n");
   }
   /// The error's message of the next line, after which the server closes.
@@ -96,6 +106,7 @@ class AtItsSocket : public testing::Test {
 
   test::ScratchDir runtime_;
   FakeJobService service_;
+  CountedMachine machine_{service_};
   std::unique_ptr<RpcServer> server_;
 };
 
@@ -256,39 +267,68 @@ TEST_F(AtItsSocket, NamesAMissingEndAlsoWhileTheMachineChanges) {
 }
 
 TEST_F(AtItsSocket, LooksAtALineAFewTimesHoweverManyWaitsStandBeforeIt) {
-  JobStatus running;
-  running.job_id = "job-5";
-  running.request.seq = 5;
-  service_.current = running;
-  CountedMachine machine(service_);
-  RpcConfig config;
-  config.port = 0;
-  config.access.loopback_role = Role::kAdminister;
-  service_.access.emplace(config.access);
-  const Services all = service_.services();
-  server_ = std::make_unique<RpcServer>(config, runtime_.path(),
-                                        Services{machine, all.jobs, all.results, all.tasks, all.recipes, all.objectives,
-                                                 all.studies, all.control, all.audit, all.access});
+  serve();
   LineClient client(server_->port());
-  for (const char* number : {"5", "6"}) {
-    client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[)" + std::string(number) + R"(,"p"]})");
-  }
+  start_a_job(client);
+  client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[6,"p"]})");
   constexpr int kMany = 150;
   std::string lines;
-  for (int i = 0; i < kMany; ++i) {
-    lines += R"({"jsonrpc":"2.0","id":3,"method":"job.wait","params":{"seq":5,"timeout_ms":0}})"
-             "\n";
-  }
+  for (int i = 0; i < kMany; ++i) lines += kShortWait;
   // Of a job that does not run: the snapshot tells nothing of it, and each waits for its turn.
   for (int i = 0; i < kMany; ++i) {
     lines += R"({"jsonrpc":"2.0","id":4,"method":"job.status","params":{"seq":6}})"
              "\n";
   }
-  const int before = machine.looks;
+  const int before = machine_.looks;
   client.send(lines);
   for (int i = 0; i < 2 * kMany; ++i) ASSERT_TRUE(client.line().has_value()) << i;
-  EXPECT_LT(machine.looks - before, 30 * kMany) << "not by the product of both";
-  server_.reset();  // before its machine
+  EXPECT_LT(machine_.looks - before, 30 * kMany) << "not by the product of both";
+}
+
+TEST_F(AtItsSocket, LooksAtAnAbortHoweverManyWaitsStandBeforeIt) {
+  serve();
+  LineClient client(server_->port());
+  start_a_job(client);
+  // A job that is not on the board until its turn has come.
+  service_.shows_started = true;
+  std::string lines;
+  for (int i = 0; i < 10; ++i) lines += kShortWait;
+  client.send(lines + R"({"jsonrpc":"2.0","id":6,"method":"job.start","params":[6,"p"]})"
+                      "\n"
+                      R"({"jsonrpc":"2.0","id":7,"method":"job.wait","params":{"seq":6}})"
+                      "\n"
+                      R"({"jsonrpc":"2.0","id":8,"method":"job.abort","params":{"seq":6}})"
+                      "\n");
+  for (int i = 0; i < 11; ++i) ASSERT_TRUE(client.line().has_value()) << i;
+  const auto aborted = client.line();
+  ASSERT_TRUE(aborted.has_value()) << "it does not wait for the end of its job";
+  EXPECT_EQ(json::parse(*aborted)["id"], 8);
+  EXPECT_EQ(service_.aborts, 1);
+}
+
+TEST_F(AtItsSocket, ExecutesNothingBehindAMistakeHoweverLongAWaitStandsBeforeIt) {
+  serve();
+  LineClient other(server_->port());
+  for (const std::string& mistake : {std::string("POST / HTTP/1.1\r\n"), utf16(test::kPing + "\n", true)}) {
+    LineClient client(server_->port());
+    wait_for_a_job(client);
+    client.send(test::kPing + "\n" + mistake + R"({"jsonrpc":"2.0","id":3,"method":"stage.stop"})" + "\n");
+    ASSERT_TRUE(client.line().has_value()) << "they are there, and so is what came with them";
+    for (int i = 0; i < 20; ++i) {
+      service_.change({5}, [](JobStatus& job) { ++job.slices_done; });
+      ASSERT_THAT(other.ask(test::kPing), HasSubstr("result")) << "the change was seen before it";
+    }
+    EXPECT_EQ(service_.stops, 0);
+    service_.change({5}, [](JobStatus& job) { job.state = JobState::kCompleted; });
+    service_.current->state = JobState::kCompleted;
+    service_.change({5}, [](JobStatus& job) { ++job.slices_done; });
+    const auto waited = client.line();
+    ASSERT_TRUE(waited.has_value());
+    EXPECT_EQ(json::parse(*waited)["id"], 2) << *waited;
+    EXPECT_THAT(last_words(client), HasSubstr("the connection is closed"));
+    EXPECT_EQ(service_.stops, 0);
+    service_.change({5}, [](JobStatus& job) { job.state = JobState::kProcessing; });
+  }
 }
 
 }  // namespace
