@@ -2,18 +2,9 @@
 import type { Methods } from "../../rpc/methods.ts";
 import { look } from "../../rpc/look.ts";
 import { call } from "../../rpc/rpc.ts";
+import type { JobRow } from "../../rpc/to_come_history.ts";
 
-export interface ListedJob {
-  job_id: string;
-  seq: number;
-  client: string;
-  part_id: string;
-  recipe: string;
-  state: string;
-  verdict: string | null;
-  ended_utc: string;
-  error: string;
-}
+export type ListedJob = JobRow;
 
 export const listJobs = (most: number): Promise<{ jobs: ListedJob[]; next: string }> =>
   look("job.list" as keyof Methods, { most } as never) as unknown as Promise<{ jobs: ListedJob[]; next: string }>;

@@ -1,17 +1,8 @@
 // What the daemon's description does not name yet. Once openrpc.json has these methods, call() takes their place and this file goes.
 import { RpcError, call } from "../../rpc/rpc.ts";
+import type { JobRow } from "../../rpc/to_come_history.ts";
 
-export interface ListedJob {
-  job_id: string;
-  seq: number;
-  client: string;
-  part_id: string;
-  recipe: string;
-  state: string;
-  verdict: string;
-  ended_utc: string;
-  error: string;
-}
+export type ListedJob = JobRow;
 
 type AnyCall = (method: string, params: Record<string, unknown>) => Promise<unknown>;
 const anyCall = call as unknown as AnyCall;
