@@ -62,7 +62,7 @@ function ColourBar({ range }: { range: Range }) {
     if (canvas.current) paintBar(canvas.current);
   }, []);
   const { values, digits } = ticks(range.low, range.high, 6);
-  return html`<div class="colour-bar" aria-hidden="true">
+  return html`<div class="map-colour-bar" aria-hidden="true">
     <canvas ref=${canvas}></canvas>
     <div class="colour-ticks">${values.map((value) => html`
       <span style=${{ bottom: `${range.high > range.low ? 100 * (value - range.low) / (range.high - range.low) : 50}%` }}>${number(value, Math.min(digits, 3))}</span>`)}</div>
@@ -116,7 +116,7 @@ export function HeightMap({ jobId, pitch, verdict = "", noPointReason = "" }: Pr
     <div class="height-map-row">
       <div class="picture" style=${framed(width_um, height_um)}>
         <canvas ref=${canvas} role="img" aria-label=${`${t("map.alt")} ${summary} ${verdict}`}></canvas>
-        ${pitch && html`<span class="scale-bar" aria-hidden="true" style=${{ width: `${100 * bar_um / width_um}%` }}><span>${number(bar_um)} µm</span></span>`}
+        ${pitch && html`<span class="map-scale-bar" aria-hidden="true" style=${{ width: `${100 * bar_um / width_um}%` }}><span>${number(bar_um)} µm</span></span>`}
         ${whole_um === null && html`<p class="picture-says" role="alert">${t("map.no_point")} ${noPointReason}</p>`}
       </div>
       ${colours_um && html`<${ColourBar} range=${colours_um}/>`}
