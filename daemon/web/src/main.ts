@@ -5,12 +5,14 @@ import { html } from "./lib/html.ts";
 import { followLinks } from "./lib/router.ts";
 import { applyTheme } from "./lib/theme.ts";
 import { link, listen } from "./live/live.ts";
+import { watchControl } from "./rpc/held_control.ts";
 import { resumeSession } from "./rpc/session.ts";
 import "./style/main.css";
 
 applyTheme();
 followLinks();
 listen();
+watchControl();
 // Again after every reconnection: the daemon may have another file of tokens.
 const know = (): void => void resumeSession().catch(() => undefined);
 let was = link.get().status;

@@ -4,7 +4,7 @@ import test from "node:test";
 import { ordered, timeForPeople } from "../../../daemon/web/src/run/alarm_order.ts";
 import { deviceOf, diskOf } from "../../../daemon/web/src/run/health.ts";
 import { withPart } from "../../../daemon/web/src/run/last_parts.ts";
-import { ownerName } from "../../../daemon/web/src/run/owner_name.ts";
+import { ownerName } from "../../../daemon/web/src/rpc/owner_name.ts";
 
 test("alarms that nobody saw stand first, the newest of them on top", () => {
   const alarm = (number: number, acknowledged: boolean) => ({ number, time_utc: "", level: "error" as const, text: "", acknowledged });

@@ -1,42 +1,66 @@
-// Control of the station, kept for as long as this tab wants it. It ends by itself a minute after the tab is gone.
+// Control that this tab has taken: renewed on whatever page, until it is given back, taken away, or the tab closes.
 import { createStore } from "../lib/store.ts";
-import { RpcError, call, token } from "./rpc.ts";
+import { type Topics, topics } from "../live/live.ts";
+import { ownerName } from "./owner_name.ts";
+import { RpcError, call } from "./rpc.ts";
+import { session } from "./session.ts";
 
 const kLease_s = 60;
 const kRenew_ms = 20000;
-const kOwner = "page";
 
-// True while this tab renews its control.
-export const keepsControl = createStore(false);
+export const isHeldHere = createStore(false);
+// Why the last renewal failed; null = it did not.
+export const renewalFault = createStore<unknown>(null);
 
 let timer: ReturnType<typeof setInterval> | undefined;
 
-function stopKeeping(): void {
+function letGo(): void {
   clearInterval(timer);
-  keepsControl.set(false);
+  isHeldHere.set(false);
 }
 
-async function renew(): Promise<void> {
-  try {
-    await call("control.acquire", { owner: kOwner, lease_s: kLease_s });
-  } catch (error) {
-    // An unanswered renewal is tried again: the daemon may be restarting. A refused one means somebody else has it.
-    if (error instanceof RpcError && (error.error === "no_control" || error.error === "not_allowed" || error.code === 401)) stopKeeping();
-  }
+// Somebody else has it, or this tab may not have it any more; whatever else goes wrong may be over at the next renewal.
+const isLost = (error: unknown): boolean =>
+  error instanceof RpcError && (["busy", "no_control", "not_allowed"].includes(error.error) || error.code === 401);
+
+// The answer is newer than what the stream has told.
+const tell = (control: NonNullable<Topics["control"]>): void => topics.update((all) => ({ ...all, control }));
+
+async function acquire(force: boolean): Promise<void> {
+  tell(await call("control.acquire", { owner: ownerName(session.get().who), lease_s: kLease_s, ...(force ? { force } : {}) }));
 }
 
-// With force control is taken from who has it; that needs the role "administer".
-export async function takeControl(force = false): Promise<void> {
-  await call("control.acquire", { owner: kOwner, lease_s: kLease_s, force });
+export async function takeControl(force: boolean): Promise<void> {
+  await acquire(force);
+  renewalFault.set(null);
   clearInterval(timer);
-  timer = setInterval(() => void renew(), kRenew_ms);
-  keepsControl.set(true);
+  isHeldHere.set(true);
+  timer = setInterval(() => {
+    acquire(false).then(() => renewalFault.set(null), (error: unknown) => {
+      renewalFault.set(error);
+      if (isLost(error)) letGo();
+    });
+  }, kRenew_ms);
 }
 
-export async function releaseControl(): Promise<void> {
-  stopKeeping();
-  await call("control.release", {});
+export async function giveControlBack(): Promise<void> {
+  letGo();
+  tell(await call("control.release", {}));
 }
 
-// Another caller's token is another caller: what this tab held is not his.
-token.watch(stopKeeping);
+// Somebody took it away, or this tab is somebody else now: then it is not ours to renew.
+export function watchControl(): () => void {
+  const look = (): void => {
+    const { control } = topics.get();
+    if (isHeldHere.get() && control !== null && control.owner !== "" && control.who !== session.get().who) letGo();
+  };
+  const leave = (): void => {
+    if (isHeldHere.get()) void call("control.release", {}, { keepalive: true }).catch(() => undefined);
+  };
+  const ends = [topics.watch(look), session.watch(look)];
+  addEventListener("pagehide", leave);
+  return () => {
+    for (const end of ends) end();
+    removeEventListener("pagehide", leave);
+  };
+}

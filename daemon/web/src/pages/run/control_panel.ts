@@ -5,11 +5,8 @@ import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
 import { link, topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
+import { giveControlBack, isHeldHere, renewalFault, takeControl } from "../../rpc/held_control.ts";
 import { mayAs, session } from "../../rpc/session.ts";
-import { giveControlBack, isHeldHere, renewalFault, takeControl, watchControl } from "../../run/hold_control.ts";
-
-// For as long as the tab is open, not for as long as this panel is seen.
-watchControl();
 
 // The seconds that the daemon told, less those since: never by this browser's clock.
 function useRemaining(remaining_s: number | undefined, key: string): number {

@@ -2,7 +2,7 @@
 import { t, tWord, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
-import { keepsControl, releaseControl, takeControl } from "../../rpc/held_control.ts";
+import { giveControlBack, isHeldHere, takeControl } from "../../rpc/held_control.ts";
 import { call } from "../../rpc/rpc.ts";
 import { isMine } from "./access_rules.ts";
 import { useRefusal, useSeen } from "./permission.ts";
@@ -12,7 +12,7 @@ import { useCommand } from "./use_command.ts";
 export function ControlStrip() {
   useLanguage();
   const seen = useSeen();
-  const keeps = useStore(keepsControl);
+  const keeps = useStore(isHeldHere);
   const change = useCommand<void>();
   const stop = useCommand<void>();
   const why = useRefusal({ role: "operate" });
@@ -32,10 +32,10 @@ export function ControlStrip() {
     </div>
     <p class="buttons">
       ${mine && keeps
-        ? html`<button type="button" disabled=${why !== "" || change.running} onClick=${() => void change.run(releaseControl)}>${t("setup.control.release")}</button>`
+        ? html`<button type="button" disabled=${why !== "" || change.running} onClick=${() => void change.run(giveControlBack)}>${t("setup.control.release")}</button>`
         : others
           ? html`<button type="button" disabled=${whyForce !== "" || change.running} onClick=${() => void change.run(() => takeControl(true))}>${t("setup.control.force")}</button>`
-          : html`<button type="button" disabled=${why !== "" || change.running} onClick=${() => void change.run(() => takeControl())}>${t("setup.control.take")}</button>`}
+          : html`<button type="button" disabled=${why !== "" || change.running} onClick=${() => void change.run(() => takeControl(false))}>${t("setup.control.take")}</button>`}
       <button type="button" class="main stop" disabled=${why !== ""} onClick=${() => void stop.run(async () => void (await call("stage.stop", {})))}>${t("setup.stop")}</button>
     </p>
     ${(why || (others && whyForce)) && html`<p class="help wide">${why || whyForce}</p>`}
