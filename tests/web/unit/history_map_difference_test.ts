@@ -1,8 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { differenceOf, extremes, whyNotComparable } from "../../../daemon/web/src/history/map_difference.ts";
-import { colourOf, rangeOf } from "../../../daemon/web/src/lib/height_picture.ts";
-import { readHeights } from "../../../daemon/web/src/lib/height_reply.ts";
 
 const make = (width: number, height: number, of: (x: number, y: number) => number): Float32Array =>
   Float32Array.from({ length: width * height }, (_, i) => of(i % width, Math.floor(i / width)));
@@ -52,29 +50,4 @@ test("a spike is seen however small the picture", () => {
   assert.equal(small.values[3 * 10 + 7], -9);
   assert.equal(small.values[0], 1);
   assert.equal(extremes(values, 100, 100).factor, 1);
-});
-
-test("the range of colours leaves spikes out and is never empty", () => {
-  const values = Float32Array.from({ length: 1001 }, (_, i) => (i === 0 ? 1000 : i === 1 ? NaN : i));
-  assert.ok(rangeOf(values).to < 1000 && rangeOf(values).count === 1000);
-  const flat = rangeOf(new Float32Array(10));
-  assert.ok(flat.from < flat.to);
-  assert.equal(rangeOf(new Float32Array([NaN])).count, 0);
-  assert.deepEqual(colourOf(-1), [68, 1, 84]);
-  assert.deepEqual(colourOf(2), [253, 231, 37]);
-});
-
-test("the reply of heights is read, and a wrong one refused", () => {
-  const bytes = new ArrayBuffer(32 + 4 * 2 * 3);
-  const view = new DataView(bytes);
-  [..."FVDH"].forEach((letter, i) => view.setUint8(i, letter.charCodeAt(0)));
-  [1, 2, 1, 4, 3, 7, 4].forEach((number, i) => view.setUint32(4 + 4 * i, number, true));
-  [1, 2, 3, 4, 5, 6].forEach((number, i) => view.setFloat32(32 + 4 * i, number, true));
-  const reply = readHeights(bytes);
-  assert.deepEqual([reply.width, reply.height, reply.factor, reply.map_width, reply.map_height], [2, 1, 4, 7, 4]);
-  assert.deepEqual([[...reply.values], [...(reply.least ?? [])], [...(reply.greatest ?? [])]], [[1, 2], [3, 4], [5, 6]]);
-  assert.throws(() => readHeights(bytes.slice(0, 40)), /40 bytes/);
-  assert.throws(() => readHeights(new ArrayBuffer(8)), /no header/);
-  view.setUint8(0, 0);
-  assert.throws(() => readHeights(bytes), /not known/);
 });

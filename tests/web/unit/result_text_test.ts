@@ -1,7 +1,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
+import "./browser_stand_in.ts";
+import { keepDraft, readDraft } from "../../../daemon/web/src/recipe/draft.ts";
 import { sPoints, shapesOf } from "../../../daemon/web/src/result/fitted_geometry.ts";
-import { freeName, measurementNames, profileMeasurement, readDraft, withMeasurement, writeDraft } from "../../../daemon/web/src/result/recipe_draft.ts";
+import { freeName, measurementNames, profileMeasurement, withMeasurement } from "../../../daemon/web/src/result/recipe_draft.ts";
 import type { Measurement, ResultJson } from "../../../daemon/web/src/result/result_json.ts";
 import { mapOwner, measurementsOf } from "../../../daemon/web/src/result/result_json.ts";
 import { digitsFor, nameOf, percentDigits, unitText } from "../../../daemon/web/src/result/value_text.ts";
@@ -61,14 +63,12 @@ test("a measurement joins the others of the recipe's draft", () => {
 });
 
 test("a draft is read back as it was kept, and nothing else is taken for one", () => {
-  const kept = new Map<string, string>();
-  const storage = { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, value: string) => void kept.set(key, value) };
-  assert.equal(readDraft(storage, "groove"), null);
-  writeDraft(storage, "groove", { text: "{}", base_version: 3 });
-  assert.deepEqual(readDraft(storage, "groove"), { text: "{}", base_version: 3 });
-  assert.equal(readDraft(storage, "edge"), null);
+  assert.equal(readDraft("groove"), null);
+  keepDraft("groove", { text: "{}", base_version: 3 });
+  assert.deepEqual(readDraft("groove"), { text: "{}", base_version: 3 });
+  assert.equal(readDraft("edge"), null);
   for (const wrong of ["{", "7", '{"text": 5, "base_version": 1}']) {
-    kept.set("fvd.draft.groove", wrong);
-    assert.equal(readDraft(storage, "groove"), null);
+    sessionStorage.setItem("fvd.draft.groove", wrong);
+    assert.equal(readDraft("groove"), null);
   }
 });

@@ -1,8 +1,9 @@
 // A map as a picture with its bar of colours.
 import { useEffect, useRef } from "preact/hooks";
 import { number } from "../i18n/i18n.ts";
-import { colourOf, paint } from "../lib/height_picture.ts";
 import { html } from "../lib/html.ts";
+import { type Range, cssColour, kPartingTable, kViridisTable } from "../surface/colours.ts";
+import { pictureOf } from "../surface/paint.ts";
 
 const kBar_px = 256;
 
@@ -10,7 +11,7 @@ export function MapPicture({ values, width, height, range, parting, label, digit
   values: Float32Array;  // metres
   width: number;
   height: number;
-  range: { from: number; to: number };
+  range: Range;
   parting?: boolean;     // two colours that part in the middle
   label: string;
   digits: number;        // of the bar's numbers in um
@@ -18,16 +19,17 @@ export function MapPicture({ values, width, height, range, parting, label, digit
   const canvas = useRef<HTMLCanvasElement>(null);
   const bar = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
-    canvas.current?.getContext("2d")?.putImageData(paint(values, width, height, range, parting), 0, 0);
+    const table = parting ? kPartingTable : kViridisTable;
+    canvas.current?.getContext("2d")?.putImageData(pictureOf(values, width, height, range, table), 0, 0);
     const context = bar.current?.getContext("2d");
     for (let i = 0; context && i < kBar_px; ++i) {
-      context.fillStyle = `rgb(${colourOf(i / (kBar_px - 1), parting).join()})`;
+      context.fillStyle = cssColour(table[i] ?? 0);
       context.fillRect(i, 0, 1, 16);
     }
-  }, [values, range.from, range.to, parting]);
+  }, [values, range.low, range.high, parting]);
   return html`<figure class="map-picture">
     <canvas ref=${canvas} width=${width} height=${height} role="img" aria-label=${label}></canvas>
-    <div class="bar-of-colours"><span>${number(range.from * 1e6, digits)}</span><canvas ref=${bar} width=${kBar_px} height="16" aria-hidden="true"></canvas><span>${number(range.to * 1e6, digits)} µm</span></div>
+    <div class="bar-of-colours"><span>${number(range.low * 1e6, digits)}</span><canvas ref=${bar} width=${kBar_px} height="16" aria-hidden="true"></canvas><span>${number(range.high * 1e6, digits)} µm</span></div>
     <figcaption>${label}</figcaption>
   </figure>`;
 }

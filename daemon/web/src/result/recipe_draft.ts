@@ -1,24 +1,5 @@
 // Measurements that were found on a result, put into the recipe's draft of this tab, which the recipe page shows.
 
-export interface Draft {
-  text: string;
-  base_version: number;  // the version that the change was made from
-}
-
-const keyOf = (recipe: string): string => `fvd.draft.${recipe}`;
-
-export function readDraft(storage: Pick<Storage, "getItem">, recipe: string): Draft | null {
-  try {
-    const draft = JSON.parse(storage.getItem(keyOf(recipe)) ?? "null") as Draft | null;
-    return draft && typeof draft.text === "string" && Number.isInteger(draft.base_version) ? draft : null;
-  } catch {
-    return null;  // not what a page wrote
-  }
-}
-
-export const writeDraft = (storage: Pick<Storage, "setItem">, recipe: string, draft: Draft): void =>
-  storage.setItem(keyOf(recipe), JSON.stringify(draft));
-
 interface Document {
   evaluation?: { measurements?: Record<string, unknown> };
 }

@@ -20,6 +20,8 @@ function table(stops: readonly number[]): Uint32Array {
 }
 
 export const kViridisTable = table(kViridis);
+// Two colours that part in the middle, for what lies above and below.
+export const kPartingTable = table([0x053061, 0x4393c3, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xd6604d, 0x67001f]);
 export const kGreyTable = table([0x000000, 0xffffff]);
 
 export interface Range {

@@ -11,6 +11,12 @@ export function paintValues(values: Float32Array, range: Range, table: Uint32Arr
   }
 }
 
+export function pictureOf(values: Float32Array, width: number, height: number, range: Range, table: Uint32Array): ImageData {
+  const picture = new ImageData(width, height);
+  paintValues(values, range, table, new Uint32Array(picture.data.buffer));
+  return picture;
+}
+
 // Points that are valid are pale: the holes are what one looks for here.
 export const kValidColour = 0xeef2f5;
 

@@ -1,15 +1,17 @@
 // The picture of a map with shapes on it that the pointer drags.
 import { useEffect, useRef } from "preact/hooks";
-import { paint, rangeOf } from "../../lib/height_picture.ts";
-import type { HeightReply } from "../../lib/height_reply.ts";
 import { html } from "../../lib/html.ts";
 import { type Drawn, type Edit, type Point, contains, dragged, handleAt, moved } from "../../recipe/drawing.ts";
+import { percentileRange } from "../../surface/colour_range.ts";
+import { kViridisTable } from "../../surface/colours.ts";
+import type { Tile } from "../../surface/height_tile.ts";
+import { pictureOf } from "../../surface/paint.ts";
 
 const kReach_px = 22;  // of a finger
 const kWidth_px = 800;
 
 interface Props {
-  heights: HeightReply;
+  heights: Tile;
   size: Point;  // of the map in um
   shapes: readonly Drawn[];
   selected: string;
@@ -49,7 +51,7 @@ export function MapCanvas({ heights, size, shapes, selected, label, keyOf, onSel
     const own = document.createElement("canvas");
     own.width = heights.width;
     own.height = heights.height;
-    own.getContext("2d")?.putImageData(paint(heights.values, heights.width, heights.height, rangeOf(heights.values)), 0, 0);
+    own.getContext("2d")?.putImageData(pictureOf(heights.mean, heights.width, heights.height, percentileRange(heights.mean, 0.005, 0.995) ?? { low: 0, high: 1 }, kViridisTable), 0, 0);
     picture.current = own;
   }, [heights]);
   useEffect(() => {

@@ -1,11 +1,11 @@
 // The recipe's regions and profiles on the newest map: seen, dragged, moved by keys, added.
 import { useEffect, useState } from "preact/hooks";
 import { number, t, type TextKey } from "../../i18n/i18n.ts";
-import { type HeightReply, fetchHeights } from "../../lib/height_reply.ts";
 import { html } from "../../lib/html.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { freeName, getAt } from "../../recipe/document.ts";
 import { type Drawn, type Edit, drawingsOf, dragged, moved, newShape } from "../../recipe/drawing.ts";
+import { type Tile, fetchTile } from "../../surface/height_tile.ts";
 import type { Editor } from "./editor.ts";
 import { JobChoice } from "./job_choice.ts";
 import { MapCanvas } from "./map_canvas.ts";
@@ -14,7 +14,7 @@ import { type Newest, pitchOf } from "./newest_job.ts";
 const kArrows: Record<string, readonly [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export function RegionMap({ editor, newest }: { editor: Editor; newest: Newest }) {
-  const [heights, setHeights] = useState<HeightReply | null>(null);
+  const [heights, setHeights] = useState<Tile | null>(null);
   const [problem, setProblem] = useState("");
   const [selected, setSelected] = useState("");
   useEffect(() => {
@@ -22,7 +22,7 @@ export function RegionMap({ editor, newest }: { editor: Editor; newest: Newest }
     setProblem("");
     if (!newest.job_id || !newest.result) return;
     const ending = new AbortController();
-    fetchHeights(newest.job_id, { max: 512, kind: "height" }, ending.signal).then(setHeights, (error) => {
+    fetchTile(newest.job_id, "height", null, 512, ending.signal).then(setHeights, (error) => {
       if (!ending.signal.aborted) setProblem(messageOf(error));
     });
     return () => ending.abort();

@@ -4,19 +4,20 @@ import { t } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { call } from "../../rpc/rpc.ts";
-import { freeName, measurementNames, profileMeasurement, readDraft, withMeasurement, writeDraft } from "../../result/recipe_draft.ts";
+import { keepDraft, readDraft } from "../../recipe/draft.ts";
+import { freeName, measurementNames, profileMeasurement, withMeasurement } from "../../result/recipe_draft.ts";
 import type { ProfileLine } from "../../surface/profile_line.ts";
 
 const kParameters = ["Pt", "Pa", "Pq", "Wt", "Ra", "Rq", "Rz"] as const;
 
 async function keep(recipe: string, line: ProfileLine, wish: string, parameters: readonly string[]): Promise<string> {
-  let draft = readDraft(sessionStorage, recipe);
+  let draft = readDraft(recipe);
   if (!draft) {
     const { text, version } = await call("recipe.get", { id: recipe });
     draft = { text: text ?? "", base_version: version ?? 0 };
   }
   const name = freeName(measurementNames(draft.text), wish);
-  writeDraft(sessionStorage, recipe, { ...draft, text: withMeasurement(draft.text, name, profileMeasurement(line, parameters)) });
+  keepDraft(recipe, { ...draft, text: withMeasurement(draft.text, name, profileMeasurement(line, parameters)) });
   return name;
 }
 
