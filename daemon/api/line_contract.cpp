@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 10> kOrder{
     "job.start refused with 1009: job.latest, and newest_seq + 1; with 1010 or 1014 job.status of the number first: "
     "its "
     "job may be this part's, whose reply was lost, and only without one (1007) job.latest; an error with retry (1001, "
-    "1002, 1013): the same request again; after any other: people",
+    "1002, 1003, 1013): the same request again, and people where 1003 lasts; after any other: people",
 };
 
 struct Time {

@@ -38,7 +38,7 @@ class Line:
             if "result" in reply:
                 return reply["result"]
             if reply["error"]["data"]["retry"]:
-                time.sleep(POLL_S)  # 1001 not ready, 1002 busy, 1013 shutting down: it will be back
+                time.sleep(POLL_S)  # 1001 not ready, 1002 busy, 1013 shutting down: it will be back; 1003: somebody has control
             elif reply["error"]["code"] in expected:
                 return reply["error"]
             else:
