@@ -114,18 +114,20 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
   return handled;
 }
 
-std::optional<Handled> Dispatcher::try_overtake(std::string_view line, const Caller& caller, Behind behind) const {
+const Method* Dispatcher::overtaker(std::string_view line) const {
   const Method* method = method_of(line);
-  if (method == nullptr || !method->peek) return std::nullopt;
-  if (behind == Behind::kWork && !method->about.is_urgent) return std::nullopt;
-  // Who may not yet may log in with a line before it: then it keeps its turn.
-  if (!may_call(caller, method->about)) return std::nullopt;
-  return handle_line(line, caller, false);
+  return method != nullptr && method->peek ? method : nullptr;
 }
 
-bool Dispatcher::is_urgent(std::string_view line) const {
-  const Method* method = method_of(line);
-  return method != nullptr && method->about.is_urgent;
+bool Dispatcher::may_overtake(const Method& method, const Caller& caller, Behind behind) {
+  if (behind == Behind::kWork && !method.about.is_urgent) return false;
+  // Who may not yet may log in with a line before it: then it keeps its turn.
+  return may_call(caller, method.about);
+}
+
+std::string Dispatcher::job_on_board() const {
+  const auto snapshot = services_.machine.snapshot();
+  return snapshot->job ? snapshot->job->job_id : std::string();
 }
 
 bool Dispatcher::is_log_in(std::string_view line) const {
@@ -263,8 +265,10 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
     throw;
   } catch (const Error& error) {
     if (about.needs_id) {
+      const auto* const tokens = dynamic_cast<const TokensUnreadable*>(&error);
       warn_of(call.caller, call.method + " was refused to " + text_of(call.caller) + ": " +
-                               std::string(error_name(error.code())) + ": " + error.what());
+                               std::string(error_name(error.code())) + ": " +
+                               (tokens != nullptr ? tokens->reason() : error.what()));
     }
     note(method, call, error_name(error.code()));
     throw;
@@ -312,8 +316,7 @@ void Dispatcher::note_refusal(const Method& method, const Call& call, const Acce
 }
 
 void Dispatcher::warn_of(const Caller& caller, const std::string& text) const {
-  if (caller.who.role == Role::kNone) return refused_calls_.tell(caller.who.name, text);
-  spdlog::warn("{}", text);
+  services_.refusals.tell(caller.who.name, text);
 }
 
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {

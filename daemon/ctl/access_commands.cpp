@@ -45,9 +45,8 @@ constexpr int kStageLost = 1111;  ///< nobody but the drive itself can tell any 
 bool await_standstill(RpcClient& client) {
   const auto deadline = std::chrono::steady_clock::now() + kStandstillTime;
   do {
-    const Json state = client.call("system.state");
-    if (state.value("part_release", false)) return true;
-    if (state.value("error_code", 0) == kStageLost) return false;
+    if (client.call("system.health").value("stage", Json::object()).value("standstill", false)) return true;
+    if (client.call("system.state").value("error_code", 0) == kStageLost) return false;
     std::this_thread::sleep_for(kLookPeriod);
   } while (std::chrono::steady_clock::now() < deadline);
   return false;

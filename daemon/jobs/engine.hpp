@@ -61,7 +61,7 @@ class Engine {
   }
 
   [[nodiscard]] Services services() {
-    return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_, control_, audit_, access_};
+    return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_, control_, audit_, access_, refusals_};
   }
 
   /// What a reload changes while all goes on. context: any thread.
@@ -93,6 +93,7 @@ class Engine {
   PreviewHub preview_;
   MachineBoard board_;
   AccessRules access_;
+  RefusedCalls refusals_;
   ControlLease control_;
   AuditLog audit_;
   ObjectiveBook objectives_;

@@ -88,6 +88,10 @@ std::shared_ptr<const MachineStatus> MachineBoard::snapshot() const {
   return status_;
 }
 
+bool MachineBoard::stage_stands() const {
+  return snapshot()->signals.part_release && (!constants_.axis_stands || constants_.axis_stands());
+}
+
 void MachineBoard::on_change(std::function<void()> listener, const void* whose) {
   const MutexLock lock(telling_mutex_);
   if (listener) {

@@ -56,11 +56,13 @@ class MachineBoard final : public MachineView {
     std::function<int()> results_waiting;  ///< must not block, as the next two
     std::function<int()> results_valid{};  ///< the completed ones among them
     std::function<std::shared_ptr<const NewestSeqs>()> newest_seqs{};
-    int fifo_results = 1000;  ///< more that wait are an overrun
+    int fifo_results = 1000;                 ///< more that wait are an overrun
+    std::function<bool()> axis_stands = {};  ///< as DeviceHub::seen_standing(); empty = whenever it is measured
   };
   MachineBoard(Constants constants, std::optional<JobStatus> latest_job);
 
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override;
+  [[nodiscard]] bool stage_stands() const override;
   void on_change(std::function<void()> listener, const void* whose = nullptr) override;
 
   [[nodiscard]] MachineRecord read() const;

@@ -16,6 +16,7 @@
 #include "core/hw/camera.hpp"
 #include "core/stage/step_history.hpp"
 #include "daemon/access/access_rules.hpp"
+#include "daemon/access/refused_calls.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/devices_health.hpp"
 #include "daemon/jobs/control_lease.hpp"
@@ -70,6 +71,10 @@ class MachineView {
   virtual ~MachineView() = default;
   /// No lock that is held across a database or file access; never null.
   [[nodiscard]] virtual std::shared_ptr<const MachineStatus> snapshot() const = 0;
+  /// True if the snapshot says part_release and the stage's newest sample bears it out: the snapshot alone is as old as
+  /// the last look at the devices, which is minutes while a job is evaluated. Asks nothing of the devices, waits for
+  /// none. context: any thread.
+  [[nodiscard]] virtual bool stage_stands() const = 0;
   /// Called after every change of a job or the machine, from any thread; must return at once. One for each `whose`; an
   /// empty one ends it: after the return it is not called again.
   virtual void on_change(std::function<void()> listener, const void* whose = nullptr) = 0;
@@ -226,6 +231,7 @@ struct Services {
   ControlLease& control;
   AuditService& audit;
   const AccessRules& access;
+  RefusedCalls& refusals;  ///< of all ways in: the log's limit is one
 };
 
 }  // namespace fvd

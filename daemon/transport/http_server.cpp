@@ -65,7 +65,7 @@ struct HttpServer::Impl {
              s.access,
              gate,
              wrong_tokens,
-             refused_calls,
+             s.refusals,
              worker,
              logins,
              [this](const std::shared_ptr<HttpSession>& session) { sessions.erase(session); },
@@ -174,8 +174,7 @@ struct HttpServer::Impl {
   tcp::acceptor acceptor;
   asio::steady_timer pause;
   int port = 0;
-  WrongTokens wrong_tokens;  // network thread only, as the next three
-  RefusedCalls refused_calls;
+  WrongTokens wrong_tokens;  // network thread only, as the next two
   std::set<std::shared_ptr<HttpSession>> sessions;
   std::uint64_t connections = 0;  // since the start
   HttpSessionHost host;

@@ -7,7 +7,7 @@
 #include <boost/asio/write.hpp>
 #include <spdlog/spdlog.h>
 
-#include "core/base/error.hpp"
+#include "daemon/access/access_error.hpp"
 #include "daemon/transport/http_message.hpp"
 #include "daemon/transport/tcp_options.hpp"
 
@@ -188,8 +188,8 @@ void HttpSession::recognise() {
       [&access = host_.access, token = std::string(*token)]() -> Found {
         try {
           return {access.of_token(token), {}};
-        } catch (const Error& error) {
-          return {std::nullopt, error.what()};
+        } catch (const TokensUnreadable& error) {
+          return {std::nullopt, error.reason()};
         }
       },
       &HttpSession::take_identity);
@@ -197,9 +197,9 @@ void HttpSession::recognise() {
 
 void HttpSession::take_identity(std::pair<std::optional<Identity>, std::string> found) {
   if (!found.second.empty()) {
-    const std::string why = "nobody can be recognised by a token: " + found.second;
-    note_refusal(why);
-    return refuse({503, "no_tokens", why});
+    const std::string why = "nobody can be recognised by a token: ";
+    note_refusal(why + found.second);
+    return refuse({503, "no_tokens", why + "the file of tokens cannot be read; the log of fvd says why"});
   }
   if (!found.first) return refuse_token("nobody has this token");
   caller_.who = *std::move(found.first);
@@ -219,7 +219,7 @@ void HttpSession::refuse_token(const std::string& why) {
 }
 
 void HttpSession::note_refusal(const std::string& why) {
-  host_.refused_calls.tell(address_, "HTTP from " + caller_.peer + " was refused: " + why);
+  host_.refused_calls.tell(by_address_.name, "HTTP from " + caller_.peer + " was refused: " + why);
 }
 
 void HttpSession::answer() {

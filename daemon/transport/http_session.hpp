@@ -15,8 +15,8 @@
 #include <boost/beast/http.hpp>
 
 #include "daemon/access/access_rules.hpp"
+#include "daemon/access/refused_calls.hpp"
 #include "daemon/api/dispatcher.hpp"
-#include "daemon/api/refused_calls.hpp"
 #include "daemon/transport/http_gate.hpp"
 #include "daemon/transport/worker.hpp"
 #include "daemon/transport/wrong_tokens.hpp"

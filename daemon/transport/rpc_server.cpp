@@ -112,7 +112,6 @@ struct RpcServer::Impl {
   int port = 0;
   std::set<std::shared_ptr<RpcSession>> sessions;  // network thread only
   std::uint64_t connections = 0;                   // since the start; network thread only
-  RefusedCalls refused_connections;
   RpcSessionHost host;
   Worker worker;  // after what its tasks refer to
   Worker logins;
@@ -160,7 +159,7 @@ void RpcServer::Impl::admit(RpcSession::Socket socket, Caller caller) {
   // Whoever has no role may get one by a token.
   const bool allowed = caller.who.role > Role::kNone || services.access.has_tokens();
   const bool room = allowed && has_room(caller.who);
-  if (!allowed) refused_connections.tell(caller.who.name, "a connection is refused: " + text_of(caller));
+  if (!allowed) services.refusals.tell(caller.who.name, "a connection is refused: " + text_of(caller));
   const bool may_log_in = services.access.has_tokens() && (room || has_log_in_place());
   const auto session = std::make_shared<RpcSession>(host, std::move(socket), std::move(caller));
   sessions.insert(session);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
@@ -19,8 +20,8 @@ namespace {
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
 /// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
-/// A line waits for its turn after so many looks, unless it is urgent: with a client's many waits and lines, no work by
-/// their product.
+/// A line waits for its turn after so many tries, unless it is urgent, which is tried again for another job alone: with
+/// a client's many waits and lines, no work by their product.
 constexpr int kMostLooks = 4;
 constexpr std::string_view kTerminators("\n\r\0", 3);
 constexpr std::chrono::milliseconds kLongestLineEnd{3000};  // from a text to its end: networks repeat what they lose
@@ -201,19 +202,17 @@ void RpcSession::watch_line_end() {
 
 void RpcSession::overtake() {
   const auto behind = waiting_ ? Dispatcher::Behind::kWait : Dispatcher::Behind::kWork;
+  std::optional<std::string> board;
   while (!refused_ && looked_at_ < lines_.size()) {
     const auto line = lines_.begin() + static_cast<std::ptrdiff_t>(looked_at_);
-    // A line of another protocol is refused when its turn comes, and nothing behind it is read.
-    if (begins_foreign_protocol(line->text) || mistake_in(line->text, line->end)) return;
-    if (line->looks == kMostLooks) {
-      ++looked_at_;
-      continue;
+    if (!std::exchange(line->is_read, true)) {
+      line->is_mistaken = begins_foreign_protocol(line->text) || mistake_in(line->text, line->end);
+      if (!line->is_mistaken) line->overtaker = host_.dispatcher.overtaker(line->text);
     }
-    Caller caller = caller_;
-    caller.received = line->received;
-    auto handled = host_.dispatcher.try_overtake(line->text, caller, behind);
+    // A line of another protocol is refused when its turn comes, and nothing behind it is read.
+    if (line->is_mistaken) return;
+    auto handled = answer_early(*line, behind, board);
     if (!handled) {
-      if (!host_.dispatcher.is_urgent(line->text)) ++line->looks;
       ++looked_at_;
       continue;
     }
@@ -221,6 +220,21 @@ void RpcSession::overtake() {
     lines_.erase(line);
     if (handled->reply) send(std::move(*handled->reply));
   }
+}
+
+std::optional<Handled> RpcSession::answer_early(Line& line, Dispatcher::Behind behind,
+                                                std::optional<std::string>& board) const {
+  if (line.overtaker == nullptr || !Dispatcher::may_overtake(*line.overtaker, caller_, behind)) return std::nullopt;
+  if (line.overtaker->about.is_urgent) {
+    if (!board) board = host_.dispatcher.job_on_board();
+    if (line.board == board) return std::nullopt;
+    line.board = board;
+  } else if (line.looks++ >= kMostLooks) {
+    return std::nullopt;
+  }
+  Caller caller = caller_;
+  caller.received = line.received;
+  return host_.dispatcher.try_handle(line.text, caller);
 }
 
 void RpcSession::take(Handled handled) {

@@ -127,10 +127,11 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   std::optional<AccessRules> access;
   ControlLease control{[] { return HostClock::now(); }, [this] { return job_runs; }};
   FakeAudit audit;
+  RefusedCalls refusals;
   bool job_runs = false;
   [[nodiscard]] Services services() {
     if (!access) access.emplace(access_config);
-    return {*this, *this, *this, *this, recipes, objectives, studies, control, audit, *access};
+    return {*this, *this, *this, *this, recipes, objectives, studies, control, audit, *access, refusals};
   }
 
   Started start(const JobRequest& request) override {
@@ -167,6 +168,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   }
   JobStatus abort(const JobKey& key) override { return job(key); }
   std::optional<JobStatus> try_abort(const JobKey& key) override {
+    ++abort_tries;
     require_works();
     const std::lock_guard lock(mutex_);
     if (!current || !names(key, *current)) return std::nullopt;
@@ -174,6 +176,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return current;
   }
   std::atomic<int> aborts{0};
+  std::atomic<int> abort_tries{0};  ///< of jobs on the board and others
   Stopped stop_motion() override {
     ++stops;
     last_stop = HostClock::now();
@@ -235,6 +238,14 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     if (objectives.confirmed) status.objective = objectives.confirmed->objective;
     return std::make_shared<const MachineStatus>(status);
   }
+  [[nodiscard]] bool stage_stands() const override {
+    if (unseen_looks > 0) {
+      --unseen_looks;
+      return false;
+    }
+    return snapshot()->signals.part_release;
+  }
+  mutable std::atomic<int> unseen_looks{0};  ///< so many do not see it stand
   /// Done only when a test runs it.
   std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion, HostTime /*asked*/) override {
     motions.push_back(motion);

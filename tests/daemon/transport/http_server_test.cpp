@@ -163,7 +163,12 @@ TEST_F(AnHttpServer, SaysThatItsTokensCannotBeRead) {
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 20; ++i) EXPECT_EQ(ask(call("session.info"), bearer()), 503);
   EXPECT_EQ(ask(call("session.info"))["result"]["role"], "view");
+  HttpClient stranger(server_->port());
+  const std::string told = stranger.call(call("session.info"), bearer()).value_or(HttpReply{}).body;
+  EXPECT_THAT(told, HasSubstr("the log"));
+  EXPECT_THAT(told, testing::Not(HasSubstr(folder_.path().string()))) << "no stranger's business";
   server_.reset();
+  EXPECT_GE(log.lines_with((folder_ / "tokens").string()), 1U) << "the log says why";
   const auto seconds = (std::chrono::steady_clock::now() - begin) / std::chrono::seconds(1);
   EXPECT_GE(log.lines_with("nobody can be recognised"), 1U);
   EXPECT_LE(log.lines_with("nobody can be recognised"), 1 + static_cast<std::size_t>(seconds));

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Which refusals of strangers the log tells of: they cost the caller nothing, and must not fill it.
+/// Which refusals the log tells of, whoever calls: they cost the caller nothing, and must not fill it.
 
 #include <chrono>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "daemon/api/refused_calls.hpp"
+#include "daemon/access/refused_calls.hpp"
 
 #include <algorithm>
 #include <utility>
