@@ -128,8 +128,8 @@ class DeviceSlot final : public AnyDeviceSlot {
   Closed closed_;  // of the device that was given up last
   std::unique_ptr<Device> device_;
   mutable Mutex shown_mutex_;
-  const Device* shown_ FVD_GUARDED_BY(shown_mutex_) =
-      nullptr;  // device_, for other threads; null before it is given up
+  // device_ for other threads; null before it is given up.
+  const Device* shown_ FVD_GUARDED_BY(shown_mutex_) = nullptr;
   int openings_ = 0;
   std::optional<DeviceFailure> failure_;
   Reaper reaper_;  // last: it is done with every device before the rest goes

@@ -19,9 +19,9 @@ void describe_health(Fields& fields) {
   result.any(
       "stage",
       "an object: open, openings; standstill, of this moment: measured, and its newest sample says so too; if it "
-      "has a line also, since it was opened: requests, retries, unanswered, "
-      "refused, put_off, reconnects, implausible, discarded_bytes, latency_p50_us, latency_p99_us; "
-      "temperatures_c by name where the drive tells them; z_um, where it was at the last look between jobs and "
+      "has a line also, since it was opened: requests, retries, unanswered, refused, put_off, reconnects, implausible, "
+      "discarded_bytes, latency_p50_us, latency_p99_us; temperatures_c by name where the drive tells them; z_um, where "
+      "it was at the last look between jobs and "
       "commands, not its place while one runs, if that is known");
   result.any("disk", "an object: free_bytes, size_bytes of the file system of the results", Presence::kSometimes);
 }

@@ -161,6 +161,8 @@ TEST_F(ADeviceHub, TellsBySlotWhoseClosingHangs) {
   const auto is_stages = [](const StalledThread& thread) { return thread.name == "fvd-reap-stage"; };
   EXPECT_TRUE(std::any_of(stalled.begin(), stalled.end(), is_stages));
   go.set_value();
+  ASSERT_EQ(open_after_closing(), std::nullopt);
+  cables_.on_axis_closing = nullptr;
 }
 
 TEST_F(ADeviceHub, TriesAMissingDeviceAgainAndStopsTheAxisMeanwhile) {
