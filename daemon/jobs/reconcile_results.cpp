@@ -15,6 +15,7 @@
 
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
+#include "daemon/export/durable_file.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/storage_error.hpp"
@@ -149,8 +150,11 @@ void restore_refused_evaluations(JobStore& store, const fs::path& results) {
     if (!store.evaluations().find(id)) continue;
     if (file_calls().rename_to_new(entry->path(), results / id) == 0) {
       spdlog::warn("evaluation {} was refused, and its row was on the disk all the same: it is there from now on", id);
+      sync_directory(results);
     } else if (errno != EEXIST) {
-      spdlog::error("evaluation {} has a row and no files: {} cannot be renamed", id, entry->path().string());
+      // Under its hidden name it would be removed as something that nobody knows.
+      throw storage_error(errno, "give its files back to evaluation " + id + ", which has a row, by renaming",
+                          entry->path());
     }
   }
 }

@@ -283,6 +283,12 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     for (const auto& [whose, listener] : listeners) listener();
   }
 
+  /// What the snapshot tells of its job.
+  void change_current(const std::function<void(JobStatus&)>& how) {
+    const std::lock_guard lock(mutex_);
+    how(current.value());
+  }
+
   /// In a test that has start() block.
   std::function<void()> before_start;
   /// Likewise preview().

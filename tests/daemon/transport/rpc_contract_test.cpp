@@ -338,7 +338,7 @@ TEST_F(AtItsSocket, ExecutesNothingBehindAMistakeHoweverLongAWaitStandsBeforeIt)
     }
     EXPECT_EQ(service_.stops, 0);
     service_.change({5}, [](JobStatus& job) { job.state = JobState::kCompleted; });
-    service_.current->state = JobState::kCompleted;
+    service_.change_current([](JobStatus& job) { job.state = JobState::kCompleted; });
     service_.change({5}, [](JobStatus& job) { ++job.slices_done; });
     const auto waited = client.line();
     ASSERT_TRUE(waited.has_value());
