@@ -315,10 +315,6 @@ void Dispatcher::note_refusal(const Method& method, const Call& call, const Acce
   if (call.caller.who.role > Role::kNone) note(method, call, error_name(error.code()));
 }
 
-void Dispatcher::warn_of(const Caller& caller, const std::string& text) const {
-  services_.refusals.tell(caller.who.name, text);
-}
-
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {
   if (const auto* task = std::get_if<std::shared_ptr<DeviceTask>>(&waiting.until.awaited)) {
     return (*task)->outcome().has_value();

@@ -122,7 +122,7 @@ std::optional<DeviceFailure> DeviceHub::standstill_or_drop() {
 }
 
 bool DeviceHub::seen_standing() const {
-  const Rest rest = this->rest();
+  const Rest rest = last_rest();
   const auto stands = axis_.seen([&rest](const Axis& axis) {
     if (!axis.connected()) return false;
     const std::optional<StageStatus> seen = axis.last_seen();
@@ -136,7 +136,7 @@ bool DeviceHub::seen_standing() const {
 bool DeviceHub::moved_unasked() const {
   // A report of motion alone is none: some drives say so for every disturbance of a servo that holds.
   const std::optional<StageStatus> seen = axis_.get().last_seen();
-  const Rest rest = this->rest();
+  const Rest rest = last_rest();
   if (!seen || rest.holds(seen->position)) return false;
   spdlog::warn(
       "the stage is at {} um and rested at {} um, and fvd did not move it: was it moved by hand, or by another master?",
@@ -164,7 +164,7 @@ std::optional<DeviceFailure> DeviceHub::measure_standstill() {
   return restless_;
 }
 
-DeviceHub::Rest DeviceHub::rest() const {
+DeviceHub::Rest DeviceHub::last_rest() const {
   const MutexLock lock(rest_mutex_);
   return rest_;
 }

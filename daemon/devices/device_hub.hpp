@@ -91,7 +91,7 @@ class DeviceHub {
   [[nodiscard]] bool moved_unasked() const;
   [[nodiscard]] std::optional<DeviceFailure> measure_standstill();
   [[nodiscard]] std::optional<DeviceFailure> standstill_or_drop();
-  [[nodiscard]] Rest rest() const;
+  [[nodiscard]] Rest last_rest() const;
   void set_at_rest(bool at_rest);
 
   Clock& clock_;
