@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,6 +25,7 @@ struct ResourceRequest {
   std::optional<std::string> if_range;
   std::string address;                      ///< of the client
   std::chrono::milliseconds waited{0};      ///< since it was first asked; see ResourceAnswer::again_after
+  std::optional<std::string> last_event_id{};
 };
 
 /// A body that is made while it is sent, so that one piece of it is in memory at a time. context: one thread at a time.
@@ -35,6 +37,23 @@ class BodySource {
   virtual std::string next() = 0;
 };
 
+/// A body that grows while it is sent and does not end by itself: events. The client's end, or the daemon's, ends it,
+/// and destroys this. context: one thread at a time, but for `ready`.
+class StreamSource {
+ public:
+  virtual ~StreamSource() = default;
+  /// What there is to send now, 64 KiB or one event that is longer; empty: nothing. Blocks for nothing. It is not called
+  /// before what it gave last was sent: a client that does not read holds one piece in memory, and loses what this has
+  /// dropped by the next call. One that reads nothing for a minute is closed.
+  virtual std::string next() = 0;
+  /// Sent every ping_period() whatever else is sent, so that both ends notice when the other is gone.
+  [[nodiscard]] virtual std::string ping() const = 0;
+  [[nodiscard]] virtual std::chrono::milliseconds ping_period() const = 0;
+  /// ready: called, from any thread, when next() may have something; it returns at once. An empty one ends it: after the
+  /// return the one before is not called again.
+  virtual void on_ready(std::function<void()> ready) = 0;
+};
+
 /// The transport adds Content-Length, Date, Connection and the fields that browsers' rules are made of.
 struct ResourceAnswer {
   int status = 200;
@@ -44,6 +63,7 @@ struct ResourceAnswer {
   std::uint64_t source_bytes = 0;      ///< what it makes in all
   /// If there is one, nothing is sent yet: the same request comes again after this time, with `waited` grown.
   std::optional<std::chrono::milliseconds> again_after;
+  std::unique_ptr<StreamSource> stream{};  ///< if there is one, it makes a body without length, to the connection's end
 };
 
 /// Everything below one path.
