@@ -23,8 +23,8 @@ struct ResourceRequest {
   std::optional<std::string> if_none_match;
   std::optional<std::string> range;
   std::optional<std::string> if_range;
-  std::string address;                      ///< of the client
-  std::chrono::milliseconds waited{0};      ///< since it was first asked; see ResourceAnswer::again_after
+  std::string address;                  ///< of the client
+  std::chrono::milliseconds waited{0};  ///< since it was first asked; see ResourceAnswer::again_after
   std::optional<std::string> last_event_id{};
 };
 
@@ -42,15 +42,15 @@ class BodySource {
 class StreamSource {
  public:
   virtual ~StreamSource() = default;
-  /// What there is to send now, 64 KiB or one event that is longer; empty: nothing. Blocks for nothing. It is not called
-  /// before what it gave last was sent: a client that does not read holds one piece in memory, and loses what this has
-  /// dropped by the next call. One that reads nothing for a minute is closed.
+  /// What there is to send now, 64 KiB or one event that is longer; empty: nothing. Blocks for nothing. It is not
+  /// called before what it gave last was sent: a client that does not read holds one piece in memory, and loses what
+  /// this has dropped by the next call. One that reads nothing for a minute is closed.
   virtual std::string next() = 0;
   /// Sent every ping_period() whatever else is sent, so that both ends notice when the other is gone.
   [[nodiscard]] virtual std::string ping() const = 0;
   [[nodiscard]] virtual std::chrono::milliseconds ping_period() const = 0;
-  /// ready: called, from any thread, when next() may have something; it returns at once. An empty one ends it: after the
-  /// return the one before is not called again.
+  /// ready: called, from any thread, when next() may have something; it returns at once. An empty one ends it: after
+  /// the return the one before is not called again.
   virtual void on_ready(std::function<void()> ready) = 0;
 };
 

@@ -314,8 +314,7 @@ void HttpSession::refuse_unread(ErrorCodeOf error) {
   }
   if (error == http::error::body_limit) {
     return refuse(
-        {413, "too_large",
-         "the body has more than " + std::to_string(kMaxBody_bytes) + " bytes; send less at a time"});
+        {413, "too_large", "the body has more than " + std::to_string(kMaxBody_bytes) + " bytes; send less at a time"});
   }
   const bool is_http = error.category() == http::make_error_code(http::error::bad_method).category();
   if (!is_http || error == http::error::end_of_stream || error == http::error::partial_message) return close();

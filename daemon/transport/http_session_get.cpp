@@ -23,8 +23,9 @@ namespace http = boost::beast::http;
 
 namespace {
 
-constexpr std::chrono::seconds kPieceTime{10};        // for the client to read one
-constexpr std::chrono::seconds kStreamPieceTime{60};  // the same of a stream, whose reader may have nothing to do with it
+constexpr std::chrono::seconds kPieceTime{10};  // for the client to read one
+constexpr std::chrono::seconds kStreamPieceTime{
+    60};  // the same of a stream, whose reader may have nothing to do with it
 constexpr std::chrono::milliseconds kShortestPutOff{1};
 
 int status_of(ErrorCode code) {
@@ -86,9 +87,8 @@ const std::string* field_of(const ResourceAnswer& answer, std::string_view name)
 /// That it can be written as it is: no field begins another one.
 bool is_sound(const ResourceAnswer& answer) {
   return answer.status >= 200 && answer.status <= 599 &&
-         std::all_of(answer.fields.begin(), answer.fields.end(), [](const auto& field) {
-           return is_field_name(field.first) && is_field_value(field.second);
-         });
+         std::all_of(answer.fields.begin(), answer.fields.end(),
+                     [](const auto& field) { return is_field_name(field.first) && is_field_value(field.second); });
 }
 
 /// The same without its body: the client has it.
