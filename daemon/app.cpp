@@ -37,11 +37,17 @@ App::App(const Config& config, bool start_anew)
              {std::chrono::seconds(config_.rpc.repeat_window_s), start_anew}),
       engine_(config_, {with_cleared_results(store_, config_.paths), clock_, openers_of(config_)}),
       rpc_(config_.rpc, config_.paths.runtime_dir, engine_.services()) {
-  if (config_.http.port) http_.emplace(config_.http, engine_.services());
+  if (config_.http.port) http_.emplace(config_.http, engine_.services(), resources());
   const MetricsConfig& metrics = config_.metrics;
   if (metrics.port) metrics_.emplace(metrics.address, *metrics.port, engine_.services().machine);
   // No device is touched by a program that cannot have its ports: another fvd may be measuring with them.
   engine_.start();
+}
+
+std::vector<MountedResource> App::resources() {
+  events_.emplace(engine_.services());
+  event_streams_.emplace(*events_);
+  return {{"/", &page_}, {EventResource::kPath, &*event_streams_}};
 }
 
 // The connections live until all that was accepted has ended.

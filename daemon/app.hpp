@@ -4,11 +4,15 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/clock.hpp"
 #include "daemon/config/config.hpp"
+#include "daemon/events/event_hub.hpp"
+#include "daemon/events/event_resource.hpp"
 #include "daemon/jobs/engine.hpp"
 #include "daemon/metrics/metrics_server.hpp"
+#include "daemon/page/page_resource.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/transport/http_server.hpp"
 #include "daemon/transport/rpc_server.hpp"
@@ -29,7 +33,7 @@ class App {
 
   /// TCP port on which clients connect.
   [[nodiscard]] int rpc_port() const { return rpc_.port(); }
-  /// That of POST /api/jsonrpc; nothing if there is none.
+  /// That of the operator page and of POST /api/jsonrpc; nothing if there is none.
   [[nodiscard]] std::optional<int> http_port() const { return http_ ? std::optional(http_->port()) : std::nullopt; }
   /// That of /metrics and /healthz; nothing if there is none.
   [[nodiscard]] std::optional<int> metrics_port() const {
@@ -38,10 +42,16 @@ class App {
   [[nodiscard]] Engine& engine() { return engine_; }
 
  private:
+  /// What can be fetched by HTTP; makes what it needs.
+  [[nodiscard]] std::vector<MountedResource> resources();
+
   Config config_;
   SystemClock clock_;
   JobStore store_;
   Engine engine_;
+  PageResource page_;
+  std::optional<EventHub> events_;
+  std::optional<EventResource> event_streams_;
   RpcServer rpc_;
   std::optional<HttpServer> http_;
   std::optional<MetricsServer> metrics_;

@@ -20,6 +20,9 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kLongestDetail_bytes = 240;  // of a row of the audit
+/// Members of a batch that is too large, each of which is refused by its id. A refusal is ten times as long as what it
+/// refuses.
+constexpr std::size_t kMostRefusedSingly = 1024;
 
 bool has_come(const JobStatus& job, bool until_acquired) {
   return job.state != JobState::kProcessing || (until_acquired && job.acquired);
@@ -147,6 +150,9 @@ const Method* Dispatcher::method_of(std::string_view line) const {
 
 Dispatcher::Outcome Dispatcher::handle_batch(const json& batch, const Caller& caller, bool may_block) const {
   if (batch.empty()) return {failure_reply(nullptr, json_rpc::kInvalidRequest, "an empty batch")};
+  if (batch.size() > kMostRefusedSingly) {
+    return {ordered_json::array({failure_reply(nullptr, json_rpc::kInvalidRequest, *fault_of_batch(batch))})};
+  }
   ordered_json replies = ordered_json::array();
   bool accepted = false;
   if (const auto fault = fault_of_batch(batch)) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 namespace fvd {
 
 namespace {
@@ -45,12 +43,6 @@ std::string url_form(std::string_view address) {
 }
 
 }  // namespace
-
-std::string HttpRefusal::body() const {
-  return nlohmann::ordered_json{{"error", error}, {"message", message}}.dump(
-             -1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) +
-         "\n";
-}
 
 HttpGate::HttpGate(const std::vector<std::string>& hosts) {
   for (const std::string& host : hosts) hosts_.push_back(in_lower_case(host));

@@ -7,28 +7,27 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/transport/http_refusal.hpp"
+
 namespace fvd {
 
 /// What is asked of a request's header. A field that stands twice is no field.
 struct HttpHead {
   std::string method;                        ///< "POST"
-  std::string path;                          ///< without the query
+  std::string path;                          ///< as it was sent, without the query
   std::optional<std::string> host;           ///< "localhost:7413"
   std::optional<std::string> origin;         ///< of the page that sends it
   std::optional<std::string> fetch_site;     ///< a browser's word for where the page comes from
   std::optional<std::string> content_type;   ///< "application/json; charset=utf-8"
   std::optional<std::string> authorization;  ///< "Bearer TOKEN"
-  bool has_twice = false;                    ///< one of these fields
-};
+  bool has_twice = false;                    ///< one of the fields above
 
-/// An answer that is no JSON-RPC.
-struct HttpRefusal {
-  int status = 400;
-  std::string error;    ///< a stable name
-  std::string message;  ///< says what to do
-
-  /// One line of JSON with error and message.
-  [[nodiscard]] std::string body() const;
+  // Of no weight for who is let in.
+  std::optional<std::string> accept_encoding{};
+  std::optional<std::string> if_none_match{};
+  std::optional<std::string> range{};
+  std::optional<std::string> if_range{};
+  std::optional<std::string> last_event_id{};
 };
 
 /// Lets nobody in whom a browser sends for a foreign page. context: thread-safe; never changes.

@@ -54,8 +54,9 @@ MethodTable methods_without_log_in(const Services& services) {
 }  // namespace
 
 struct HttpServer::Impl {
-  Impl(const HttpConfig& config, const Services& s)
+  Impl(const HttpConfig& config, const Services& s, std::vector<MountedResource> mounted)
       : services(s),
+        resources(std::move(mounted)),
         dispatcher(methods_without_log_in(s), s),
         gate(names_of(config.hosts)),
         acceptor(context),
@@ -68,10 +69,13 @@ struct HttpServer::Impl {
              s.refusals,
              worker,
              logins,
+             files,
+             resources,
              [this](const std::shared_ptr<HttpSession>& session) { sessions.erase(session); },
              [this] { return has_room_without_token(); }},
         worker("fvd-http-work"),
-        logins("fvd-http-login") {
+        logins("fvd-http-login"),
+        files("fvd-http-files") {
     listen_on(acceptor, config.address, *config.port, "/http");
     port = acceptor.local_endpoint().port();
     accept();
@@ -168,6 +172,7 @@ struct HttpServer::Impl {
   }
 
   const Services services;
+  const std::vector<MountedResource> resources;
   const Dispatcher dispatcher;
   const HttpGate gate;
   asio::io_context context;
@@ -180,11 +185,12 @@ struct HttpServer::Impl {
   HttpSessionHost host;
   Worker worker;  // after what its tasks refer to
   Worker logins;
+  Worker files;
   std::jthread thread;  // last
 };
 
-HttpServer::HttpServer(const HttpConfig& config, const Services& services)
-    : impl_(std::make_unique<Impl>(config, services)) {}
+HttpServer::HttpServer(const HttpConfig& config, const Services& services, std::vector<MountedResource> resources)
+    : impl_(std::make_unique<Impl>(config, services, std::move(resources))) {}
 HttpServer::~HttpServer() = default;
 
 int HttpServer::port() const noexcept { return impl_->port; }

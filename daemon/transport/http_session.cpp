@@ -1,14 +1,14 @@
 #include "daemon/transport/http_session.hpp"
 
 #include <algorithm>
-#include <map>
 
-#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
-#include <spdlog/spdlog.h>
 
+#include "core/base/error.hpp"
 #include "daemon/access/access_error.hpp"
+#include "daemon/transport/http_fields.hpp"
 #include "daemon/transport/http_message.hpp"
+#include "daemon/transport/http_routes.hpp"
 #include "daemon/transport/tcp_options.hpp"
 
 namespace fvd {
@@ -18,7 +18,11 @@ namespace http = boost::beast::http;
 
 namespace {
 
+constexpr const char* kCallPath = "/api/jsonrpc";
 constexpr std::uint32_t kMaxHeader_bytes = 16384;
+constexpr std::size_t kMaxBody_bytes = std::size_t{1} << 20U;
+/// Of a body that is read; its beginning may have come with the header.
+constexpr std::size_t kReadChunk_bytes = std::size_t{64} << 10U;
 constexpr std::chrono::seconds kHeaderTime{10};
 constexpr std::chrono::seconds kBodyTime{10};
 constexpr std::chrono::seconds kAnswerTime{10};     // for the client to read
@@ -40,7 +44,7 @@ HttpSession::HttpSession(const HttpSessionHost& host, Socket socket, std::uint64
       socket_(std::move(socket)),
       deadline_(host.context),
       wait_(host.context),
-      buffer_(kMaxHeader_bytes + Dispatcher::kMaxLineBytes) {
+      buffer_(kMaxHeader_bytes + kReadChunk_bytes) {
   ErrorCodeOf gone;
   address_ = socket_.remote_endpoint(gone).address().to_string(gone);
   own_address_ = socket_.local_endpoint(gone).address().to_string(gone);
@@ -48,26 +52,6 @@ HttpSession::HttpSession(const HttpSessionHost& host, Socket socket, std::uint64
   caller_.peer = "http " + peer_of(socket_.native_handle());
   by_address_ = {"address " + address_, Role::kNone};
   if (const auto bytes = address_bytes(address_)) by_address_ = looking_only(host.access.of_address(*bytes, address_));
-}
-
-const HttpSession::Route* HttpSession::route_of(const std::string& path) {
-  static const std::map<std::string, Route> kRoutes{{"/api/jsonrpc", {http::verb::post, &HttpSession::serve_call}}};
-  const auto found = kRoutes.find(path);
-  return found == kRoutes.end() ? nullptr : &found->second;
-}
-
-template <typename Result>
-void HttpSession::work(Worker& worker, std::function<Result()> what, void (HttpSession::*then)(Result)) {
-  on_worker_ = true;
-  worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
-    Result result = what();
-    asio::io_context& context = self->host_.context;
-    // The session is moved back: its destructor must run on the server's thread.
-    asio::post(context, [self = std::move(self), result = std::move(result), then]() mutable {
-      self->on_worker_ = false;
-      if (!self->is_closed_) (self.get()->*then)(std::move(result));
-    });
-  });
 }
 
 void HttpSession::start() {
@@ -84,6 +68,7 @@ void HttpSession::close() {
   if (is_closed_) return;
   is_closed_ = true;
   waiting_.reset();
+  fetch_.reset();
   ErrorCodeOf ignored;
   deadline_.cancel();
   wait_.cancel();
@@ -120,7 +105,7 @@ void HttpSession::await_request() {
 void HttpSession::read_head() {
   parser_.emplace();
   parser_->header_limit(kMaxHeader_bytes);
-  parser_->body_limit(Dispatcher::kMaxLineBytes);
+  parser_->body_limit(kMaxBody_bytes);
   expire_after(kHeaderTime);
   http::async_read_header(socket_, buffer_, *parser_, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
     if (!self->is_closed_) self->take_head(error);
@@ -134,12 +119,17 @@ void HttpSession::take_head(ErrorCodeOf error) {
     note_refusal(refusal->error);
     return refuse(*refusal);
   }
-  const Route* route = route_of(head_.path);
-  if (route == nullptr) return refuse({404, "not_found", "there is POST /api/jsonrpc"});
-  if (parser_->get().method() != route->verb) {
-    return refuse({405, "method_not_allowed", "use " + std::string(http::to_string(route->verb))});
+  const http::verb method = parser_->get().method();
+  const bool is_get = method == http::verb::get || method == http::verb::head;
+  if (head_.path == kCallPath) {
+    if (method == http::verb::post) return serve_call();
+    return refuse({405, "method_not_allowed", "use POST", "POST"});
   }
-  (this->*route->serve)();
+  if (is_get) return serve_get();
+  if (resource_for(host_.resources, head_.path) == nullptr) {
+    return refuse({404, "not_found", std::string("there is nothing here; calls go to POST ") + kCallPath});
+  }
+  refuse({405, "method_not_allowed", std::string("use GET; calls go to POST ") + kCallPath, "GET, HEAD"});
 }
 
 void HttpSession::serve_call() {
@@ -224,8 +214,12 @@ void HttpSession::note_refusal(const std::string& why) {
 
 void HttpSession::answer() {
   state_ = AtWork::kAnswer;
+  if (fetch_) return fetch();
   const std::string& text = parser_->get().body();
-  if (auto handled = host_.dispatcher.try_handle(text, caller_)) return take(std::move(*handled));
+  // What is longer than any line is a document, whose reading alone would keep this thread from others.
+  if (text.size() <= Dispatcher::kMaxLineBytes) {
+    if (auto handled = host_.dispatcher.try_handle(text, caller_)) return take(std::move(*handled));
+  }
   work<Handled>(
       host_.worker,
       [&dispatcher = host_.dispatcher, text, caller = caller_] { return dispatcher.handle(text, caller); },
@@ -249,9 +243,10 @@ void HttpSession::begin_wait(WaitingRequest waiting) {
 }
 
 void HttpSession::watch_client() {
-  socket_.async_wait(Socket::wait_read, [self = shared_from_this(), request = ++requests_](ErrorCodeOf error) {
+  watch_ = ++watches_;
+  socket_.async_wait(Socket::wait_read, [self = shared_from_this(), watch = watch_](ErrorCodeOf error) {
     // What ends the watch of a request that was answered is the next request.
-    if (error || self->is_closed_ || !self->waiting_ || request != self->requests_) return;
+    if (error || self->is_closed_ || watch != self->watch_) return;
     ErrorCodeOf ignored;
     if (self->socket_.available(ignored) == 0) self->close();
   });
@@ -259,6 +254,10 @@ void HttpSession::watch_client() {
 
 void HttpSession::end_wait_now() {
   is_ending_ = true;
+  if (fetch_ && fetch_->stream) return close();
+  if (fetch_ && fetch_->is_put_off) {
+    return refuse({503, "shutting_down", "the daemon stops; ask again when it is back"});
+  }
   check_wait(false);
 }
 
@@ -316,8 +315,7 @@ void HttpSession::refuse_unread(ErrorCodeOf error) {
   }
   if (error == http::error::body_limit) {
     return refuse(
-        {413, "too_large",
-         "the body has more than " + std::to_string(Dispatcher::kMaxLineBytes) + " bytes; send less at a time"});
+        {413, "too_large", "the body has more than " + std::to_string(kMaxBody_bytes) + " bytes; send less at a time"});
   }
   const bool is_http = error.category() == http::make_error_code(http::error::bad_method).category();
   if (!is_http || error == http::error::end_of_stream || error == http::error::partial_message) return close();
@@ -328,22 +326,19 @@ void HttpSession::refuse(const HttpRefusal& refusal) {
   Response response;
   response.result(static_cast<unsigned>(refusal.status));
   if (refusal.status == 401) response.set(http::field::www_authenticate, "Bearer");
-  if (refusal.status == 405) {
-    response.set(http::field::allow, http::to_string(route_of(head_.path)->verb));
-  }
+  if (!refusal.allow.empty()) response.set(http::field::allow, refusal.allow);
   response.body() = refusal.body();
   response.keep_alive(false);
   send(std::move(response));
 }
 
 void HttpSession::send(Response response) {
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Referrer-Policy", "no-referrer");
-  response.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
-  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  set_common_fields(response);
   response.set(http::field::cache_control, "no-store");
   if (!response.body().empty()) response.set(http::field::content_type, "application/json");
   if (response.result() != http::status::no_content) response.prepare_payload();
+  if (is_head()) response.body().clear();  // the length stays
+  end_request();
   response_ = std::move(response);
   expire_after(kAnswerTime);
   http::async_write(socket_, response_, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
@@ -352,6 +347,16 @@ void HttpSession::send(Response response) {
     if (self->response_.keep_alive()) return self->await_request();
     self->drain();
   });
+}
+
+bool HttpSession::is_head() const {
+  return parser_ && parser_->is_header_done() && parser_->get().method() == http::verb::head;
+}
+
+void HttpSession::end_request() {
+  watch_ = 0;
+  fetch_.reset();
+  wait_.cancel();
 }
 
 void HttpSession::drain() {

@@ -8,8 +8,10 @@
 #include <optional>
 #include <string>
 #include <utility>  // before Asio 1.74, which forgets it
+#include <vector>
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -18,6 +20,7 @@
 #include "daemon/access/refused_calls.hpp"
 #include "daemon/api/dispatcher.hpp"
 #include "daemon/transport/http_gate.hpp"
+#include "daemon/transport/http_resource.hpp"
 #include "daemon/transport/worker.hpp"
 #include "daemon/transport/wrong_tokens.hpp"
 
@@ -35,6 +38,8 @@ struct HttpSessionHost {
   RefusedCalls& refused_calls;
   Worker& worker;  ///< for calls that may block
   Worker& logins;  ///< for the token file: nobody waits behind a slow call to be recognised
+  Worker& files;   ///< for what is fetched: no call waits behind a large map
+  const std::vector<MountedResource>& resources;
   std::function<void(const std::shared_ptr<HttpSession>&)> on_close;
   std::function<bool()> has_room_without_token;  ///< for one more request whose caller nobody vouches for
 };
@@ -52,7 +57,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void turn_away();
   /// Checks the waiting request again: a job changed.
   void resume() { check_wait(false); }
-  /// The same at the daemon's end, which answers it in any case.
+  /// The same at the daemon's end, which answers it in any case, and ends a stream.
   void end_wait_now();
   /// Answers what waits for the worker too, which does not come back in time.
   void give_up();
@@ -72,17 +77,26 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
   using Response = boost::beast::http::response<boost::beast::http::string_body>;
 
-  struct Route {
-    boost::beast::http::verb verb;
-    void (HttpSession::*serve)();  ///< the header is read and may be served
+  /// A GET or HEAD, from its header to the end of its answer.
+  struct Fetch {
+    HttpResource* resource = nullptr;
+    ResourceRequest request;
+    HostTime begun{};
+    std::shared_ptr<BodySource> source{};    ///< of what is still to be sent
+    std::uint64_t left_bytes = 0;            ///< that the source owes
+    std::unique_ptr<StreamSource> stream{};  ///< in its place
+    bool keep_alive = true;                  ///< the connection, after the answer
+    bool is_put_off = false;                 ///< until wait_ is over
+    bool owes_ping = false;                  ///< of the stream
   };
-  /// Everything that can be asked for, by path; nothing for another.
-  [[nodiscard]] static const Route* route_of(const std::string& path);
+  /// The next bytes of a body; nothing where they cannot be had.
+  using Piece = std::optional<std::string>;
 
   void await_request();
   void read_head();
+  /// The one place that says which path and method has which handler.
   void take_head(ErrorCodeOf error);
-  /// The header of /api/jsonrpc: its body is read if it may be.
+  /// The header of POST /api/jsonrpc: its body is read if it may be.
   void serve_call();
   void read_body();
   void take_body(ErrorCodeOf error);
@@ -91,17 +105,48 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void refuse_token(const std::string& why);
   /// Tells the log, unless it was just told of one from there.
   void note_refusal(const std::string& why);
+  /// Whatever the known caller asks for.
   void answer();
   void take(Handled handled);
   void begin_wait(WaitingRequest waiting);
   void check_wait(bool timed_out);
   void end_wait(std::optional<std::string> reply);
-  /// Closes when the client does, which nobody would see during a wait otherwise.
+  /// Closes when the client does, which nobody would see during a wait otherwise; until end_request().
   void watch_client();
   /// Runs `what`, which may block, on a worker, then the member `then` with its result on the server's thread.
   template <typename Result>
-  void work(Worker& worker, std::function<Result()> what, void (HttpSession::*then)(Result));
+  void work(Worker& worker, std::function<Result()> what, void (HttpSession::*then)(Result)) {
+    on_worker_ = true;
+    worker.post([self = shared_from_this(), what = std::move(what), then]() mutable {
+      Result result = what();
+      boost::asio::io_context& context = self->host_.context;
+      // The session is moved back: its destructor must run on the server's thread.
+      boost::asio::post(context, [self = std::move(self), result = std::move(result), then]() mutable {
+        self->on_worker_ = false;
+        if (!self->is_closed_) (self.get()->*then)(std::move(result));
+      });
+    });
+  }
   void take_identity(std::pair<std::optional<Identity>, std::string> found);
+
+  // What is fetched: http_session_get.cpp.
+  /// The header of a GET or HEAD.
+  void serve_get();
+  [[nodiscard]] ResourceRequest resource_request() const;
+  /// Asks the resource on its worker.
+  void fetch();
+  void take_answer(std::shared_ptr<ResourceAnswer> answer);
+  /// Asks again later.
+  void put_off(std::chrono::milliseconds time);
+  void send_answer(ResourceAnswer answer);
+  /// Sends a header, if there is one, and the bytes behind it, then goes on.
+  void send_piece(std::string head, std::string bytes);
+  void go_on();
+  void take_piece(Piece piece);
+  /// Sends what the stream has, now and whenever it has more.
+  void begin_stream();
+  void pump();
+  void time_ping();
 
   /// 200 with a reply of JSON-RPC, 204 without one.
   void send_reply(std::optional<std::string> reply);
@@ -109,6 +154,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /// Why reading failed, if the client can still be told; else closes.
   void refuse_unread(ErrorCodeOf error);
   void send(Response response);
+  /// Nothing of the request is needed any more.
+  void end_request();
+  /// True where the request's answer may have no body.
+  [[nodiscard]] bool is_head() const;
   /// Lets the client read the answer, then closes: to close with unread input would discard it.
   void drain();
   void drain_more();
@@ -127,9 +176,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<Parser> parser_;  ///< of the request that is read or answered
   HttpHead head_;
   Response response_;
+  std::optional<Fetch> fetch_;
+  std::string head_text_;  ///< that is being sent, as the next
+  std::string piece_;
+  bool is_sending_ = false;  ///< these two
   std::optional<WaitingRequest> waiting_;
   HostTime since_ = HostClock::now();
-  std::uint64_t requests_ = 0;  ///< that had to wait
+  std::uint64_t watches_ = 0;  ///< of the client, that began
+  std::uint64_t watch_ = 0;    ///< the one that counts; 0 = none
   AtWork state_ = AtWork::kNothing;
   bool timed_out_ = false;
   bool wait_is_over_ = false;

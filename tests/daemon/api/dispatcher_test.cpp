@@ -166,7 +166,9 @@ TEST_F(ADispatcher, LimitsBatches) {
     EXPECT_EQ(answer[static_cast<std::size_t>(id)]["id"], id);
     EXPECT_EQ(answer[static_cast<std::size_t>(id)]["error"]["code"], json_rpc::kInvalidRequest);
   }
-  EXPECT_EQ(reply(json(std::vector<json>(20000, json(5))).dump()).size(), 1U) << "the nameless get one answer";
+  EXPECT_EQ(reply(json(std::vector<json>(1000, json(5))).dump()).size(), 1U) << "the nameless get one answer";
+  EXPECT_EQ(reply(json(std::vector<json>(1024, json{{"id", 1}})).dump()).size(), 1024U);
+  EXPECT_EQ(reply(json(std::vector<json>(1025, json{{"id", 1}})).dump()).size(), 1U) << "what is said stays short";
   const json start{{"jsonrpc", "2.0"}, {"id", 1}, {"method", "job.start"}, {"params", {{"seq", 1}, {"part_id", "p"}}}};
   for (const json& refused : reply(json{start, start}.dump())) {
     EXPECT_EQ(refused["error"]["code"], json_rpc::kInvalidRequest);

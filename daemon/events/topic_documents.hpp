@@ -1,0 +1,45 @@
+#pragma once
+
+/// The documents that readers of events are told, as the methods of the API give them.
+
+#include <chrono>
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/api/method.hpp"
+#include "daemon/events/topic.hpp"
+#include "daemon/jobs/services.hpp"
+
+namespace fvd {
+
+/// All alarms that are kept, the newest last: [{number, time_utc, level, text, acknowledged}]. Blocks for nothing.
+using AlarmList = std::function<nlohmann::json()>;
+
+/// context: one thread; blocks for nothing but locks that are held for a moment.
+class TopicDocuments {
+ public:
+  /// What services name outlives this. alarms: empty = there are none.
+  TopicDocuments(const Services& services, AlarmList alarms);
+
+  /// Every key of system.state. Another hb alone is no change.
+  [[nodiscard]] TopicDocument state(const MachineStatus& machine) const;
+  /// Every key of job.status, of the running or the latest job; null before the first. Another age_s alone is no
+  /// change, progress alone is not urgent.
+  [[nodiscard]] TopicDocument job(const MachineStatus& machine) const;
+  /// As control.state tells it to who has it not. Less time alone is no change, a renewal is.
+  [[nodiscard]] TopicDocument control() const;
+  /// As system.health; counters and figures alone are not urgent.
+  [[nodiscard]] TopicDocument health() const;
+  [[nodiscard]] TopicDocument alarms() const;
+
+ private:
+  [[nodiscard]] Reply told_by(const std::string& method) const;
+
+  const Services services_;
+  const AlarmList alarms_;
+  const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  MethodTable methods_;
+};
+
+}  // namespace fvd
