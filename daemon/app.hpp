@@ -2,6 +2,7 @@
 
 /// The daemon as a whole: owns everything; the order of the members is the order of start, its reverse that of stop.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,9 +23,9 @@ namespace fvd {
 /// context: made and destroyed on the main thread, with the signals it waits for blocked.
 class App {
  public:
-  /// Opens the store, starts the engine and listens. start_anew: a database that is gone is not missed. Throws
-  /// Error kDatabase, kStorageWrite, kStorageFull, kBadConfig.
-  explicit App(const Config& config, bool start_anew = false);
+  /// Opens the store, starts the engine and listens. start_anew: a database that is gone is not missed. alarms: that
+  /// the log's lines come to, null = none do. Throws Error kDatabase, kStorageWrite, kStorageFull, kBadConfig.
+  explicit App(const Config& config, bool start_anew = false, std::shared_ptr<AlarmLog> alarms = nullptr);
   /// Ordered stop: aborts the job, halts the stage, gives the devices up, sends the replies to open requests, closes
   /// the connections.
   ~App();

@@ -42,6 +42,7 @@ std::size_t memory_budget_bytes(const Config& config) {
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
     : state_dir_(config.paths.state_dir),
+      alarms_(deps.alarms ? deps.alarms : std::make_shared<AlarmLog>()),
       pool_(thread_count(config.compute.threads)),
       pages_(std::make_shared<KeptPages>(memory_budget_bytes(config))),
       history_(config.paths.state_dir / "stage_history.json"),

@@ -3,6 +3,7 @@
 /// The parts that measure, wired: one machine, its devices, its thread, its jobs and commands.
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
+#include "daemon/jobs/alarm_log.hpp"
 #include "daemon/jobs/audit_log.hpp"
 #include "daemon/jobs/control_lease.hpp"
 #include "daemon/jobs/following_files.hpp"
@@ -38,7 +40,8 @@ struct EngineDependencies {
   Clock& clock;
   DeviceOpeners openers;
   ResultPipeline make_result = store_result;
-  RepeatabilityOf repeatability = {};  ///< of the recipes' values; empty = as its own gauge studies found it
+  RepeatabilityOf repeatability = {};     ///< of the recipes' values; empty = as its own gauge studies found it
+  std::shared_ptr<AlarmLog> alarms = {};  ///< that the log's lines come to; null = none do
 };
 
 /// context: made and destroyed on one thread; the services are thread-safe.
@@ -61,7 +64,8 @@ class Engine {
   }
 
   [[nodiscard]] Services services() {
-    return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_, control_, audit_, access_, refusals_};
+    return {board_,   jobs_,  jobs_,   tasks_,    recipes_, objectives_, study_runner_,
+            control_, audit_, access_, refusals_, jobs_,    *alarms_};
   }
 
   /// What a reload changes while all goes on. context: any thread.
@@ -84,6 +88,7 @@ class Engine {
   void note_health();
 
   const std::filesystem::path state_dir_;
+  const std::shared_ptr<AlarmLog> alarms_;
   WorkerPool pool_;
   KeptPagesPtr pages_;
   StageHistory history_;

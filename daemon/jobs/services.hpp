@@ -19,12 +19,14 @@
 #include "daemon/access/refused_calls.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/devices_health.hpp"
+#include "daemon/jobs/alarm.hpp"
 #include "daemon/jobs/control_lease.hpp"
 #include "daemon/jobs/device_task.hpp"
 #include "daemon/jobs/jog.hpp"
 #include "daemon/jobs/machine_state.hpp"
 #include "daemon/recipes/recipe_service.hpp"
 #include "daemon/store/audit_table.hpp"
+#include "daemon/store/job_history.hpp"
 #include "daemon/store/job_status.hpp"
 #include "daemon/store/objective_table.hpp"
 #include "daemon/store/sequence_numbers.hpp"
@@ -219,6 +221,33 @@ class AuditService {
   [[nodiscard]] virtual std::vector<AuditEntry> newest(int most, std::int64_t before) = 0;
 };
 
+/// Jobs and values in lists.
+/// context: as JobService; a long list keeps nobody else waiting.
+class HistoryService {
+ public:
+  virtual ~HistoryService() = default;
+
+  /// As JobHistory::page().
+  [[nodiscard]] virtual JobPage list(const JobFilter& filter, std::int64_t before, int most) const = 0;
+  /// As JobHistory::values().
+  [[nodiscard]] virtual std::vector<ValuePoint> values(const ValueQuery& query) const = 0;
+};
+
+/// What somebody has to see.
+/// context: every function thread-safe; blocks for nothing.
+class AlarmService {
+ public:
+  virtual ~AlarmService() = default;
+
+  /// All that are kept, the newest first.
+  [[nodiscard]] virtual std::vector<Alarm> newest() const = 0;
+  /// Somebody has seen this one. Repeating it changes nothing. Throws Error kBadInput where there is none of that
+  /// number any more.
+  virtual void acknowledge(std::int64_t number) = 0;
+  /// Counts the changes of what newest() tells.
+  [[nodiscard]] virtual std::uint64_t revision() const noexcept = 0;
+};
+
 /// All that the API is built on; each may be another object.
 struct Services {
   MachineView& machine;
@@ -232,6 +261,8 @@ struct Services {
   AuditService& audit;
   const AccessRules& access;
   RefusedCalls& refusals;  ///< of all ways in: the log's limit is one
+  HistoryService& history;
+  AlarmService& alarms;
 };
 
 }  // namespace fvd

@@ -31,6 +31,8 @@ MethodTable all_methods(const Services& services) {
   add_stage_methods(methods, services);
   add_objective_methods(methods, services);
   add_study_methods(methods, services);
+  add_history_methods(methods, services);
+  add_alarm_methods(methods, services);
   add_access_methods(methods, services);
   // Last, for it describes all, itself too.
   Method& discover = methods["rpc.discover"];

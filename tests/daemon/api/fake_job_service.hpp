@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "daemon/jobs/alarm_log.hpp"
 #include "daemon/jobs/services.hpp"
 
 namespace fvd {
@@ -118,8 +119,35 @@ class FakeAudit final : public AuditService {
   std::vector<AuditEntry> entries_;
 };
 
+/// Tells what a test puts there, and keeps what it was asked for.
+class FakeHistory final : public HistoryService {
+ public:
+  struct Asked {
+    JobFilter filter;
+    std::int64_t before = 0;
+    int most = 0;
+  };
+  [[nodiscard]] JobPage list(const JobFilter& filter, std::int64_t before, int most) const override {
+    if (failure) throw Error(*failure);
+    asked = {filter, before, most};
+    return page;
+  }
+  [[nodiscard]] std::vector<ValuePoint> values(const ValueQuery& query) const override {
+    if (failure) throw Error(*failure);
+    asked_value = query;
+    return points;
+  }
+  JobPage page;
+  std::vector<ValuePoint> points;
+  std::optional<Error> failure;
+  mutable std::optional<Asked> asked;
+  mutable std::optional<ValueQuery> asked_value;
+};
+
 class FakeJobService final : public MachineView, public JobService, public ResultService, public TaskService {
  public:
+  FakeJobService() { alarms.note(AlarmLevel::kWarning, "the disk is nearly full", {}); }
+
   FakeRecipes recipes;
   FakeObjectives objectives;
   FakeStudies studies;
@@ -128,10 +156,13 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   ControlLease control{[] { return HostClock::now(); }, [this] { return job_runs; }};
   FakeAudit audit;
   RefusedCalls refusals;
+  FakeHistory history;
+  AlarmLog alarms;  ///< one that nobody has seen, number 1
   bool job_runs = false;
   [[nodiscard]] Services services() {
     if (!access) access.emplace(access_config);
-    return {*this, *this, *this, *this, recipes, objectives, studies, control, audit, *access, refusals};
+    return {*this,   *this, *this,   *this,    recipes, objectives, studies,
+            control, audit, *access, refusals, history, alarms};
   }
 
   Started start(const JobRequest& request) override {

@@ -100,6 +100,10 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"job.wait", one},
       {"job.abort", one},
       {"job.latest", nothing},
+      {"job.list", nothing},
+      {"value.list", {{"measurement", "step"}, {"value", "height_um"}}},
+      {"alarm.list", nothing},
+      {"alarm.acknowledge", {{"number", 1}}},
       {"result.get", one},
       {"result.next", nothing},
       {"result.evaluate",
@@ -184,6 +188,18 @@ TEST_F(EveryMethod, FailsWithErrorsThatTheTableExplains) {
         "| 1146 | objective_mismatch |", "| 1147 | study_refused |", "| 1141 | evaluation_invalid |"}) {
     EXPECT_NE(table.find(row), std::string::npos) << row;
   }
+}
+
+/// What the operator page's types are made of: a key that is renamed here breaks the page's build. With
+/// FVD_WRITE_TABLES=1 in the environment the file is written instead of compared.
+TEST_F(EveryMethod, StandsInTheDescriptionThatThePageIsBuiltWith) {
+  const std::filesystem::path file = FVD_SOURCE_DIR "/daemon/web/openrpc.json";
+  nlohmann::ordered_json document = openrpc_document(dispatcher_.methods());
+  document["info"].erase("version");
+  const std::string wanted = document.dump(1) + "\n";
+  if (std::getenv("FVD_WRITE_TABLES") != nullptr) std::ofstream(file) << wanted;
+  EXPECT_TRUE(test::read_text(file) == wanted)
+      << file << " is not what rpc.discover says: run api_test with FVD_WRITE_TABLES=1";
 }
 
 /// With FVD_WRITE_TABLES=1 in the environment the README is written instead of compared.

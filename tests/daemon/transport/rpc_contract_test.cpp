@@ -74,8 +74,8 @@ class AtItsSocket : public testing::Test {
     config.access.loopback_role = Role::kAdminister;
     service_.access.emplace(config.access);
     const Services all = service_.services();
-    const Services counted{machine_,    all.jobs,    all.results, all.tasks,  all.recipes, all.objectives,
-                           all.studies, all.control, all.audit,   all.access, all.refusals};
+    const Services counted{machine_,    all.jobs,  all.results, all.tasks,    all.recipes, all.objectives, all.studies,
+                           all.control, all.audit, all.access,  all.refusals, all.history, all.alarms};
     server_ = std::make_unique<RpcServer>(config, runtime_.path(), counted);
   }
   /// A job of number 5 that runs.

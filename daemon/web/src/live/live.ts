@@ -1,14 +1,7 @@
 // What the daemon is doing, as the stream of events tells it. One stream a tab; a lost one is opened again by itself.
 import { createStore } from "../lib/store.ts";
+import type { Alarm } from "../rpc/listed.ts";
 import type { Methods } from "../rpc/methods.ts";
-
-export interface Alarm {
-  number: number;
-  time_utc: string;
-  level: "warning" | "error" | "critical";
-  text: string;
-  acknowledged: boolean;
-}
 
 // A topic is told in full: keys that short replies leave out are there.
 export type Full<M extends keyof Methods> = Required<Omit<Methods[M]["result"], "left_out">>;

@@ -3,11 +3,12 @@ import { useState } from "preact/hooks";
 import { t, tWord, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
-import { type Alarm, topics } from "../../live/live.ts";
+import { topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
+import type { Alarm } from "../../rpc/listed.ts";
+import { call } from "../../rpc/rpc.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { ordered, timeForPeople } from "../../run/alarm_order.ts";
-import { acknowledgeAlarm } from "./to_come.ts";
 import { whatToDo } from "./what_to_do.ts";
 
 // An alarm of an error carries its code where the daemon tells it.
@@ -26,7 +27,7 @@ function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; m
     <svg width="24" height="24" viewBox="0 0 24 24" fill="currentColor" aria-hidden="true"><path d=${kShapes[alarm.level] ?? kShapes.error}/></svg>
     <div>
       <p><strong>${tWord("run.alarm_level", alarm.level)}</strong> <time datetime=${alarm.time_utc}>${timeForPeople(alarm.time_utc, language)}</time></p>
-      <p class="alarm-text">${alarm.text}</p>
+      <p class="alarm-text">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</p>
       <p class="help">${todo}</p>
     </div>
     ${alarm.acknowledged
@@ -43,7 +44,7 @@ export function AlarmsPanel() {
   const [problem, setProblem] = useState("");
   const acknowledge = (number: number): void => {
     setProblem("");
-    acknowledgeAlarm(number).catch((error: unknown) => setProblem(messageOf(error)));
+    call("alarm.acknowledge", { number }).catch((error: unknown) => setProblem(messageOf(error)));
   };
   const list = ordered(alarms ?? []);
   const waiting = list.filter(({ acknowledged }) => !acknowledged).length;

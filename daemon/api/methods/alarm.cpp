@@ -1,0 +1,54 @@
+/// Warnings and errors of the log that somebody has to see.
+
+#include "daemon/api/list_shapes.hpp"
+#include "daemon/api/methods/methods.hpp"
+#include "daemon/api/result_fields.hpp"
+#include "daemon/jobs/alarm_log.hpp"
+
+namespace fvd {
+
+namespace {
+
+struct AlarmParams {
+  std::int64_t number = 1;
+
+  void describe(Fields& fields) {
+    fields.integer64("number", number, {1, kLargestExactInteger}, "of the alarm, as alarm.list tells it");
+    fields.require("number");
+  }
+};
+
+void describe_alarms(Fields& fields) {
+  ResultFields(fields).list("alarms", static_cast<std::int64_t>(AlarmLog::kMostKept), describe_alarm,
+                            "the newest first; older ones, and those of before the daemon's start, are in the log");
+}
+
+void describe_acknowledged(Fields& fields) {
+  ResultFields(fields).integer("acknowledged", kAnySeq, "number of the alarm; no other one is");
+}
+
+}  // namespace
+
+void add_alarm_methods(MethodTable& methods, const Services& services) {
+  methods["alarm.list"] = {.about = {.summary = "The newest lines of the log of level warning and above",
+                                     .role = Role::kView,
+                                     .params = described<NoParams>(),
+                                     .result = describe_alarms},
+                           // 100 KiB of text: not on the network thread.
+                           .run = [&alarms = services.alarms](const Call&) -> Answer {
+                             return Reply{{"alarms", alarms_json(alarms.newest())}};
+                           }};
+  methods["alarm.acknowledge"] = {
+      .about = {.summary = "Says that somebody has seen an alarm; one that was acknowledged stays so",
+                .role = Role::kOperate,
+                .params = described<AlarmParams>(),
+                .result = describe_acknowledged,
+                .errors = {ErrorCode::kBadInput},
+                .is_audited = true},
+      .run = with<AlarmParams>([&alarms = services.alarms](const Call&, const AlarmParams& params) -> Answer {
+        alarms.acknowledge(params.number);
+        return Reply{{"acknowledged", params.number}};
+      })};
+}
+
+}  // namespace fvd
