@@ -64,6 +64,9 @@ class Engine {
     return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_, control_, audit_, access_};
   }
 
+  /// For who looks on. context: any thread.
+  [[nodiscard]] PictureSource& pictures() { return tasks_; }
+
   /// What a reload changes while all goes on. context: any thread.
   void take(const StoreConfig& limits) { retention_.set_limits(limits); }
 
