@@ -1,10 +1,7 @@
 #include "daemon/resources/height_query.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <functional>
-#include <utility>
 
 namespace fvd {
 

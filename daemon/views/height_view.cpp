@@ -69,24 +69,24 @@ void HeightView::make(int first, int end, const Put& put) const {
 }
 
 std::string HeightView::whole() const {
-  std::string bytes = header();
-  bytes.resize(static_cast<std::size_t>(this->bytes()));
+  std::string view = header();
+  view.resize(static_cast<std::size_t>(bytes()));
   const std::size_t row_bytes = sizeof(float) * static_cast<std::size_t>(width_);
   make(0, height_, [&](int plane, int y, const std::vector<float>& values) {
     const auto row = static_cast<std::size_t>(plane) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y);
-    std::memcpy(bytes.data() + kHeader_bytes + row * row_bytes, values.data(), row_bytes);
+    std::memcpy(view.data() + kHeader_bytes + row * row_bytes, values.data(), row_bytes);
   });
-  return bytes;
+  return view;
 }
 
 std::string HeightView::rows(int plane, int first, int end) const {
   const std::size_t row_bytes = sizeof(float) * static_cast<std::size_t>(width_);
-  std::string bytes;
-  bytes.reserve(row_bytes * static_cast<std::size_t>(end - first));
+  std::string made_rows;
+  made_rows.reserve(row_bytes * static_cast<std::size_t>(end - first));
   make(first, end, [&](int made, int /*y*/, const std::vector<float>& values) {
-    if (made == plane) bytes.append(reinterpret_cast<const char*>(values.data()), row_bytes);
+    if (made == plane) made_rows.append(reinterpret_cast<const char*>(values.data()), row_bytes);
   });
-  return bytes;
+  return made_rows;
 }
 
 }  // namespace fvd

@@ -13,7 +13,7 @@ std::string source_of(const std::string& record) {
   const nlohmann::json document = nlohmann::json::parse(record, nullptr, false);
   const auto source = nlohmann::json::json_pointer("/source/job_id");
   if (!document.is_object() || !document.contains(source) || !document[source].is_string()) return {};
-  return document[source];
+  return document[source].get<std::string>();
 }
 
 }  // namespace
