@@ -68,6 +68,9 @@ class Engine {
             control_, audit_, access_, refusals_, jobs_,    *alarms_};
   }
 
+  /// For who looks on. context: any thread.
+  [[nodiscard]] PictureSource& pictures() { return tasks_; }
+
   /// What a reload changes while all goes on. context: any thread.
   void take(const StoreConfig& limits) { retention_.set_limits(limits); }
 

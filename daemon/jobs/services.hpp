@@ -34,6 +34,8 @@
 
 namespace fvd {
 
+struct PreviewPicture;
+
 /// Jobs that ended since the daemon's start.
 struct JobCounts {
   std::uint64_t completed = 0;
@@ -166,6 +168,17 @@ class TaskService {
 
   /// What all scans so far say of the stage; nothing before the first.
   [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
+};
+
+/// Pictures of what the camera sees, for who looks on.
+/// context: thread-safe; no device is asked and nothing is waited for.
+class PictureSource {
+ public:
+  virtual ~PictureSource() = default;
+
+  /// The newest slice of the job that runs, or the newest image that somebody took since the last one; null before the
+  /// first. Whoever asks counts as a viewer for 3 s: without viewers a job keeps no slices for them.
+  [[nodiscard]] virtual std::shared_ptr<const PreviewPicture> newest_picture() = 0;
 };
 
 /// Which objective is on the microscope, as people confirm it.

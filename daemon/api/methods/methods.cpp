@@ -27,6 +27,7 @@ MethodTable all_methods(const Services& services) {
   add_recipe_methods(methods, services);
   add_job_methods(methods, services);
   add_result_methods(methods, services);
+  add_profile_methods(methods, services);
   add_camera_methods(methods, services);
   add_stage_methods(methods, services);
   add_objective_methods(methods, services);

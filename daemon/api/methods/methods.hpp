@@ -18,6 +18,7 @@ void add_health_methods(MethodTable& methods, const Services& services);
 void add_recipe_methods(MethodTable& methods, const Services& services);
 void add_job_methods(MethodTable& methods, const Services& services);
 void add_result_methods(MethodTable& methods, const Services& services);
+void add_profile_methods(MethodTable& methods, const Services& services);
 void add_camera_methods(MethodTable& methods, const Services& services);
 void add_stage_methods(MethodTable& methods, const Services& services);
 void add_objective_methods(MethodTable& methods, const Services& services);

@@ -55,6 +55,7 @@ const std::map<std::string, Role>& expected_roles() {
                                                   {"result.evaluate", kSetUp},
                                                   {"result.get", kView},
                                                   {"result.next", kView},
+                                                  {"result.profile", kView},
                                                   {"rpc.discover", kView},
                                                   {"session.info", kNone},
                                                   {"session.login", kNone},
