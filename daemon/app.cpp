@@ -51,7 +51,9 @@ App::App(const Config& config, bool start_anew, std::shared_ptr<AlarmLog> alarms
 std::vector<MountedResource> App::resources() {
   events_.emplace(engine_.services());
   event_streams_.emplace(*events_);
-  return {{"/", &page_}, {EventResource::kPath, &*event_streams_}};
+  results_.emplace(engine_.services().results);
+  pictures_.emplace(engine_.pictures());
+  return {{"/", &page_}, {EventResource::kPath, &*event_streams_}, {kJobsPath, &*results_}, {kLivePath, &*pictures_}};
 }
 
 // The connections live until all that was accepted has ended.

@@ -14,6 +14,8 @@
 #include "daemon/jobs/engine.hpp"
 #include "daemon/metrics/metrics_server.hpp"
 #include "daemon/page/page_resource.hpp"
+#include "daemon/resources/job_resource.hpp"
+#include "daemon/resources/live_resource.hpp"
 #include "daemon/store/job_store.hpp"
 #include "daemon/transport/http_server.hpp"
 #include "daemon/transport/rpc_server.hpp"
@@ -53,6 +55,8 @@ class App {
   PageResource page_;
   std::optional<EventHub> events_;
   std::optional<EventResource> event_streams_;
+  std::optional<JobResource> results_;
+  std::optional<LiveResource> pictures_;
   RpcServer rpc_;
   std::optional<HttpServer> http_;
   std::optional<MetricsServer> metrics_;

@@ -31,9 +31,9 @@ std::string completed_job(const MachineStatus& machine) {
 
 }  // namespace
 
-EventHub::EventHub(const Services& services, AlarmList alarms)
+EventHub::EventHub(const Services& services)
     : services_(services),
-      documents_(services, std::move(alarms)),
+      documents_(services),
       topics_{Topic(kNoPatience), Topic(kJobPatience), Topic(kNoPatience), Topic(kHealthPatience), Topic(kNoPatience)},
       ring_(services.machine.snapshot()->epoch) {
   {
@@ -110,9 +110,10 @@ void EventHub::look() {
   found[kJob] = documents_.job(*machine);
   found[kControl] = documents_.control();
   found[kHealth] = documents_.health();
-  if (alarms_looked_at_ == HostTime{} || now - alarms_looked_at_ >= kLongestBetweenLooks) {
+  // Before the list: one that comes between the two is told by the next look.
+  if (const std::uint64_t alarms = services_.alarms.revision(); told_alarms_ != alarms) {
+    told_alarms_ = alarms;
     found[kAlarms] = documents_.alarms();
-    alarms_looked_at_ = now;
   }
   bool has_told = false;
   {

@@ -36,7 +36,7 @@ struct EventCounts {
 class EventHub {
  public:
   /// Becomes a listener of the machine and of control. What services name outlives it.
-  explicit EventHub(const Services& services, AlarmList alarms = {});
+  explicit EventHub(const Services& services);
   ~EventHub();
   EventHub(const EventHub&) = delete;
   EventHub& operator=(const EventHub&) = delete;
@@ -75,7 +75,7 @@ class EventHub {
 
   const Services services_;
   const TopicDocuments documents_;
-  HostTime alarms_looked_at_{};  // the thread's; before it the constructor's
+  std::optional<std::uint64_t> told_alarms_;  // their revision; the thread's, before it the constructor's
 
   mutable Mutex mutex_;
   Condition changed_;

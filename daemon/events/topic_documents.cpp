@@ -1,9 +1,9 @@
 #include "daemon/events/topic_documents.hpp"
 
 #include <initializer_list>
-#include <utility>
 
 #include "daemon/api/json_shapes.hpp"
+#include "daemon/api/list_shapes.hpp"
 #include "daemon/api/methods/methods.hpp"
 
 namespace fvd {
@@ -27,8 +27,7 @@ Reply presence_of(const Reply& health, const char* device) {
 
 }  // namespace
 
-TopicDocuments::TopicDocuments(const Services& services, AlarmList alarms)
-    : services_(services), alarms_(std::move(alarms)) {
+TopicDocuments::TopicDocuments(const Services& services) : services_(services) {
   add_health_methods(methods_, services_);
   add_access_methods(methods_, services_);
 }
@@ -73,8 +72,7 @@ TopicDocument TopicDocuments::health() const {
 }
 
 TopicDocument TopicDocuments::alarms() const {
-  const std::string text =
-      alarms_ ? alarms_().dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) : std::string("[]");
+  const std::string text = text_of(alarms_json(services_.alarms.newest()));
   return {text, text, text};
 }
 

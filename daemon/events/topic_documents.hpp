@@ -3,9 +3,6 @@
 /// The documents that readers of events are told, as the methods of the API give them.
 
 #include <chrono>
-#include <functional>
-
-#include <nlohmann/json.hpp>
 
 #include "daemon/api/method.hpp"
 #include "daemon/events/topic.hpp"
@@ -13,14 +10,11 @@
 
 namespace fvd {
 
-/// All alarms that are kept, the newest last: [{number, time_utc, level, text, acknowledged}]. Blocks for nothing.
-using AlarmList = std::function<nlohmann::json()>;
-
 /// context: one thread; blocks for nothing but locks that are held for a moment.
 class TopicDocuments {
  public:
-  /// What services name outlives this. alarms: empty = there are none.
-  TopicDocuments(const Services& services, AlarmList alarms);
+  /// What services name outlives this.
+  explicit TopicDocuments(const Services& services);
 
   /// Every key of system.state. Another hb alone is no change.
   [[nodiscard]] TopicDocument state(const MachineStatus& machine) const;
@@ -31,13 +25,13 @@ class TopicDocuments {
   [[nodiscard]] TopicDocument control() const;
   /// As system.health; counters and figures alone are not urgent.
   [[nodiscard]] TopicDocument health() const;
+  /// The list of alarm.list.
   [[nodiscard]] TopicDocument alarms() const;
 
  private:
   [[nodiscard]] Reply told_by(const std::string& method) const;
 
   const Services services_;
-  const AlarmList alarms_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   MethodTable methods_;
 };

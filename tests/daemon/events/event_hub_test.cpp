@@ -77,7 +77,7 @@ class AnEventHub : public ::testing::Test {
 };
 
 TEST_F(AnEventHub, BeginsWithASnapshot) {
-  EventHub hub(services_, [] { return json::array({{{"number", 1}, {"text", "it is warm"}}}); });
+  EventHub hub(services_);
   const auto told = hub.begin({});
   EXPECT_THAT(told.text, StartsWith("retry: 2000\n\n"));
   const auto events = events_in(told.text);
@@ -89,7 +89,7 @@ TEST_F(AnEventHub, BeginsWithASnapshot) {
   EXPECT_EQ(all["job"], nullptr);
   EXPECT_EQ(all["control"]["owner"], "");
   EXPECT_TRUE(all["health"]["ok"].get<bool>());
-  EXPECT_EQ(all["alarms"][0]["text"], "it is warm");
+  EXPECT_EQ(all["alarms"][0]["text"], "the disk is nearly full");
   EXPECT_EQ(all.size(), 5U);
 }
 
@@ -163,12 +163,14 @@ TEST_F(AnEventHub, TellsOfControlThatIsOver) {
 }
 
 TEST_F(AnEventHub, TellsOfAlarms) {
-  std::atomic<int> count{0};
-  EventHub hub(services_, [&count] { return json(std::vector<int>(static_cast<std::size_t>(count.load()), 7)); });
+  EventHub hub(services_);
   std::uint64_t place = hub.begin({}).place;
-  count = 2;
-  hub.look_again();
-  EXPECT_EQ(until(hub, place, "alarms").back().data, json({7, 7}));
+  service_.alarms.note(AlarmLevel::kError, "it is warm", {});
+  const json two = until(hub, place, "alarms").back().data;
+  ASSERT_EQ(two.size(), 2U) << "nobody woke the hub";
+  EXPECT_EQ(two[0]["text"], "it is warm");
+  service_.alarms.acknowledge(2);
+  EXPECT_EQ(until(hub, place, "alarms").back().data[0]["acknowledged"], true);
 }
 
 TEST_F(AnEventHub, GoesOnWhereAReaderWas) {

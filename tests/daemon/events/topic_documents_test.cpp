@@ -51,11 +51,12 @@ class TopicDocumentsTest : public ::testing::Test {
 };
 
 TEST_F(TopicDocumentsTest, AreThoseOfTheMethods) {
-  const TopicDocuments documents(services_, {});
+  const TopicDocuments documents(services_);
   EXPECT_EQ(keys(parsed(documents.state(machine_))), keys_of("system.state"));
   EXPECT_EQ(keys(parsed(documents.control())), keys_of("control.state"));
   EXPECT_EQ(keys(parsed(documents.health())), keys_of("system.health"));
-  EXPECT_EQ(parsed(documents.alarms()), json::array());
+  ASSERT_EQ(parsed(documents.alarms()).size(), 1U);
+  EXPECT_EQ(parsed(documents.alarms())[0]["text"], "the disk is nearly full");
   const json job = parsed(documents.job(machine_));
   EXPECT_EQ(job["part_id"], "<script>") << "a text is a text";
   EXPECT_EQ(job["job_id"], "job-1");
@@ -64,7 +65,7 @@ TEST_F(TopicDocumentsTest, AreThoseOfTheMethods) {
 }
 
 TEST_F(TopicDocumentsTest, HaveEveryKeyOfAJob) {
-  const TopicDocuments documents(services_, {});
+  const TopicDocuments documents(services_);
   JobRequest request;
   request.seq = 1;
   request.part_id = "p";
@@ -75,7 +76,8 @@ TEST_F(TopicDocumentsTest, HaveEveryKeyOfAJob) {
 TEST_F(TopicDocumentsTest, AreOneLineOfAscii) {
   machine_.error = ErrorCode::kNotReady;
   machine_.error_message = "a\nb\xc3\xbc\xff";
-  const TopicDocuments documents(services_, [] { return json::array({{{"text", "a\nb\xc3\xbc\xff"}}}); });
+  service_.alarms.note(AlarmLevel::kError, "a\nb\xc3\xbc\xff", {});
+  const TopicDocuments documents(services_);
   for (const TopicDocument& document : {documents.state(machine_), documents.alarms()}) {
     for (const char c : document.text) EXPECT_TRUE(c >= ' ' && c < 0x7f) << document.text;
     EXPECT_TRUE(json::accept(document.text));
@@ -83,7 +85,7 @@ TEST_F(TopicDocumentsTest, AreOneLineOfAscii) {
 }
 
 TEST_F(TopicDocumentsTest, KnowProgressFromWhatIsUrgent) {
-  const TopicDocuments documents(services_, {});
+  const TopicDocuments documents(services_);
   const TopicDocument before = documents.job(machine_);
   machine_.job->slices_done = 5;
   machine_.job->frames.ok = 5;
@@ -95,7 +97,7 @@ TEST_F(TopicDocumentsTest, KnowProgressFromWhatIsUrgent) {
 }
 
 TEST_F(TopicDocumentsTest, TakeARenewalForAChangeAndLessTimeForNone) {
-  const TopicDocuments documents(services_, {});
+  const TopicDocuments documents(services_);
   const Identity kiosk{"token kiosk", Role::kOperate};
   const std::string nobody = documents.control().compared;
   (void)service_.control.acquire({kiosk, "anna", std::chrono::seconds(60)});
@@ -111,7 +113,7 @@ TEST_F(TopicDocumentsTest, TakeARenewalForAChangeAndLessTimeForNone) {
 }
 
 TEST_F(TopicDocumentsTest, KnowALostDeviceFromAFigure) {
-  const TopicDocuments documents(services_, {});
+  const TopicDocuments documents(services_);
   const TopicDocument before = documents.health();
   machine_.health.frames.frames_complete = 100;
   service_.machine = machine_;
