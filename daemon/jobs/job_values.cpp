@@ -12,16 +12,16 @@ std::string verdict_text(const std::optional<Verdict>& verdict) {
 
 /// Of a value of the evaluation or of the map.
 template <typename Value>
-JobValue job_value(const std::string& measurement, const std::string& name, const Value& value) {
+StoredValue job_value(const std::string& measurement, const std::string& name, const Value& value) {
   const Limits limits = value.limits.value_or(Limits{});
   return {measurement,      name,         value.value,  value.u,
           value.expanded_u, limits.lower, limits.upper, verdict_text(value.verdict)};
 }
 
-void add_measurement(const std::string& name, const EvaluatedMeasurement& measurement, std::vector<JobValue>& values) {
+void add_measurement(const std::string& name, const EvaluatedMeasurement& measurement, std::vector<StoredValue>& values) {
   for (const auto& [key, value] : measurement.values) values.push_back(job_value(name, key, value));
   if (!measurement.values.empty()) return;
-  JobValue missing;
+  StoredValue missing;
   missing.measurement = name;
   missing.name = measurement.main_value.empty() ? name : measurement.main_value;
   missing.verdict = verdict_text(measurement.verdict);
@@ -30,8 +30,8 @@ void add_measurement(const std::string& name, const EvaluatedMeasurement& measur
 
 }  // namespace
 
-std::vector<JobValue> values_of(const Result& result) {
-  std::vector<JobValue> values;
+std::vector<StoredValue> values_of(const Result& result) {
+  std::vector<StoredValue> values;
   bool has_own_map = false;
   if (result.evaluation) {
     const auto& measurements = result.evaluation->measurements;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/result/result.hpp"
-#include "daemon/store/job_value.hpp"
+#include "daemon/store/stored_value.hpp"
 
 namespace fvd {
 
@@ -15,6 +15,6 @@ inline constexpr const char* kMapMeasurement = "map";
 /// Those of the evaluation in the recipe's order, then those of the map as a whole, unless the recipe calls a
 /// measurement of its own so. A measurement that failed as a whole has its main value, which is absent.
 /// context: pure.
-[[nodiscard]] std::vector<JobValue> values_of(const Result& result);
+[[nodiscard]] std::vector<StoredValue> values_of(const Result& result);
 
 }  // namespace fvd

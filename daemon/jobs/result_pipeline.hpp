@@ -11,7 +11,7 @@
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/result/result_data.hpp"
-#include "daemon/store/job_value.hpp"
+#include "daemon/store/stored_value.hpp"
 
 namespace fvd {
 
@@ -24,7 +24,7 @@ struct JobResult {
   std::string message;
   std::string verdict;           ///< as JobStatus
   std::string reason_codes;      ///< likewise
-  std::vector<JobValue> values;  ///< for the job database
+  std::vector<StoredValue> values;  ///< for the job database
 };
 
 /// Notes what the result says of the part.

@@ -46,7 +46,7 @@ struct ValuePoint {
   std::string job_id;
   std::string part_id;
   std::string ended_utc;
-  JobValue value;
+  StoredValue value;
 };
 
 /// Reads on a connection of its own: a long list keeps no other reader waiting, and a commit neither.

@@ -114,7 +114,7 @@ void write_values(const Database& database, const StoredJob& end) {
   if (!row.step()) return;
   const std::int64_t number = row.integer(0);
   Statement(database, "DELETE FROM job_values WHERE number = ?").bind(number).run();
-  for (const JobValue& value : end.values) {
+  for (const StoredValue& value : end.values) {
     Statement(
         database,
         "INSERT OR IGNORE INTO job_values (number, measurement, name, value, u, expanded_u, lower, upper, verdict) "

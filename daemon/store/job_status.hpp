@@ -13,7 +13,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/error.hpp"
 #include "core/scan/frame_ledger.hpp"
-#include "daemon/store/job_value.hpp"
+#include "daemon/store/stored_value.hpp"
 
 namespace fvd {
 
@@ -80,7 +80,7 @@ struct StoredJob {
   std::string result_dir;          ///< empty = no result
   std::string result_json;         ///< text of result.json, empty = no result
   bool files_pending = false;      ///< files of the result are still to be made
-  std::vector<JobValue> values{};  ///< of the result, on the way into the database; JobHistory gives them back
+  std::vector<StoredValue> values{};  ///< of the result, on the way into the database; JobHistory gives them back
 };
 
 }  // namespace fvd

@@ -225,7 +225,7 @@ void JobStore::Impl::store_kept_ends_locked() {
 }
 
 void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json,
-                      bool files_pending, const std::vector<JobValue>& values) {
+                      bool files_pending, const std::vector<StoredValue>& values) {
   StoredJob end{ended, result_dir, result_json, files_pending, values};
   if (end.status.ended_utc.empty()) end.status.ended_utc = utc_now();
   const MutexLock lock(impl_->mutex);

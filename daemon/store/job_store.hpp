@@ -57,7 +57,7 @@ class JobStore {
   /// kDatabase and kStorageFull if the end is not on disk: it is kept in memory then and told with
   /// JobStatus::not_durable by every function here, until it could be stored. values: of its result, stored with it.
   void finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json,
-              bool files_pending = false, const std::vector<JobValue>& values = {});
+              bool files_pending = false, const std::vector<StoredValue>& values = {});
   /// The files of an ended job's result as they stand now: what differs from finish() is told in result_json. Throws
   /// Error kUnknownJob, kDatabase, kStorageFull.
   void note_files(const std::string& job_id, const std::string& result_json, bool files_pending);

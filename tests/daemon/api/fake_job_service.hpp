@@ -239,8 +239,8 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return task;
   }
   std::string evaluated_by;
-  [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return history; }
-  std::optional<StepHistorySummary> history;
+  [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return stage_steps; }
+  std::optional<StepHistorySummary> stage_steps;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override {
     require_works();
     const std::lock_guard lock(mutex_);

@@ -149,7 +149,7 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
   };
   for (const Case& call : cases) check(call);
   service_.change({1}, [](JobStatus& job) { job.state = JobState::kCompleted; });
-  service_.history = StepHistorySummary{};
+  service_.stage_steps = StepHistorySummary{};
   for (const Case& call : {Case{"result.get", one}, Case{"result.get", {{"seq", 1}, {"format", "full"}}},
                            Case{"result.next", nothing}, Case{"stage.accuracy", nothing}, Case{"result.ack", one}}) {
     check(call);

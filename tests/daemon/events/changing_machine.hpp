@@ -23,8 +23,9 @@ class ChangingMachine final : public MachineView {
   }
   /// These services with this machine.
   [[nodiscard]] Services in(const Services& others) {
-    return {*this,          others.jobs,    others.results, others.tasks, others.recipes, others.objectives,
-            others.studies, others.control, others.audit,   others.access};
+    return {*this,          others.jobs,    others.results, others.tasks,  others.recipes,  others.objectives,
+            others.studies, others.control, others.audit,   others.access, others.refusals, others.history,
+            others.alarms};
   }
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
     const MutexLock lock(mutex_);

@@ -39,7 +39,7 @@ TEST(ValuesOfAResult, AreThoseOfTheMapWhereThereIsNoEvaluation) {
   Result result;
   EXPECT_THAT(values_of(result), IsEmpty());
   result.measurements = {valid_fraction()};
-  EXPECT_THAT(values_of(result), ElementsAre(JobValue{"map", "valid_fraction", 0.97, {}, {}, 0.5, {}, "pass"}));
+  EXPECT_THAT(values_of(result), ElementsAre(StoredValue{"map", "valid_fraction", 0.97, {}, {}, 0.5, {}, "pass"}));
 }
 
 TEST(ValuesOfAResult, AreThoseOfTheEvaluationInTheRecipesOrderAndThenOfTheMap) {
@@ -52,10 +52,10 @@ TEST(ValuesOfAResult, AreThoseOfTheEvaluationInTheRecipesOrderAndThenOfTheMap) {
   broken.verdict = Verdict::kInvalid;
   result.evaluation->measurements = {{"broken", broken}, {"step", a_step()}};
 
-  EXPECT_THAT(values_of(result), ElementsAre(JobValue{"step", "height_um", 50.01, 0.01, 0.02, 49.0, 51.0, "uncertain"},
-                                             JobValue{"step", "width_um", {}, {}, {}, {}, {}, ""},
-                                             JobValue{"broken", "Sa_um", {}, {}, {}, {}, {}, "invalid"},
-                                             JobValue{"map", "valid_fraction", 0.97, {}, {}, 0.5, {}, "pass"}));
+  EXPECT_THAT(values_of(result), ElementsAre(StoredValue{"step", "height_um", 50.01, 0.01, 0.02, 49.0, 51.0, "uncertain"},
+                                             StoredValue{"step", "width_um", {}, {}, {}, {}, {}, ""},
+                                             StoredValue{"broken", "Sa_um", {}, {}, {}, {}, {}, "invalid"},
+                                             StoredValue{"map", "valid_fraction", 0.97, {}, {}, 0.5, {}, "pass"}));
 }
 
 TEST(ValuesOfAResult, LeaveTheMapOutWhereTheRecipeHasAMeasurementOfThatName) {
@@ -66,7 +66,7 @@ TEST(ValuesOfAResult, LeaveTheMapOutWhereTheRecipeHasAMeasurementOfThatName) {
   EvaluatedMeasurement nameless;  // failed before anybody knew what it would have given
   result.evaluation->measurements = {{"map", nameless}};
 
-  EXPECT_THAT(values_of(result), ElementsAre(JobValue{"map", "map", {}, {}, {}, {}, {}, ""}));
+  EXPECT_THAT(values_of(result), ElementsAre(StoredValue{"map", "map", {}, {}, {}, {}, {}, ""}));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-JobValue height_of(double value_um) { return {"step", "height_um", value_um, 0.01, 0.02, 49.0, std::nullopt, "pass"}; }
+StoredValue height_of(double value_um) { return {"step", "height_um", value_um, 0.01, 0.02, 49.0, std::nullopt, "pass"}; }
 
 /// A hundred thousand jobs, of which every hundredth has another recipe, and every tenth failed.
 constexpr const char* kManyJobs =
@@ -52,7 +52,7 @@ class AJobHistory : public ::testing::Test {
     return store_->accept({seq, part, recipe, client});
   }
   void finish(JobStatus job, const std::string& verdict = "pass", const std::string& ended_utc = "",
-              const std::vector<JobValue>& values = {}) {
+              const std::vector<StoredValue>& values = {}) {
     job.state = JobState::kCompleted;
     job.verdict = verdict;
     job.ended_utc = ended_utc;
@@ -255,7 +255,7 @@ TEST_F(AJobHistory, KeepsTheValuesThatCameWithAJobsEnd) {
   EXPECT_EQ(points[0].job_id, store_->find(ClientSeq{1}).status.job_id);
   EXPECT_EQ(points[0].ended_utc, "2026-11-30T10:00:00.000Z");
   EXPECT_EQ(points[0].value, height_of(50.1));
-  EXPECT_EQ(points[1].value, (JobValue{"step", "height_um", {}, {}, {}, {}, {}, "invalid"}));
+  EXPECT_EQ(points[1].value, (StoredValue{"step", "height_um", {}, {}, {}, {}, {}, "invalid"}));
   EXPECT_EQ(points[2].value.value, -1e-9);
   EXPECT_THAT(heights("chapter"), SizeIs(2));
   EXPECT_THAT(heights("nothing"), IsEmpty());
@@ -277,7 +277,7 @@ TEST_F(AJobHistory, KeepsOfAJobThatEndsAgainTheValuesOfItsLastEnd) {
 }
 
 TEST_F(AJobHistory, TakesTheFirstOfTwoValuesOfOneNameAndNoNumberThatIsNone) {
-  JobValue strange = height_of(std::numeric_limits<double>::infinity());
+  StoredValue strange = height_of(std::numeric_limits<double>::infinity());
   strange.u = std::numeric_limits<double>::quiet_NaN();
   strange.lower = -std::numeric_limits<double>::infinity();
   finish(accept(1), "pass", "", {strange, height_of(5)});

@@ -8,7 +8,7 @@
 namespace fvd {
 
 /// All numbers in the unit of the value, which the result tells.
-struct JobValue {
+struct StoredValue {
   std::string measurement;           ///< of the recipe; "map" = of the height map as a whole
   std::string name;                  ///< of the value, with its unit: "height_um"
   std::optional<double> value;       ///< absent = it could not be given
@@ -17,7 +17,7 @@ struct JobValue {
   std::optional<double> lower;       ///< limits; absent = none
   std::optional<double> upper;
   std::string verdict;  ///< pass, fail, uncertain, invalid; empty = nothing was judged
-  bool operator==(const JobValue&) const = default;
+  bool operator==(const StoredValue&) const = default;
 };
 
 }  // namespace fvd
