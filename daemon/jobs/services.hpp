@@ -254,9 +254,10 @@ class AlarmService {
 
   /// All that are kept, the newest first.
   [[nodiscard]] virtual std::vector<Alarm> newest() const = 0;
-  /// Somebody has seen this one. Repeating it changes nothing. Throws Error kBadInput where there is none of that
-  /// number any more.
-  virtual void acknowledge(std::int64_t number) = 0;
+  /// Somebody has seen this one. Repeating it changes nothing. time_utc: its Alarm::time_utc, for numbers begin anew
+  /// with each start; empty = whichever has the number. Throws Error kBadInput where there is none of that number any
+  /// more, or it is of another time.
+  virtual void acknowledge(std::int64_t number, std::string_view time_utc) = 0;
   /// Counts the changes of what newest() tells.
   [[nodiscard]] virtual std::uint64_t revision() const noexcept = 0;
 };
