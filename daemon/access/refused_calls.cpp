@@ -7,10 +7,11 @@
 
 namespace fvd {
 
-void RefusedCalls::tell(const std::string& who, const std::string& what) {
-  if (const auto count = count_to_tell(who, HostClock::now())) {
-    spdlog::warn("{}; {} were refused since the last that was told", what, *count);
-  }
+void RefusedCalls::tell(const std::string& who, const std::string& what, const std::string& details) {
+  const auto count = count_to_tell(who, HostClock::now());
+  if (!count) return;
+  spdlog::warn("{}; {} were refused since the last that was told", what, *count);
+  if (!details.empty()) spdlog::info("details: {}", details);
 }
 
 std::optional<std::uint64_t> RefusedCalls::count_to_tell(const std::string& who, HostTime now) {

@@ -273,8 +273,8 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
     if (about.needs_id) {
       const auto* const tokens = dynamic_cast<const TokensUnreadable*>(&error);
       warn_of(call.caller, call.method + " was refused to " + text_of(call.caller) + ": " +
-                               std::string(error_name(error.code())) + ": " +
-                               (tokens != nullptr ? tokens->reason() : error.what()));
+                               std::string(error_name(error.code())) + ": " + error.what(),
+              tokens != nullptr ? tokens->reason() : std::string());
     }
     note(method, call, error_name(error.code()));
     throw;

@@ -119,7 +119,9 @@ class Dispatcher {
   /// The same for who may not; of callers without a role none is written down.
   void note_refusal(const Method& method, const Call& call, const AccessError& error) const;
   /// Warns of a refusal, as RefusedCalls lets it.
-  void warn_of(const Caller& caller, const std::string& text) const { services_.refusals.tell(caller.who.name, text); }
+  void warn_of(const Caller& caller, const std::string& text, const std::string& details = {}) const {
+    services_.refusals.tell(caller.who.name, text, details);
+  }
 
   Services services_;
   const MethodTable methods_;

@@ -103,8 +103,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /// Finds out who the caller is, then answers.
   void recognise();
   void refuse_token(const std::string& why);
-  /// Tells the log, unless it was just told of one from there.
-  void note_refusal(const std::string& why);
+  /// Tells the log, unless it was just told of one from there. details: for the log alone, below the alarms.
+  void note_refusal(const std::string& why, const std::string& details = {});
   /// Whatever the known caller asks for.
   void answer();
   void take(Handled handled);

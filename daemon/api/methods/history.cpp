@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kMostJobs = 500;
 constexpr int kMostPoints = 2000;
+/// A value's name is put together of what the recipe names: longer than other texts.
+constexpr std::size_t kLongestValue_bytes = 128;
 /// The word of a filter for jobs without a verdict.
 constexpr const char* kNoVerdict = "none";
 
@@ -73,7 +75,7 @@ struct ValuesParams {
     fields.text("measurement", query.measurement, kMaxForeignText_bytes,
                 "of the recipe, by its name; map = the height map as a whole, unless the recipe has one of that name");
     fields.require("measurement");
-    fields.text("value", query.value, kMaxForeignText_bytes, "name of the value in the result, as height_um");
+    fields.text("value", query.value, kLongestValue_bytes, "name of the value in the result, as height_um");
     fields.require("value");
     fields.text("recipe", query.recipe, kMaxForeignText_bytes, "only of jobs of this recipe, by its id; empty = all");
     fields.integer("most", query.most, {2, kMostPoints}, "so many of the newest jobs that have the value");

@@ -180,12 +180,14 @@ TEST_F(AListing, RefusesAValueThatIsNotNamed) {
   };
   for (const json& wrong : {json::object(), json{{"measurement", "step"}}, json{{"value", "height_um"}},
                             changed("most", 1), changed("most", 2001), changed("measurement", std::string(65, 'm')),
-                            changed("value", 5), changed("recipe", 5), changed("before", "x")}) {
+                            changed("value", 5), changed("value", std::string(129, 'v')), changed("recipe", 5), changed("before", "x")}) {
     EXPECT_NE(refusal_of("value.list", wrong), "") << wrong;
   }
   EXPECT_FALSE(service_.history.asked_value);
   for (const int most : {2, 2000}) result_of("value.list", changed("most", most));
   EXPECT_EQ(service_.history.asked_value->most, 2000);
+  result_of("value.list", changed("value", std::string(128, 'v')));
+  EXPECT_EQ(service_.history.asked_value->value.size(), 128U);
 }
 
 TEST_F(AListing, TellsOfADatabaseThatCannotBeRead) {
