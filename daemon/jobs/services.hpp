@@ -243,7 +243,7 @@ class HistoryService {
   /// As JobHistory::page().
   [[nodiscard]] virtual JobPage list(const JobFilter& filter, std::int64_t before, int most) const = 0;
   /// As JobHistory::values().
-  [[nodiscard]] virtual std::vector<ValuePoint> values(const ValueQuery& query) const = 0;
+  [[nodiscard]] virtual ValueList values(const ValueQuery& query) const = 0;
 };
 
 /// What somebody has to see.

@@ -85,12 +85,18 @@ struct ValuesParams {
 void describe_jobs(Fields& fields) {
   const ResultFields result(fields);
   result.list("jobs", kMostJobs, describe_job_row, "the newest first");
-  result.text("next", kLongestCursor_bytes, "before which the list goes on; empty = these are the last");
+  result.text("next", kLongestCursor_bytes,
+              "before which the list goes on; empty = these are the last. An answer looks at 20,000 jobs at most: where "
+              "few of them fit, it has fewer than were asked for, or none, and still a `next`");
 }
 
 void describe_points(Fields& fields) {
-  ResultFields(fields).list("points", kMostPoints, describe_value_point,
-                            "the oldest first; none of jobs that ended under a version of fvd before 0.6.0");
+  const ResultFields result(fields);
+  result.list("points", kMostPoints, describe_value_point,
+              "the oldest first, among the newest 20,000 jobs; none of jobs that ended under a version of fvd before "
+              "0.6.0");
+  result.boolean("searched_all",
+                 "false = fewer than were asked for have the value, and jobs before the newest 20,000 were not looked at");
 }
 
 Answer list_jobs(const HistoryService& history, const ListParams& params) {
@@ -101,9 +107,10 @@ Answer list_jobs(const HistoryService& history, const ListParams& params) {
 }
 
 Answer list_values(const HistoryService& history, const ValuesParams& params) {
+  const ValueList values = history.values(params.query);
   Reply points = Reply::array();
-  for (const ValuePoint& point : history.values(params.query)) points.push_back(value_point_json(point));
-  return Reply{{"points", std::move(points)}};
+  for (const ValuePoint& point : values.points) points.push_back(value_point_json(point));
+  return Reply{{"points", std::move(points)}, {"searched_all", values.searched_all}};
 }
 
 }  // namespace

@@ -172,6 +172,16 @@ TEST_F(AListing, TellsAValueFromJobToJob) {
   EXPECT_EQ(service_.history.asked_value->most, 100);
 }
 
+TEST_F(AListing, SaysThatOlderJobsWereNotLookedAt) {
+  EXPECT_EQ(result_of("value.list", step_)["searched_all"], true);
+  service_.history.searched_all = false;
+  EXPECT_EQ(result_of("value.list", step_)["searched_all"], false);
+  service_.history.page = {{}, 80001};
+  const json part = result_of("job.list", {{"text", "nowhere"}});
+  EXPECT_EQ(part["jobs"], json::array());
+  EXPECT_EQ(asked_with({{"before", part["next"]}}).before, 80001) << "a part without jobs is not the last";
+}
+
 TEST_F(AListing, RefusesAValueThatIsNotNamed) {
   const auto changed = [this](const char* key, const json& value) {
     json params = step_;
