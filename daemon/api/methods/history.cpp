@@ -120,7 +120,8 @@ void add_history_methods(MethodTable& methods, const Services& services) {
                                    .role = Role::kView,
                                    .params = described<ListParams>(),
                                    .result = describe_jobs,
-                                   .errors = {ErrorCode::kDatabase}},
+                                   .errors = {ErrorCode::kDatabase},
+                                   .is_long = true},
                          .run = with<ListParams>([&history = services.history](const Call&, const ListParams& params) {
                            return list_jobs(history, params);
                          })};
@@ -130,7 +131,8 @@ void add_history_methods(MethodTable& methods, const Services& services) {
                 .role = Role::kView,
                 .params = described<ValuesParams>(),
                 .result = describe_points,
-                .errors = {ErrorCode::kDatabase}},
+                .errors = {ErrorCode::kDatabase},
+                .is_long = true},
       .run = with<ValuesParams>([&history = services.history](const Call&, const ValuesParams& params) {
         return list_values(history, params);
       })};

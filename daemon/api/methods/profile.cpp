@@ -108,7 +108,8 @@ void add_profile_methods(MethodTable& methods, const Services& services) {
                 .role = Role::kView,
                 .params = described<ProfileParams>(),
                 .result = describe_profile,
-                .errors = {kUnknownJob, kResultRemoved, kBadInput, kRegionOutside, kSurfaceFile}},
+                .errors = {kUnknownJob, kResultRemoved, kBadInput, kRegionOutside, kSurfaceFile},
+                .is_long = true},
       .run = with<ProfileParams>([&results = services.results, maps](const Call&, const ProfileParams& params) {
         return profile_of(results, *maps, params);
       })};
