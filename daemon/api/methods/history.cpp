@@ -80,7 +80,7 @@ struct ValuesParams {
   }
 };
 
-void describe_jobs(Fields& fields) {
+void describe_job_page(Fields& fields) {
   const ResultFields result(fields);
   result.list("jobs", kMostJobs, describe_job_row, "the newest first");
   result.text("next", kLongestCursor_bytes, "before which the list goes on; empty = these are the last");
@@ -110,7 +110,7 @@ void add_history_methods(MethodTable& methods, const Services& services) {
   methods["job.list"] = {.about = {.summary = "Jobs from the newest on, part by part; the running one too",
                                    .role = Role::kView,
                                    .params = described<ListParams>(),
-                                   .result = describe_jobs,
+                                   .result = describe_job_page,
                                    .errors = {ErrorCode::kDatabase}},
                          .run = with<ListParams>([&history = services.history](const Call&, const ListParams& params) {
                            return list_jobs(history, params);
