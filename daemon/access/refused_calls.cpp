@@ -9,7 +9,8 @@ namespace fvd {
 
 void RefusedCalls::tell(const std::string& who, const std::string& what) {
   if (const auto count = count_to_tell(who, HostClock::now())) {
-    spdlog::warn("{}; {} were refused since the last that was told", what, *count);
+    // A logger of its own: whoever collects warnings tells these from those of the machine by its name.
+    spdlog::default_logger()->clone(kLogger)->warn("{}; {} were refused since the last that was told", what, *count);
   }
 }
 

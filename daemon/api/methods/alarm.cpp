@@ -30,7 +30,7 @@ void describe_acknowledged(Fields& fields) {
 }  // namespace
 
 void add_alarm_methods(MethodTable& methods, const Services& services) {
-  methods["alarm.list"] = {.about = {.summary = "The newest lines of the log of level warning and above",
+  methods["alarm.list"] = {.about = {.summary = "The newest warnings and errors of the log, but for refused calls",
                                      .role = Role::kView,
                                      .params = described<NoParams>(),
                                      .result = describe_alarms},

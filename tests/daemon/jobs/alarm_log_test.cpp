@@ -11,8 +11,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/logger.h>
+#include <spdlog/spdlog.h>
 
+#include "daemon/access/refused_calls.hpp"
 #include "daemon/jobs/alarm_sink.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/expect_error.hpp"
 
 namespace fvd {
@@ -213,6 +216,22 @@ TEST(AnAlarmSink, NotesLinesOfLevelWarningAndAbove) {
   EXPECT_EQ(told[1].level, AlarmLevel::kError);
   EXPECT_EQ(told[0].level, AlarmLevel::kCritical);
   EXPECT_GT(told[0].time_utc, "2020") << "the line's time";
+}
+
+TEST(AnAlarmSink, LeavesRefusedCallsOut) {
+  const auto alarms = std::make_shared<AlarmLog>();
+  const test::CapturedLog log;
+  spdlog::default_logger()->sinks().push_back(alarm_sink(alarms));
+  RefusedCalls refused;
+  for (int port = 1; port <= 16; ++port) {
+    const std::string number = std::to_string(port);
+    refused.tell("address 10.0.0." + number, "HTTP from 10.0.0.9:" + number + " was refused");
+  }
+  spdlog::warn("the disk is nearly full");
+  ASSERT_THAT(alarms->newest(), SizeIs(1));
+  EXPECT_EQ(alarms->newest()[0].text, "the disk is nearly full");
+  EXPECT_EQ(log.lines_with("was refused"), 16U) << "the log has them";
+  EXPECT_EQ(log.lines_with("[warning]"), 17U);
 }
 
 }  // namespace
