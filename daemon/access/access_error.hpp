@@ -25,7 +25,7 @@ class AccessError : public std::runtime_error {
 };
 
 /// The file of tokens cannot be used. The message is for callers, who may be strangers; the reason, with the file and
-/// the place in it, is for the log alone.
+/// the place in it, is for the log alone, below the level of what is shown to viewers as an alarm.
 class TokensUnreadable : public Error {
  public:
   explicit TokensUnreadable(std::string reason)

@@ -24,8 +24,9 @@ class RefusedCalls {
   /// stranger could push all others out with them.
   static constexpr const char* kLogger = "refused";
 
-  /// Warns that one more is refused, unless enough were told. who: the caller; what: what the log is to say.
-  void tell(const std::string& who, const std::string& what);
+  /// Warns that one more is refused, unless enough were told. who: the caller; what: what the log is to say. details:
+  /// told beside it at level info; empty = none.
+  void tell(const std::string& who, const std::string& what, const std::string& details = {});
   /// One more is refused. If it is to be told, how many there were since the last that was, of whomever, with this one.
   [[nodiscard]] std::optional<std::uint64_t> count_to_tell(const std::string& who, HostTime now);
 

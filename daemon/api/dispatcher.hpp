@@ -59,6 +59,9 @@ class Dispatcher {
 
   /// True for a line with a single request that only says who the caller is: nobody waits behind slow calls for that.
   [[nodiscard]] bool is_log_in(std::string_view line) const;
+  /// True for a line with a request, or a batch with one, that reads much for people: nobody waits behind it for what a
+  /// line needs.
+  [[nodiscard]] bool is_long(std::string_view line) const;
 
   /// Every method with its description.
   [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
@@ -104,6 +107,8 @@ class Dispatcher {
 
   /// Of a line with a single request; null for any other.
   [[nodiscard]] const Method* method_of(std::string_view line) const;
+  /// Null for what names none.
+  [[nodiscard]] const Method* method_in(const Json& request) const;
   [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;
   [[nodiscard]] Outcome handle_request(const Json& request, const Caller& caller, Mode mode) const;
   [[nodiscard]] Outcome handle_batch(const Json& batch, const Caller& caller, bool may_block) const;
@@ -119,7 +124,9 @@ class Dispatcher {
   /// The same for who may not; of callers without a role none is written down.
   void note_refusal(const Method& method, const Call& call, const AccessError& error) const;
   /// Warns of a refusal, as RefusedCalls lets it.
-  void warn_of(const Caller& caller, const std::string& text) const { services_.refusals.tell(caller.who.name, text); }
+  void warn_of(const Caller& caller, const std::string& text, const std::string& details = {}) const {
+    services_.refusals.tell(caller.who.name, text, details);
+  }
 
   Services services_;
   const MethodTable methods_;

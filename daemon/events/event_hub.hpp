@@ -41,8 +41,8 @@ class EventHub {
   EventHub(const EventHub&) = delete;
   EventHub& operator=(const EventHub&) = delete;
 
-  /// Something changed that is told of: it is looked at within 20 ms, alarms within 250 ms and once a second. Returns at
-  /// once.
+  /// Something changed that is told of: it is looked at within 20 ms, alarms within 250 ms and once a second. Returns
+  /// at once.
   void look_again();
 
   /// What a reader is given next, and where it is then.
@@ -76,8 +76,8 @@ class EventHub {
 
   const Services services_;
   const TopicDocuments documents_;
-  // Of the list of alarms, the revision that was looked at, and whether it waits to be told. The thread's, before it the
-  // constructor's.
+  // Of the list of alarms, the revision that was looked at, and whether it waits to be told. The thread's, before it
+  // the constructor's.
   std::optional<std::uint64_t> seen_alarms_;
   bool owes_alarms_ = false;
 

@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::string_view kCut = "...";
 
+/// What goes first where too many are kept.
+int rank(const Alarm& alarm) { return alarm.acknowledged ? 0 : 1 + static_cast<int>(alarm.level); }
+
 /// Of the character that begins there; 0 = none does. What would be another spelling of a shorter one, half of a pair,
 /// or beyond the last character, is none.
 std::size_t character_bytes(std::string_view text, std::size_t at) {
@@ -68,7 +71,9 @@ void AlarmLog::note(AlarmLevel level, std::string_view text, std::chrono::system
   }
   alarm.number = ++newest_number_;
   kept_.push_back({std::move(alarm), time});
-  if (kept_.size() > kMostKept) kept_.pop_front();
+  if (kept_.size() <= kMostKept) return;
+  kept_.erase(std::min_element(kept_.begin(), kept_.end(),
+                               [](const Kept& a, const Kept& b) { return rank(a.alarm) < rank(b.alarm); }));
 }
 
 std::vector<Alarm> AlarmLog::newest() const {
@@ -79,13 +84,18 @@ std::vector<Alarm> AlarmLog::newest() const {
   return alarms;
 }
 
-void AlarmLog::acknowledge(std::int64_t number) {
+void AlarmLog::acknowledge(std::int64_t number, std::string_view time_utc) {
   const MutexLock lock(mutex_);
   const auto found =
       std::find_if(kept_.begin(), kept_.end(), [number](const Kept& kept) { return kept.alarm.number == number; });
   if (found == kept_.end()) {
-    throw Error(ErrorCode::kBadInput, "there is no alarm " + std::to_string(number) + ": alarm.list tells the newest " +
-                                          std::to_string(kMostKept) + ", which are all that is kept");
+    throw Error(ErrorCode::kBadInput, "there is no alarm " + std::to_string(number) + ": alarm.list tells the " +
+                                          std::to_string(kMostKept) + " at most that are kept");
+  }
+  if (!time_utc.empty() && time_utc != found->alarm.time_utc) {
+    throw Error(ErrorCode::kBadInput, "alarm " + std::to_string(number) + " is of " + found->alarm.time_utc +
+                                          ", not of the time_utc that was given: fvd was started again, and numbers "
+                                          "with it; ask alarm.list, and acknowledge what it tells now");
   }
   if (found->alarm.acknowledged) return;
   found->alarm.acknowledged = true;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The newest warnings and errors of the log, in memory, until somebody has seen them.
+/// Warnings and errors of the log, in memory, until somebody has seen them.
 
 #include <atomic>
 #include <chrono>
@@ -16,7 +16,9 @@
 namespace fvd {
 
 /// A line that comes again within a minute is counted, and pushes no other out, unless it was acknowledged meanwhile:
-/// then it is an alarm of its own. context: thread-safe; blocks for nothing, and logs nothing.
+/// then it is an alarm of its own. Where one too many is kept, the oldest goes of those that were acknowledged; else of
+/// the warnings, were it the newest line; else of the errors; else of the critical ones. context: thread-safe; blocks
+/// for nothing, and logs nothing.
 class AlarmLog final : public AlarmService {
  public:
   static constexpr std::size_t kMostKept = 200;
@@ -27,7 +29,7 @@ class AlarmLog final : public AlarmService {
   void note(AlarmLevel level, std::string_view text, std::chrono::system_clock::time_point time);
 
   [[nodiscard]] std::vector<Alarm> newest() const override;
-  void acknowledge(std::int64_t number) override;
+  void acknowledge(std::int64_t number, std::string_view time_utc) override;
   [[nodiscard]] std::uint64_t revision() const noexcept override { return revision_; }
 
  private:

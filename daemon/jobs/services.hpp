@@ -244,7 +244,7 @@ class HistoryService {
   /// As JobHistory::page().
   [[nodiscard]] virtual JobPage list(const JobFilter& filter, std::int64_t before, int most) const = 0;
   /// As JobHistory::values().
-  [[nodiscard]] virtual std::vector<ValuePoint> values(const ValueQuery& query) const = 0;
+  [[nodiscard]] virtual ValueList values(const ValueQuery& query) const = 0;
 };
 
 /// What somebody has to see.
@@ -255,9 +255,10 @@ class AlarmService {
 
   /// All that are kept, the newest first.
   [[nodiscard]] virtual std::vector<Alarm> newest() const = 0;
-  /// Somebody has seen this one. Repeating it changes nothing. Throws Error kBadInput where there is none of that
-  /// number any more.
-  virtual void acknowledge(std::int64_t number) = 0;
+  /// Somebody has seen this one. Repeating it changes nothing. time_utc: its Alarm::time_utc, for numbers begin anew
+  /// with each start; empty = whichever has the number. Throws Error kBadInput where there is none of that number any
+  /// more, or it is of another time.
+  virtual void acknowledge(std::int64_t number, std::string_view time_utc) = 0;
   /// Counts the changes of what newest() tells.
   [[nodiscard]] virtual std::uint64_t revision() const noexcept = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace fvd {
 
@@ -17,7 +18,7 @@ namespace {
 
 constexpr const char* kRows =
     "SELECT number, job_id, client, seq, part_id, recipe, state, verdict, ended_utc, error "
-    "FROM jobs INDEXED BY jobs_history WHERE number < ?9 AND ((" FVD_FITS
+    "FROM jobs INDEXED BY jobs_history WHERE number < ?9 AND number > ?12 AND ((" FVD_FITS
     ") OR (?10 <> '' AND instr(?10, char(10) || job_id || char(10)) > 0)) ORDER BY number DESC LIMIT ?11";
 
 /// The same of a job that is given, for an end that no row has.
@@ -30,7 +31,12 @@ constexpr const char* kValues =
     "SELECT job_id, part_id, ended_utc, value, u, expanded_u, lower, upper, job_values.verdict "
     "FROM jobs INDEXED BY jobs_history CROSS JOIN job_values "
     "ON job_values.number = jobs.number AND measurement = ?1 AND name = ?2 "
-    "WHERE (?3 = '' OR recipe = ?3) ORDER BY jobs.number DESC LIMIT ?4";
+    "WHERE jobs.number > ?5 AND (?3 = '' OR recipe = ?3) ORDER BY jobs.number DESC LIMIT ?4";
+
+/// The newest of the jobs behind so many.
+constexpr const char* kBehind =
+    "SELECT number FROM jobs INDEXED BY jobs_history WHERE number < ?1 ORDER BY number DESC LIMIT 1 OFFSET ?2";
+constexpr std::int64_t kNewest = std::numeric_limits<std::int64_t>::max();
 
 std::string in_small_letters(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -79,6 +85,13 @@ JobStatus job_of(const Statement& row) {
   return job;
 }
 
+/// The number of the first job that is not looked at; 0 = all are.
+std::int64_t behind(const Database& database, std::int64_t before) {
+  Statement row(database, kBehind);
+  row.bind(before).bind(JobHistory::kMostLookedAt);
+  return row.step() ? row.integer(0) : 0;
+}
+
 /// "\nJ1\nJ2\n"; empty without any.
 std::string ids_of(const KeptEnds& kept) {
   std::string ids;
@@ -91,12 +104,12 @@ std::string ids_of(const KeptEnds& kept) {
 JobPage JobHistory::page(const JobFilter& filter, std::int64_t before, int most) const {
   const KeptEnds kept = kept_();
   const MutexLock lock(reader_.mutex);
+  const std::int64_t newest = before > 0 ? before : kNewest;
+  const std::int64_t left = behind(reader_.database, newest);
   Statement rows(reader_.database, kRows);
   bind(filter, rows);
   // One more tells whether there is a next part; of those whose end is kept any may not fit.
-  rows.bind(before > 0 ? before : std::numeric_limits<std::int64_t>::max())
-      .bind(ids_of(kept))
-      .bind(most + 1 + static_cast<std::int64_t>(kept.size()));
+  rows.bind(newest).bind(ids_of(kept)).bind(most + 1 + static_cast<std::int64_t>(kept.size())).bind(left);
   JobPage page;
   std::int64_t last = 0;
   while (rows.step()) {
@@ -112,6 +125,7 @@ JobPage JobHistory::page(const JobFilter& filter, std::int64_t before, int most)
     last = rows.integer(0);
     page.jobs.push_back(std::move(job));
   }
+  if (page.next == 0 && left > 0) page.next = left + 1;
   return page;
 }
 
@@ -119,10 +133,11 @@ const char* JobHistory::page_sql() noexcept { return kRows; }
 
 const char* JobHistory::values_sql() noexcept { return kValues; }
 
-std::vector<ValuePoint> JobHistory::values(const ValueQuery& query) const {
+ValueList JobHistory::values(const ValueQuery& query) const {
   const MutexLock lock(reader_.mutex);
+  const std::int64_t left = behind(reader_.database, kNewest);
   Statement rows(reader_.database, kValues);
-  rows.bind(query.measurement).bind(query.value).bind(query.recipe).bind(std::int64_t{query.most});
+  rows.bind(query.measurement).bind(query.value).bind(query.recipe).bind(std::int64_t{query.most}).bind(left);
   std::vector<ValuePoint> points;
   while (rows.step()) {
     points.push_back({rows.text(0),
@@ -132,7 +147,8 @@ std::vector<ValuePoint> JobHistory::values(const ValueQuery& query) const {
                        rows.real(7), rows.text(8)}});
   }
   std::reverse(points.begin(), points.end());
-  return points;
+  const bool searched_all = left == 0 || static_cast<int>(points.size()) == query.most;
+  return {std::move(points), searched_all};
 }
 
 }  // namespace fvd

@@ -193,9 +193,10 @@ void HttpSession::recognise() {
 
 void HttpSession::take_identity(std::pair<std::optional<Identity>, std::string> found) {
   if (!found.second.empty()) {
-    const std::string why = "nobody can be recognised by a token: ";
-    note_refusal(why + found.second);
-    return refuse({503, "no_tokens", why + "the file of tokens cannot be read; the log of fvd says why"});
+    const std::string why =
+        "nobody can be recognised by a token: the file of tokens cannot be read; the log of fvd says why";
+    note_refusal(why, found.second);
+    return refuse({503, "no_tokens", why});
   }
   if (!found.first) return refuse_token("nobody has this token");
   caller_.who = *std::move(found.first);
@@ -214,8 +215,8 @@ void HttpSession::refuse_token(const std::string& why) {
   });
 }
 
-void HttpSession::note_refusal(const std::string& why) {
-  host_.refused_calls.tell(by_address_.name, "HTTP from " + caller_.peer + " was refused: " + why);
+void HttpSession::note_refusal(const std::string& why, const std::string& details) {
+  host_.refused_calls.tell(by_address_.name, "HTTP from " + caller_.peer + " was refused: " + why, details);
 }
 
 void HttpSession::answer() {
@@ -277,9 +278,7 @@ void HttpSession::give_up() {
   if (fetch_ && fetch_->is_made) refuse_at_end();
 }
 
-void HttpSession::refuse_at_end() {
-  refuse({503, "shutting_down", "the daemon stops; ask again when it is back"});
-}
+void HttpSession::refuse_at_end() { refuse({503, "shutting_down", "the daemon stops; ask again when it is back"}); }
 
 void HttpSession::check_wait(bool timed_out) {
   if (!waiting_) return;

@@ -37,9 +37,9 @@ struct HttpSessionHost {
   WrongTokens& wrong_tokens;
   RefusedCalls& refused_calls;
   RefusedCalls& failed_fetches;  ///< the same limit, for what could not be answered
-  Worker& worker;  ///< for calls that may block
-  Worker& logins;  ///< for the token file: nobody waits behind a slow call to be recognised
-  Worker& files;   ///< for what is fetched: no call waits behind a large map
+  Worker& worker;                ///< for calls that may block
+  Worker& logins;                ///< for the token file: nobody waits behind a slow call to be recognised
+  Worker& files;                 ///< for what is fetched: no call waits behind a large map
   const std::vector<MountedResource>& resources;
   std::function<void(const std::shared_ptr<HttpSession>&)> on_close;
   std::function<bool()> has_room_without_token;  ///< for one more request whose caller nobody vouches for
@@ -106,8 +106,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /// Finds out who the caller is, then answers.
   void recognise();
   void refuse_token(const std::string& why);
-  /// Tells the log, unless it was just told of one from there.
-  void note_refusal(const std::string& why);
+  /// Tells the log, unless it was just told of one from there. details: for the log alone, below the alarms.
+  void note_refusal(const std::string& why, const std::string& details = {});
   /// Whatever the known caller asks for.
   void answer();
   void take(Handled handled);

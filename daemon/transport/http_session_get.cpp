@@ -23,7 +23,7 @@ namespace http = boost::beast::http;
 
 namespace {
 
-constexpr std::chrono::seconds kPieceTime{10};  // for the client to read one
+constexpr std::chrono::seconds kPieceTime{10};        // for the client to read one
 constexpr std::chrono::seconds kStreamPieceTime{15};  // the same of a stream; as long as tune() waits for its system
 constexpr std::chrono::milliseconds kShortestPutOff{1};
 

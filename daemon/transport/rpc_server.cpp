@@ -57,12 +57,14 @@ struct RpcServer::Impl {
              dispatcher,
              worker,
              logins,
+             lists,
              std::chrono::seconds(c.idle_timeout_s),
              std::chrono::seconds(c.first_request_s),
              [this](const std::shared_ptr<RpcSession>& session) { sessions.erase(session); },
              [this](const Identity& who) { return has_room(who); }},
         worker("fvd-rpc-work"),
-        logins("fvd-rpc-login") {
+        logins("fvd-rpc-login"),
+        lists("fvd-rpc-lists") {
     listen_on(acceptor, config.address, config.port, "/rpc");
     port = acceptor.local_endpoint().port();
     local_socket.emplace(c.socket.empty() ? runtime_dir / "fvd.sock" : c.socket);
@@ -115,6 +117,7 @@ struct RpcServer::Impl {
   RpcSessionHost host;
   Worker worker;  // after what its tasks refer to
   Worker logins;
+  Worker lists;
   std::jthread thread;  // last
 };
 

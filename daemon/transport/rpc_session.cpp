@@ -18,6 +18,8 @@ namespace {
 
 /// Limit of the replies that a client has not read; beyond it the connection is closed.
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
+/// Of one of them, so that others fit beside it.
+constexpr std::size_t kLongestReply_bytes = kMaxUnsentBytes - Dispatcher::kMaxLineBytes;
 /// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
 /// A line waits for its turn after so many tries, unless it is urgent, which is tried again for another job alone: with
@@ -49,7 +51,9 @@ RpcSession::RpcSession(const RpcSessionHost& host, Socket socket, Caller caller)
       caller_(std::move(caller)),
       idle_(host.context),
       wait_(host.context),
-      line_end_(host.context) {}
+      line_end_(host.context) {
+  caller_.longest_reply_bytes = kLongestReply_bytes;
+}
 
 void RpcSession::start(bool must_log_in) {
   must_log_in_ = must_log_in;
@@ -167,7 +171,7 @@ void RpcSession::process() {
       take(std::move(*handled));
     } else {
       work<Handled>(
-          host_.dispatcher.is_log_in(line.text) ? host_.logins : host_.worker,
+          worker_for(line.text),
           [text = line.text, caller = caller_](const Dispatcher& dispatcher) {
             return dispatcher.handle(text, caller);
           },
@@ -184,6 +188,11 @@ void RpcSession::process() {
   if (const auto mistake = mistake_in(input_, LineEnd::kNone)) return refuse_with(Dispatcher::mistaken(*mistake));
   watch_line_end();
   close_if_all_is_said();
+}
+
+Worker& RpcSession::worker_for(std::string_view line) const {
+  if (host_.dispatcher.is_log_in(line)) return host_.logins;
+  return host_.dispatcher.is_long(line) ? host_.lists : host_.worker;
 }
 
 void RpcSession::watch_line_end() {

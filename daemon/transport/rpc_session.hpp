@@ -29,6 +29,7 @@ struct RpcSessionHost {
   const Dispatcher& dispatcher;
   Worker& worker;
   Worker& logins;  ///< nobody waits behind a slow call to be recognised
+  Worker& lists;   ///< no start and no result waits behind what people look through
   std::chrono::seconds idle_timeout;
   std::chrono::seconds first_request;  ///< a connection without a valid request is closed after it
   std::function<void(const std::shared_ptr<RpcSession>&)> on_close;
@@ -96,6 +97,8 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   void work(Worker& worker, std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result));
   /// Handles the whole lines at hand, in order; stops at a request that cannot be answered at once.
   void process();
+  /// That a line is handled by.
+  [[nodiscard]] Worker& worker_for(std::string_view line) const;
   /// A whole text whose end does not come gets a line that says so.
   void watch_line_end();
   /// Answers requests that stand behind an open one and may overtake it.

@@ -1,5 +1,6 @@
 #include "daemon/views/line_profile.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/error.hpp"
 #include "daemon/views/measured_points.hpp"
 
 namespace fvd {
@@ -28,19 +30,34 @@ OpenedMap heights_of(ResultMaps& maps, const Result& result) {
   return *std::move(heights);
 }
 
+/// About so many heights are looked up, which takes a second at most.
+constexpr double kMostSamples = 2e6;
+
+/// By the smaller pitch, before anything is read.
+void require_few_samples(const metrology::PointField& field, const metrology::ProfileLine& line) {
+  const double pitch_um = std::min(field.pitch_x_um, field.pitch_y_um);
+  const double along = std::hypot(line.to_x_um - line.from_x_um, line.to_y_um - line.from_y_um) / pitch_um;
+  const double samples = along * std::max(1.0, line.band_width_um / pitch_um);
+  if (!(samples > kMostSamples)) return;
+  throw Error(ErrorCode::kBadInput, "profile: line and band have about " + std::to_string(std::llround(samples)) +
+                                        " samples, " + std::to_string(std::llround(kMostSamples)) +
+                                        " at most are taken: give a narrower band (width_um) or a shorter line");
+}
+
 }  // namespace
 
 LineProfile line_profile(ResultMaps& maps, const Result& result, const metrology::ProfileLine& line) {
   const OpenedMap heights = heights_of(maps, result);
-  const std::optional<OpenedMap> sigmas = maps.find(MapKind::kSigma);
   const std::filesystem::path json = maps.folder() / "result.json";
   const Result::Focus& focus = result.focus;
-  MeasuredPoints points(heights.rows, sigmas ? sigmas->rows : nullptr, result.calibration);
   metrology::PointField field;
   field.width = heights.rows->size().width;
   field.height = heights.rows->size().height;
   field.pitch_x_um = pitch_of(json, "/focus/pixel_pitch_x_um", focus.pixel_pitch_x_um, std::nullopt);
   field.pitch_y_um = pitch_of(json, "/focus/pixel_pitch_y_um", focus.pixel_pitch_y_um, std::nullopt);
+  require_few_samples(field, line);
+  const std::optional<OpenedMap> sigmas = maps.find(MapKind::kSigma);
+  MeasuredPoints points(heights.rows, sigmas ? sigmas->rows : nullptr, result.calibration);
   field.z_um = [&points](int column, int row) { return points.height_um(column, row); };
   metrology::Profile made = metrology::extract_profile(field, line);
 

@@ -19,8 +19,8 @@ struct LineProfile {
 
 /// metrology::extract_profile() of the surface "measured", bit for bit, read from the folder in small pieces. result:
 /// as result.json of the folder tells it. Throws Error kRegionOutside where line or band leave the map, kBadInput where
-/// the line is too short or no line, kSurfaceFile where the maps cannot be read or the result tells no pitch. context:
-/// thread-safe.
+/// the line is too short or no line, or line and band have more than 2,000,000 samples, kSurfaceFile where the maps
+/// cannot be read or the result tells no pitch. context: thread-safe.
 [[nodiscard]] LineProfile line_profile(ResultMaps& maps, const Result& result, const metrology::ProfileLine& line);
 
 }  // namespace fvd

@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kMostJobs = 500;
 constexpr int kMostPoints = 2000;
+/// A value's name is put together of what the recipe names: longer than other texts.
+constexpr std::size_t kLongestValue_bytes = 128;
 /// The word of a filter for jobs without a verdict.
 constexpr const char* kNoVerdict = "none";
 
@@ -73,7 +75,7 @@ struct ValuesParams {
     fields.text("measurement", query.measurement, kMaxForeignText_bytes,
                 "of the recipe, by its name; map = the height map as a whole, unless the recipe has one of that name");
     fields.require("measurement");
-    fields.text("value", query.value, kMaxForeignText_bytes, "name of the value in the result, as height_um");
+    fields.text("value", query.value, kLongestValue_bytes, "name of the value in the result, as height_um");
     fields.require("value");
     fields.text("recipe", query.recipe, kMaxForeignText_bytes, "only of jobs of this recipe, by its id; empty = all");
     fields.integer("most", query.most, {2, kMostPoints}, "so many of the newest jobs that have the value");
@@ -83,12 +85,20 @@ struct ValuesParams {
 void describe_job_page(Fields& fields) {
   const ResultFields result(fields);
   result.list("jobs", kMostJobs, describe_job_row, "the newest first");
-  result.text("next", kLongestCursor_bytes, "before which the list goes on; empty = these are the last");
+  result.text(
+      "next", kLongestCursor_bytes,
+      "before which the list goes on; empty = these are the last. An answer looks at 20,000 jobs at most: where "
+      "few of them fit, it has fewer than were asked for, or none, and still a `next`");
 }
 
 void describe_points(Fields& fields) {
-  ResultFields(fields).list("points", kMostPoints, describe_value_point,
-                            "the oldest first; none of jobs that ended under a version of fvd before 0.6.0");
+  const ResultFields result(fields);
+  result.list("points", kMostPoints, describe_value_point,
+              "the oldest first, among the newest 20,000 jobs; none of jobs that ended under a version of fvd before "
+              "0.6.0");
+  result.boolean(
+      "searched_all",
+      "false = fewer than were asked for have the value, and jobs before the newest 20,000 were not looked at");
 }
 
 Answer list_jobs(const HistoryService& history, const ListParams& params) {
@@ -99,9 +109,10 @@ Answer list_jobs(const HistoryService& history, const ListParams& params) {
 }
 
 Answer list_values(const HistoryService& history, const ValuesParams& params) {
+  const ValueList values = history.values(params.query);
   Reply points = Reply::array();
-  for (const ValuePoint& point : history.values(params.query)) points.push_back(value_point_json(point));
-  return Reply{{"points", std::move(points)}};
+  for (const ValuePoint& point : values.points) points.push_back(value_point_json(point));
+  return Reply{{"points", std::move(points)}, {"searched_all", values.searched_all}};
 }
 
 }  // namespace
@@ -111,7 +122,8 @@ void add_history_methods(MethodTable& methods, const Services& services) {
                                    .role = Role::kView,
                                    .params = described<ListParams>(),
                                    .result = describe_job_page,
-                                   .errors = {ErrorCode::kDatabase}},
+                                   .errors = {ErrorCode::kDatabase},
+                                   .is_long = true},
                          .run = with<ListParams>([&history = services.history](const Call&, const ListParams& params) {
                            return list_jobs(history, params);
                          })};
@@ -121,7 +133,8 @@ void add_history_methods(MethodTable& methods, const Services& services) {
                 .role = Role::kView,
                 .params = described<ValuesParams>(),
                 .result = describe_points,
-                .errors = {ErrorCode::kDatabase}},
+                .errors = {ErrorCode::kDatabase},
+                .is_long = true},
       .run = with<ValuesParams>([&history = services.history](const Call&, const ValuesParams& params) {
         return list_values(history, params);
       })};

@@ -49,7 +49,8 @@ struct ProfileParams {
     from.describe(fields, "from_um", "where the line begins, in the map");
     to.describe(fields, "to_um", "where it ends");
     fields.number("width_um", width_um, {0.0, kFarthest_um},
-                  "of the band across the line, which is averaged; below one point: the line alone");
+                  "of the band across the line, which is averaged; below one point: the line alone. Line and band have "
+                  "2,000,000 samples, one point apart, at most");
   }
 };
 
@@ -107,7 +108,8 @@ void add_profile_methods(MethodTable& methods, const Services& services) {
                 .role = Role::kView,
                 .params = described<ProfileParams>(),
                 .result = describe_profile,
-                .errors = {kUnknownJob, kResultRemoved, kBadInput, kRegionOutside, kSurfaceFile}},
+                .errors = {kUnknownJob, kResultRemoved, kBadInput, kRegionOutside, kSurfaceFile},
+                .is_long = true},
       .run = with<ProfileParams>([&results = services.results, maps](const Call&, const ProfileParams& params) {
         return profile_of(results, *maps, params);
       })};

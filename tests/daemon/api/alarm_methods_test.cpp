@@ -56,6 +56,19 @@ TEST_F(AnAlarmList, RefusesANumberThatItHasNot) {
   EXPECT_FALSE(service_.alarms.newest().front().acknowledged);
 }
 
+TEST_F(AnAlarmList, HasNoneAcknowledgedThatIsOfAnotherTime) {
+  const std::string time = "1970-01-01T00:00:00.000Z";
+  const json answer = reply(acknowledge({{"number", 1}, {"time_utc", "2026-11-30T10:00:00.000Z"}}));
+  EXPECT_EQ(answer["error"]["data"]["error"], error_name(ErrorCode::kBadInput));
+  EXPECT_THAT(answer["error"]["message"].get<std::string>(), AllOf(HasSubstr(time), HasSubstr("alarm.list")));
+  for (const json& wrong : {json(5), json(nullptr), json(std::string(65, '1'))}) {
+    EXPECT_EQ(error_of(acknowledge({{"number", 1}, {"time_utc", wrong}})), -32602) << wrong;
+  }
+  EXPECT_FALSE(service_.alarms.newest().front().acknowledged);
+  result_of("alarm.acknowledge", {{"number", 1}, {"time_utc", time}});
+  EXPECT_TRUE(service_.alarms.newest().front().acknowledged);
+}
+
 TEST_F(AnAlarmList, IsForWhoOperatesToAcknowledgeAndForAllToRead) {
   const Caller viewer{.who = {"viewer", Role::kView}};
   const auto code_of = [&](const Caller& caller, const std::string& line) {

@@ -128,17 +128,20 @@ class FakeHistory final : public HistoryService {
     int most = 0;
   };
   [[nodiscard]] JobPage list(const JobFilter& filter, std::int64_t before, int most) const override {
+    if (before_list) before_list();
     if (failure) throw Error(*failure);
     asked = {filter, before, most};
     return page;
   }
-  [[nodiscard]] std::vector<ValuePoint> values(const ValueQuery& query) const override {
+  [[nodiscard]] ValueList values(const ValueQuery& query) const override {
     if (failure) throw Error(*failure);
     asked_value = query;
-    return points;
+    return {points, searched_all};
   }
   JobPage page;
   std::vector<ValuePoint> points;
+  bool searched_all = true;
+  std::function<void()> before_list;
   std::optional<Error> failure;
   mutable std::optional<Asked> asked;
   mutable std::optional<ValueQuery> asked_value;

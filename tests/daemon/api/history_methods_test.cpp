@@ -172,20 +172,33 @@ TEST_F(AListing, TellsAValueFromJobToJob) {
   EXPECT_EQ(service_.history.asked_value->most, 100);
 }
 
+TEST_F(AListing, SaysThatOlderJobsWereNotLookedAt) {
+  EXPECT_EQ(result_of("value.list", step_)["searched_all"], true);
+  service_.history.searched_all = false;
+  EXPECT_EQ(result_of("value.list", step_)["searched_all"], false);
+  service_.history.page = {{}, 80001};
+  const json part = result_of("job.list", {{"text", "nowhere"}});
+  EXPECT_EQ(part["jobs"], json::array());
+  EXPECT_EQ(asked_with({{"before", part["next"]}}).before, 80001) << "a part without jobs is not the last";
+}
+
 TEST_F(AListing, RefusesAValueThatIsNotNamed) {
   const auto changed = [this](const char* key, const json& value) {
     json params = step_;
     params[key] = value;
     return params;
   };
-  for (const json& wrong : {json::object(), json{{"measurement", "step"}}, json{{"value", "height_um"}},
-                            changed("most", 1), changed("most", 2001), changed("measurement", std::string(65, 'm')),
-                            changed("value", 5), changed("recipe", 5), changed("before", "x")}) {
+  for (const json& wrong :
+       {json::object(), json{{"measurement", "step"}}, json{{"value", "height_um"}}, changed("most", 1),
+        changed("most", 2001), changed("measurement", std::string(65, 'm')), changed("value", 5),
+        changed("value", std::string(129, 'v')), changed("recipe", 5), changed("before", "x")}) {
     EXPECT_NE(refusal_of("value.list", wrong), "") << wrong;
   }
   EXPECT_FALSE(service_.history.asked_value);
   for (const int most : {2, 2000}) result_of("value.list", changed("most", most));
   EXPECT_EQ(service_.history.asked_value->most, 2000);
+  result_of("value.list", changed("value", std::string(128, 'v')));
+  EXPECT_EQ(service_.history.asked_value->value.size(), 128U);
 }
 
 TEST_F(AListing, TellsOfADatabaseThatCannotBeRead) {

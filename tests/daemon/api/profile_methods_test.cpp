@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/metrology/profile/profile.hpp"
@@ -93,6 +94,22 @@ TEST_F(AProfile, IsRefusedOutsideOfTheMap) {
   EXPECT_EQ(code_of(line(0.0, 30.0, 100.0, 161.0)), 1142);
   EXPECT_EQ(code_of(line(10.0, 30.0, 100.0, 30.0, 80.0)), 1142) << "its band is";
   EXPECT_EQ(code_of(line(10.0, 30.0, 11.0, 30.0)), 1016) << "under two points";
+}
+
+TEST_F(AProfile, IsRefusedOfMoreSamplesThanOneWaitsFor) {
+  // By points of 2 um: whatever the map's size, nothing is read for it.
+  const auto asked = [this](double width_um) {
+    return reply(json{{"jsonrpc", "2.0"},
+                      {"id", 1},
+                      {"method", "result.profile"},
+                      {"params", line(0.0, 30.0, 4000.0, 30.0, width_um)}}
+                     .dump());
+  };
+  EXPECT_EQ(asked(2000.0)["error"]["code"], 1142) << "2,000,000 are no reason, but they leave the map";
+  const json refused = asked(2002.0)["error"];
+  EXPECT_EQ(refused["code"], 1016);
+  EXPECT_THAT(refused["message"].get<std::string>(),
+              testing::AllOf(testing::HasSubstr("2002000 samples"), testing::HasSubstr("width_um")));
 }
 
 TEST_F(AProfile, IsRefusedWhereTheParametersAreNone) {

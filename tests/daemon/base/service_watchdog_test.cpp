@@ -96,8 +96,18 @@ TEST_F(AServiceWatchdog, EndsNoMeasurementForAThreadThatNobodyWaitsFor) {
   EXPECT_THAT(logged(), HasSubstr("fvd-machine has not ticked"));
 }
 
+TEST_F(AServiceWatchdog, EndsNoMeasurementForALongListOrAFileThatIsFetched) {
+  for (const char* name : {"fvd-http-work", "fvd-http-files", "fvd-rpc-lists"}) {
+    ThreadTicks ticks(name, milliseconds(500));
+    ticks.tick(now_);
+    watchdog_.look(now_ + milliseconds(501));
+    EXPECT_EQ(heard(), "WATCHDOG=1") << name;
+    EXPECT_THAT(logged(), HasSubstr("no measurement waits for it")) << name;
+  }
+}
+
 TEST_F(AServiceWatchdog, CountsThreadsThatAJobMayWaitFor) {
-  for (const char* name : {"fvd-reap-stage", "fvd-follow"}) {
+  for (const char* name : {"fvd-reap-stage", "fvd-follow", "fvd-rpc-work"}) {
     ThreadTicks ticks(name, milliseconds(500));
     ticks.tick(now_);
     watchdog_.look(now_ + milliseconds(501));

@@ -181,7 +181,7 @@ TEST_F(AnEventHub, TellsOfAlarms) {
   const json two = until(hub, place, "alarms").back().data;
   ASSERT_EQ(two.size(), 2U) << "nobody woke the hub";
   EXPECT_EQ(two[0]["text"], "it is warm");
-  service_.alarms.acknowledge(2);
+  service_.alarms.acknowledge(2, "");
   EXPECT_EQ(until(hub, place, "alarms").back().data[0]["acknowledged"], true);
 }
 

@@ -24,8 +24,10 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 class AnAlarmLog : public ::testing::Test {
@@ -46,7 +48,7 @@ class AnAlarmLog : public ::testing::Test {
 TEST_F(AnAlarmLog, HasNothingAtFirst) {
   EXPECT_TRUE(log_.newest().empty());
   EXPECT_EQ(log_.revision(), 0U);
-  FVD_EXPECT_ERROR_SAYING(kBadInput, log_.acknowledge(1), HasSubstr("no alarm 1"));
+  FVD_EXPECT_ERROR_SAYING(kBadInput, log_.acknowledge(1, ""), HasSubstr("no alarm 1"));
 }
 
 TEST_F(AnAlarmLog, TellsTheNewestFirstWithNumberTimeAndLevel) {
@@ -72,12 +74,57 @@ TEST_F(AnAlarmLog, KeepsTheNewestTwoHundred) {
   EXPECT_EQ(alarms.front().number, 250);
   EXPECT_EQ(alarms.back().number, 51);
   EXPECT_EQ(alarms.back().text, "line 51");
-  FVD_EXPECT_ERROR_SAYING(kBadInput, log_.acknowledge(50), HasSubstr("alarm.list"));
-  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(251));
-  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(0));
-  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(std::numeric_limits<std::int64_t>::min()));
-  log_.acknowledge(51);
+  FVD_EXPECT_ERROR_SAYING(kBadInput, log_.acknowledge(50, ""), HasSubstr("alarm.list"));
+  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(251, ""));
+  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(0, ""));
+  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(std::numeric_limits<std::int64_t>::min(), ""));
+  log_.acknowledge(51, "");
   EXPECT_TRUE(log_.newest().back().acknowledged);
+}
+
+TEST_F(AnAlarmLog, DropsWhatWasSeenFirstThenWarningsThenErrors) {
+  note("no job is taken", AlarmLevel::kCritical);
+  note("job 1 failed", AlarmLevel::kError);
+  note("job 2 failed", AlarmLevel::kError);
+  for (int i = 4; i <= 200; ++i) note("line " + std::to_string(i));
+  log_.acknowledge(2, "");
+  log_.acknowledge(100, "");
+  const auto numbers = [this] {
+    std::vector<std::int64_t> told;
+    for (const Alarm& alarm : log_.newest()) told.push_back(alarm.number);
+    return told;
+  };
+
+  note("line 201");
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Not(Contains(2)), Contains(100))) << "the oldest that was seen";
+  note("line 202");
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Not(Contains(100)), Contains(4)));
+  note("line 203");
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Not(Contains(4)), Contains(1), Contains(3))) << "the oldest warning";
+  for (int i = 1; i <= 198; ++i) note("error " + std::to_string(i), AlarmLevel::kError);
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Contains(1), Contains(3), Contains(401))) << "no warning is left";
+  note("line 402");
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Contains(3), Not(Contains(402)))) << "no error goes for a warning";
+  note("error 403", AlarmLevel::kError);
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Contains(1), Not(Contains(3)), Contains(403)));
+  for (int i = 1; i <= 250; ++i) note("critical " + std::to_string(i), AlarmLevel::kCritical);
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Not(Contains(1)), Contains(653), Contains(454), Not(Contains(453))));
+  note("error 654", AlarmLevel::kError);
+  EXPECT_THAT(numbers(), AllOf(SizeIs(200), Contains(454), Not(Contains(654))));
+}
+
+TEST_F(AnAlarmLog, AcknowledgesNoAlarmOfAnotherStart) {
+  note("a");
+  FVD_EXPECT_ERROR_SAYING(
+      kBadInput, log_.acknowledge(1, "2027-01-15T07:00:00.007Z"),
+      AllOf(HasSubstr("2027-01-15T08:00:00.007Z"), HasSubstr("started again"), HasSubstr("alarm.list")));
+  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(1, "x"));
+  EXPECT_FALSE(newest().acknowledged);
+  EXPECT_EQ(log_.revision(), 1U);
+  now_ += seconds(1);
+  note("a");
+  log_.acknowledge(1, "2027-01-15T08:00:00.007Z");
+  EXPECT_TRUE(newest().acknowledged) << "by the time at which it was told first";
 }
 
 TEST_F(AnAlarmLog, CountsALineThatComesAgainInPlaceOfPushingOthersOut) {
@@ -106,7 +153,7 @@ TEST_F(AnAlarmLog, TakesALineForAnotherOneAfterAMinuteAtAnotherLevelAndOnceItWas
   EXPECT_EQ(newest().number, 2) << "a minute after the last one";
   note("x", AlarmLevel::kError);
   EXPECT_EQ(newest().number, 3);
-  log_.acknowledge(3);
+  log_.acknowledge(3, "");
   note("x", AlarmLevel::kError);
   EXPECT_EQ(newest().number, 4) << "who has seen the one has not seen the other";
   note("x", AlarmLevel::kError);
@@ -121,8 +168,8 @@ TEST_F(AnAlarmLog, TakesALineForAnotherOneAfterAMinuteAtAnotherLevelAndOnceItWas
 
 TEST_F(AnAlarmLog, AcknowledgesTheOneThatIsNamed) {
   for (const char* text : {"a", "b", "c"}) note(text);
-  log_.acknowledge(2);
-  log_.acknowledge(2);
+  log_.acknowledge(2, "");
+  log_.acknowledge(2, "");
   std::vector<bool> seen;
   for (const Alarm& alarm : log_.newest()) seen.push_back(alarm.acknowledged);
   EXPECT_EQ(seen, (std::vector<bool>{false, true, false}));
@@ -133,11 +180,11 @@ TEST_F(AnAlarmLog, CountsItsChanges) {
   EXPECT_EQ(log_.revision(), 1U);
   note("a");
   EXPECT_EQ(log_.revision(), 2U) << "the count is another";
-  log_.acknowledge(1);
+  log_.acknowledge(1, "");
   EXPECT_EQ(log_.revision(), 3U);
-  log_.acknowledge(1);
+  log_.acknowledge(1, "");
   EXPECT_EQ(log_.revision(), 3U) << "nothing changed";
-  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(2));
+  FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(2, ""));
   EXPECT_EQ(log_.revision(), 3U);
 }
 
@@ -187,7 +234,7 @@ TEST_F(AnAlarmLog, TakesLinesFromSeveralThreads) {
         for (int i = 0; i < 500; ++i) {
           log_.note(AlarmLevel::kError, "thread " + std::to_string(thread), now_);
           (void)log_.newest();
-          if (i % 50 == 0) log_.acknowledge(log_.newest().front().number);
+          if (i % 50 == 0) log_.acknowledge(log_.newest().front().number, "");
         }
       });
     }

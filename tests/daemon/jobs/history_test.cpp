@@ -48,22 +48,22 @@ TEST_F(AHistoryOfAMachine, HasEachJobAndItsValuesAsSoonAsItsEndIsTold) {
   EXPECT_EQ(page.jobs[1].ended_utc, told.ended_utc);
   EXPECT_EQ(page.jobs[1].request.recipe, "texture");
 
-  const auto points = history().values({"texture", "Sa_um"});
+  const auto points = history().values({"texture", "Sa_um"}).points;
   ASSERT_THAT(points, SizeIs(1));
   EXPECT_EQ(points[0].job_id, first);
   EXPECT_EQ(points[0].part_id, "part-1");
   EXPECT_EQ(points[0].ended_utc, told.ended_utc);
   EXPECT_EQ(points[0].value.upper, 0.8);
   EXPECT_EQ(points[0].value.verdict, told.verdict);
-  EXPECT_THAT(history().values({"map", "valid_fraction"}), SizeIs(2));
-  EXPECT_THAT(history().values({"map", "valid_fraction", "part"}), SizeIs(1));
-  EXPECT_THAT(history().values({"texture", "Sq_um"}), IsEmpty());
+  EXPECT_THAT(history().values({"map", "valid_fraction"}).points, SizeIs(2));
+  EXPECT_THAT(history().values({"map", "valid_fraction", "part"}).points, SizeIs(1));
+  EXPECT_THAT(history().values({"texture", "Sq_um"}).points, IsEmpty());
 }
 
 TEST_F(AHistoryOfAMachine, HasTheValuesOfAResultWhoseProcessWasKilledBeforeItsRow) {
   const std::string id = measure(1, "texture");
   ASSERT_TRUE(await([this](const MachineStatus&) { return store_->with_pending_files().empty(); }));
-  const auto before = history().values({"texture", "Sa_um"});
+  const auto before = history().values({"texture", "Sa_um"}).points;
   services_->machine.on_change({});
   services_.reset();
   engine_.reset();
@@ -74,10 +74,10 @@ TEST_F(AHistoryOfAMachine, HasTheValuesOfAResultWhoseProcessWasKilledBeforeItsRo
           "DELETE FROM job_values");
 
   JobStore store(folder_.path() / "fvd.sqlite");
-  EXPECT_THAT(store.history().values({"texture", "Sa_um"}), IsEmpty());
+  EXPECT_THAT(store.history().values({"texture", "Sa_um"}).points, IsEmpty());
   EXPECT_EQ(reconcile_results(store, folder_.path() / "results").adopted, 1);
 
-  const auto after = store.history().values({"texture", "Sa_um"});
+  const auto after = store.history().values({"texture", "Sa_um"}).points;
   ASSERT_THAT(after, SizeIs(1));
   EXPECT_EQ(after[0].job_id, id);
   ASSERT_THAT(before, SizeIs(1));
@@ -88,7 +88,7 @@ TEST_F(AHistoryOfAMachine, KeepsTheValuesOfAResultThatWasRemoved) {
   const std::string id = measure(1, "texture");
   (void)services_->results.acknowledge(ClientSeq{1});
   ASSERT_TRUE(store_->results().mark_removed(id));
-  EXPECT_THAT(history().values({"texture", "Sa_um"}), SizeIs(1));
+  EXPECT_THAT(history().values({"texture", "Sa_um"}).points, SizeIs(1));
 }
 
 }  // namespace

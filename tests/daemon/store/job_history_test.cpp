@@ -30,7 +30,9 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-StoredValue height_of(double value_um) { return {"step", "height_um", value_um, 0.01, 0.02, 49.0, std::nullopt, "pass"}; }
+StoredValue height_of(double value_um) {
+  return {"step", "height_um", value_um, 0.01, 0.02, 49.0, std::nullopt, "pass"};
+}
 
 /// A hundred thousand jobs, of which every hundredth has another recipe, and every tenth failed.
 constexpr const char* kManyJobs =
@@ -63,8 +65,18 @@ class AJobHistory : public ::testing::Test {
     for (const JobStatus& job : store_->history().page(filter, 0, most).jobs) numbers.push_back(job.request.seq);
     return numbers;
   }
+  /// All that fit, part by part.
+  [[nodiscard]] std::vector<std::int64_t> all_numbers(const JobFilter& filter) const {
+    std::vector<std::int64_t> numbers;
+    JobPage page;
+    do {
+      page = store_->history().page(filter, page.next, 500);
+      for (const JobStatus& job : page.jobs) numbers.push_back(job.request.seq);
+    } while (page.next != 0);
+    return numbers;
+  }
   [[nodiscard]] std::vector<ValuePoint> heights(const std::string& recipe = "", int most = 100) const {
-    return store_->history().values({"step", "height_um", recipe, most});
+    return store_->history().values({"step", "height_um", recipe, most}).points;
   }
   void fill(std::initializer_list<const char*> statements) {
     store_.reset();
@@ -263,8 +275,8 @@ TEST_F(AJobHistory, KeepsTheValuesThatCameWithAJobsEnd) {
   ASSERT_THAT(newest, SizeIs(2)) << "of the newest jobs";
   EXPECT_EQ(newest[0].part_id, "b");
   EXPECT_EQ(newest[1].part_id, "c");
-  EXPECT_THAT(store_->history().values({"map", "sigma_median"}), SizeIs(1));
-  EXPECT_THAT(store_->history().values({"step", "width_um"}), IsEmpty());
+  EXPECT_THAT(store_->history().values({"map", "sigma_median"}).points, SizeIs(1));
+  EXPECT_THAT(store_->history().values({"step", "width_um"}).points, IsEmpty());
 }
 
 TEST_F(AJobHistory, KeepsOfAJobThatEndsAgainTheValuesOfItsLastEnd) {
@@ -273,7 +285,7 @@ TEST_F(AJobHistory, KeepsOfAJobThatEndsAgainTheValuesOfItsLastEnd) {
   finish(job, "pass", "", {height_of(3)});
   ASSERT_THAT(heights(), SizeIs(1));
   EXPECT_EQ(heights()[0].value.value, 3.0);
-  EXPECT_THAT(store_->history().values({"step", "width_um"}), IsEmpty());
+  EXPECT_THAT(store_->history().values({"step", "width_um"}).points, IsEmpty());
 }
 
 TEST_F(AJobHistory, TakesTheFirstOfTwoValuesOfOneNameAndNoNumberThatIsNone) {
@@ -354,27 +366,47 @@ TEST_F(AJobHistory, FindsItsWayThroughAHundredThousandJobs) {
   EXPECT_THAT(numbers({.recipe = "rare"}, 2), ElementsAre(100000, 99900));
   EXPECT_THAT(numbers({.text = "frames_lost"}, 2), ElementsAre(99993, 99983));
   EXPECT_THAT(numbers({.part_id = "P-999", .recipe = "often"}, 2), ElementsAre(99999, 98999));
-  EXPECT_THAT(numbers({.text = "nowhere"}), IsEmpty());
-  EXPECT_THAT(numbers({.from_utc = "2023-11-14T22:13:00.000Z", .to_utc = "2023-11-14T22:16:00.000Z"}),
+  EXPECT_THAT(all_numbers({.text = "nowhere"}), IsEmpty());
+  EXPECT_THAT(all_numbers({.from_utc = "2023-11-14T22:13:00.000Z", .to_utc = "2023-11-14T22:16:00.000Z"}),
               ElementsAre(2, 1));
+  EXPECT_THAT(all_numbers({.state = JobState::kFailed}), SizeIs(10000));
+}
+
+TEST_F(AJobHistory, LooksAtTwentyThousandJobsAtATimeAndSaysSo) {
+  fill({kManyJobs, kTheirValues});
   std::int64_t before = 0;
-  std::size_t all = 0;
+  int parts = 0;
   do {
-    const JobPage page = store_->history().page({.state = JobState::kFailed}, before, 500);
-    all += page.jobs.size();
+    const JobPage page = store_->history().page({.text = "nowhere"}, before, 3);
+    EXPECT_THAT(page.jobs, IsEmpty());
     before = page.next;
-  } while (before != 0);
-  EXPECT_EQ(all, 10000U);
-  const auto rare = heights("rare", 2000);
-  ASSERT_THAT(rare, SizeIs(1000));
-  EXPECT_EQ(rare.front().value.value, 100.0);
-  EXPECT_EQ(rare.back().value.value, 100000.0);
+    ++parts;
+  } while (before != 0 && parts < 10);
+  EXPECT_EQ(parts, 5) << "the last of them says that it is";
+
+  const JobPage last_of_it = store_->history().page({.recipe = "rare"}, 80101, 1);
+  ASSERT_THAT(last_of_it.jobs, SizeIs(1));
+  EXPECT_EQ(last_of_it.jobs[0].request.seq, 80100);
+  EXPECT_THAT(all_numbers({.recipe = "rare"}), SizeIs(1000)) << "none twice, none left out";
+
+  const ValueList rare = store_->history().values({"step", "height_um", "rare", 2000});
+  ASSERT_THAT(rare.points, SizeIs(200));
+  EXPECT_EQ(rare.points.front().value.value, 80100.0);
+  EXPECT_EQ(rare.points.back().value.value, 100000.0);
+  EXPECT_FALSE(rare.searched_all);
+  EXPECT_TRUE(store_->history().values({"step", "height_um", "rare", 200}).searched_all) << "as many as were asked for";
+  EXPECT_FALSE(store_->history().values({"step", "width_um", "", 2}).searched_all);
+  fill({"DELETE FROM jobs WHERE number % 5 <> 0"});
+  EXPECT_EQ(store_->history().page({.text = "nowhere"}, 0, 3).next, 0) << "numbers that are gone are no jobs";
+  const ValueList all = store_->history().values({"step", "height_um", "rare", 2000});
+  EXPECT_THAT(all.points, SizeIs(1000));
+  EXPECT_TRUE(all.searched_all);
 }
 
 TEST_F(AJobHistory, IsReadFromItsIndexAloneInTheOrderInWhichItIsTold) {
   fill({kManyJobs, "ANALYZE"});
   const std::string page = plan_of(JobHistory::page_sql());
-  EXPECT_THAT(page, HasSubstr("COVERING INDEX jobs_history (number<?)"));
+  EXPECT_THAT(page, HasSubstr("COVERING INDEX jobs_history (number>? AND number<?)"));
   EXPECT_THAT(page, Not(HasSubstr("TEMP B-TREE"))) << "the first part does not wait for the last";
   EXPECT_THAT(page, Not(HasSubstr("PRIMARY KEY")));
 }
@@ -400,7 +432,7 @@ TEST(AFileOfVersion12, HasItsJobsInTheListAndNoValues) {
   ASSERT_THAT(jobs, SizeIs(1));
   EXPECT_EQ(jobs[0].job_id, "J1");
   EXPECT_EQ(jobs[0].verdict, "pass");
-  EXPECT_THAT(store.history().values({"map", "height_mean"}), IsEmpty());
+  EXPECT_THAT(store.history().values({"map", "height_mean"}).points, IsEmpty());
   EXPECT_TRUE(std::filesystem::exists(folder / "fvd.sqlite.v12"));
 }
 

@@ -27,6 +27,7 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
   const [chosen, setChosen] = useState("");
   const [most, setMost] = useState(100);
   const [points, setPoints] = useState<ValuePoint[] | null>(null);
+  const [searchedAll, setSearchedAll] = useState(true);
   const [problem, setProblem] = useState("");
   const newest = rows.find((row) => row.state === "completed" && (!recipe || row.recipe === recipe))?.job_id ?? "";
 
@@ -48,6 +49,7 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
     call("value.list", { measurement: choice.measurement, value: choice.name, most, ...(recipe ? { recipe } : {}) }).then((got) => {
       if (ended) return;
       setPoints(got.points);
+      setSearchedAll(got.searched_all);
       setProblem("");
     }, (error) => { if (!ended) setProblem(messageOf(error)); });
     return () => { ended = true; };
@@ -76,6 +78,7 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
       <button type="button" disabled=${!points?.length} onClick=${take}>${t("history.csv_chart")}</button>
     </div>
     ${!recipe && html`<p class="help">${t("history.all_recipes")}</p>`}
+    ${!searchedAll && html`<p class="help">${t("history.newest_only", { count: 20000 })}</p>`}
     ${problem && html`<p role="alert" class="problem">${problem}</p>`}
     ${choices.length === 0 && html`<p>${t("history.nothing")}</p>`}
     ${points && points.length > 0 && html`

@@ -15,8 +15,14 @@ export interface Newest {
 }
 
 async function find(recipe: string): Promise<string> {
-  const { jobs } = await call("job.list", { recipe, state: "completed", most: 1 });
-  return jobs[0]?.job_id ?? "";
+  let before = "";
+  do {
+    // A part without jobs is not the last one: the daemon looks at so many at a time.
+    const { jobs, next } = await call("job.list", { recipe, state: "completed", most: 1, ...(before ? { before } : {}) });
+    if (jobs[0]) return jobs[0].job_id;
+    before = next;
+  } while (before);
+  return "";
 }
 
 export function useNewestJob(recipe: string): Newest {

@@ -20,7 +20,7 @@ const kShapes: Record<Alarm["level"], string> = {
   critical: "M12 1 15 9 23 12 15 15 12 23 9 15 1 12 9 9Z",
 };
 
-function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; mayAcknowledge: boolean; acknowledge: (number: number) => void }) {
+function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; mayAcknowledge: boolean; acknowledge: (alarm: Alarm) => void }) {
   const language = useLanguage();
   const todo = whatToDo(alarm.error_code ?? 0) || tWord("run.alarm_todo", alarm.level);
   return html`<li class=${`alarm alarm-${alarm.level} ${alarm.acknowledged ? "seen" : ""}`}>
@@ -33,7 +33,7 @@ function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; m
     ${alarm.acknowledged
       ? html`<span class="help">${t("run.acknowledged")}</span>`
       : html`<button type="button" disabled=${!mayAcknowledge} title=${mayAcknowledge ? undefined : t("run.why.no_role")}
-          aria-label=${t("run.acknowledge_this", { text: alarm.text })} onClick=${() => acknowledge(alarm.number)}>${t("run.acknowledge")}</button>`}
+          aria-label=${t("run.acknowledge_this", { text: alarm.text })} onClick=${() => acknowledge(alarm)}>${t("run.acknowledge")}</button>`}
   </li>`;
 }
 
@@ -42,9 +42,9 @@ export function AlarmsPanel() {
   const { alarms } = useStore(topics);
   const { role } = useStore(session);
   const [problem, setProblem] = useState("");
-  const acknowledge = (number: number): void => {
+  const acknowledge = ({ number, time_utc }: Alarm): void => {
     setProblem("");
-    call("alarm.acknowledge", { number }).catch((error: unknown) => setProblem(messageOf(error)));
+    call("alarm.acknowledge", { number, time_utc }).catch((error: unknown) => setProblem(messageOf(error)));
   };
   const list = ordered(alarms ?? []);
   const waiting = list.filter(({ acknowledged }) => !acknowledged).length;

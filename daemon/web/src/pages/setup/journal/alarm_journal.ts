@@ -40,7 +40,7 @@ export function AlarmJournal() {
             <td class="long">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</td>
             <td>${alarm.acknowledged ? t("setup.journal.acknowledged") : html`<button type="button" disabled=${why !== "" || running} title=${why}
               aria-label=${t("setup.journal.acknowledge_of", { number: alarm.number })}
-              onClick=${() => void run(() => call("alarm.acknowledge", { number: alarm.number }))}>${t("setup.journal.acknowledge")}</button>`}</td>
+              onClick=${() => void run(() => call("alarm.acknowledge", { number: alarm.number, time_utc: alarm.time_utc }))}>${t("setup.journal.acknowledge")}</button>`}</td>
           </tr>`)}
         </table></div>`}
   </section>`;
