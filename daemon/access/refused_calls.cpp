@@ -10,7 +10,8 @@ namespace fvd {
 void RefusedCalls::tell(const std::string& who, const std::string& what, const std::string& details) {
   const auto count = count_to_tell(who, HostClock::now());
   if (!count) return;
-  spdlog::warn("{}; {} were refused since the last that was told", what, *count);
+  // A logger of its own: whoever collects warnings tells these from those of the machine by its name.
+  spdlog::default_logger()->clone(kLogger)->warn("{}; {} were refused since the last that was told", what, *count);
   if (!details.empty()) spdlog::info("details: {}", details);
 }
 

@@ -20,8 +20,12 @@ class RefusedCalls {
   static constexpr std::size_t kMostAPause = 16;     ///< that are told meanwhile, of all: addresses cost nothing either
   static constexpr std::size_t kMostCallers = 1024;  ///< that are known at a time; the one told longest ago gives way
 
+  /// The name of the logger that warns of refusals, with the sinks of the default one: they are no alarms, for a
+  /// stranger could push all others out with them.
+  static constexpr const char* kLogger = "refused";
+
   /// Warns that one more is refused, unless enough were told. who: the caller; what: what the log is to say. details:
-  /// told beside it at level info, for warnings are alarms that every viewer reads; empty = none.
+  /// told beside it at level info; empty = none.
   void tell(const std::string& who, const std::string& what, const std::string& details = {});
   /// One more is refused. If it is to be told, how many there were since the last that was, of whomever, with this one.
   [[nodiscard]] std::optional<std::uint64_t> count_to_tell(const std::string& who, HostTime now);

@@ -288,8 +288,9 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
   } catch (const Error& error) {
     if (about.needs_id) {
       const auto* const tokens = dynamic_cast<const TokensUnreadable*>(&error);
-      warn_of(call.caller, call.method + " was refused to " + text_of(call.caller) + ": " +
-                               std::string(error_name(error.code())) + ": " + error.what(),
+      warn_of(call.caller,
+              call.method + " was refused to " + text_of(call.caller) + ": " + std::string(error_name(error.code())) +
+                  ": " + error.what(),
               tokens != nullptr ? tokens->reason() : std::string());
     }
     note(method, call, error_name(error.code()));

@@ -124,8 +124,8 @@ void add_access_commands(CLI::App& app, AccessArguments& a, const std::function<
 
   sub = app.add_subcommand(
       "kiosk-url",
-      "print the address of a page of your own (fvd serves none) for a kiosk that may operate, and the "
-      "line of its new token for the credential file; asks no daemon");
+      "print the address of the operator page for a kiosk that may operate, with its token, and the line of that for "
+      "the credential file; asks no daemon");
   sub->add_option("page", a.page, "address of the page, e.g. http://microscope-3/")->required();
   sub->add_option("name", a.name, "of the kiosk")->required();
   sub->callback([&a, &chosen, terminal] { chosen = [&a, terminal] { return kiosk_url(a, terminal); }; });

@@ -18,27 +18,24 @@ constexpr std::chrono::milliseconds kBetweenLooks{20};
 constexpr std::chrono::milliseconds kLongestBetweenLooks{250};
 constexpr std::chrono::milliseconds kJobPatience{100};
 constexpr std::chrono::milliseconds kHealthPatience{2000};
+constexpr std::chrono::milliseconds kAlarmPatience{1000};  // the whole list each time
 constexpr std::chrono::milliseconds kNoPatience{0};
 constexpr std::chrono::seconds kLongestLook{10};
 constexpr std::size_t kMostAtOnce_bytes = std::size_t{64} << 10U;
 constexpr std::size_t kMostNewResults = 64;
 constexpr std::string_view kRetry = "retry: 2000\n\n";  // ms, after which a browser connects again
 
-/// The job of this moment whose result can be had.
-std::string completed_job(const MachineStatus& machine) {
-  return machine.job && machine.job->state == JobState::kCompleted ? machine.job->job_id : "";
-}
-
 }  // namespace
 
 EventHub::EventHub(const Services& services)
     : services_(services),
       documents_(services),
-      topics_{Topic(kNoPatience), Topic(kJobPatience), Topic(kNoPatience), Topic(kHealthPatience), Topic(kNoPatience)},
+      topics_{Topic(kNoPatience), Topic(kJobPatience), Topic(kNoPatience), Topic(kHealthPatience),
+              Topic(kAlarmPatience)},
       ring_(services.machine.snapshot()->epoch) {
   {
     const MutexLock lock(mutex_);
-    known_result_ = completed_job(*services_.machine.snapshot());
+    known_result_ = services_.machine.snapshot()->completed_job;
   }
   look();
   services_.machine.on_change([this] { note_change(); }, this);
@@ -62,8 +59,8 @@ void EventHub::look_again() {
 }
 
 void EventHub::note_change() {
-  // Here and not where it is looked at: by then the next job may have begun.
-  std::string completed = completed_job(*services_.machine.snapshot());
+  // Here and not where it is looked at: by then the next job may have completed.
+  std::string completed = services_.machine.snapshot()->completed_job;
   {
     const MutexLock lock(mutex_);
     if (!completed.empty() && completed != known_result_) {
@@ -111,8 +108,8 @@ void EventHub::look() {
   found[kControl] = documents_.control();
   found[kHealth] = documents_.health();
   // Before the list: one that comes between the two is told by the next look.
-  if (const std::uint64_t alarms = services_.alarms.revision(); told_alarms_ != alarms) {
-    told_alarms_ = alarms;
+  if (const std::uint64_t alarms = services_.alarms.revision(); seen_alarms_ != alarms || owes_alarms_) {
+    seen_alarms_ = alarms;
     found[kAlarms] = documents_.alarms();
   }
   bool has_told = false;
@@ -124,6 +121,7 @@ void EventHub::look() {
       ring_.add(kNames.at(i), topics_.at(i).text());
       ++counts_.told;
     }
+    owes_alarms_ = topics_[kAlarms].owes();
     for (const std::string& job : results) {
       ring_.add("result", nlohmann::json{{"job_id", job}}.dump());
       ++counts_.told;
@@ -135,10 +133,10 @@ void EventHub::look() {
   for (const auto& [whose, listener] : listeners_) listener();
 }
 
-std::string EventHub::snapshot() const {
+std::string EventHub::snapshot() {
   std::string text = "{";
   for (std::size_t i = 0; i < kTopics; ++i) {
-    text.append(i == 0 ? "\"" : ",\"").append(kNames.at(i)).append("\":").append(topics_.at(i).text());
+    text.append(i == 0 ? "\"" : ",\"").append(kNames.at(i)).append("\":").append(topics_.at(i).show());
   }
   return event_text(ring_.id_of(ring_.newest()), "snapshot", text.append("}"));
 }

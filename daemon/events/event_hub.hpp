@@ -41,7 +41,8 @@ class EventHub {
   EventHub(const EventHub&) = delete;
   EventHub& operator=(const EventHub&) = delete;
 
-  /// Something changed that is told of: it is looked at within 20 ms, alarms within 250 ms. Returns at once.
+  /// Something changed that is told of: it is looked at within 20 ms, alarms within 250 ms and once a second. Returns
+  /// at once.
   void look_again();
 
   /// What a reader is given next, and where it is then.
@@ -70,12 +71,15 @@ class EventHub {
   void look();
   /// The machine's listener.
   void note_change();
-  [[nodiscard]] std::string snapshot() const FVD_REQUIRES(mutex_);
+  [[nodiscard]] std::string snapshot() FVD_REQUIRES(mutex_);
   [[nodiscard]] Told everything_anew() FVD_REQUIRES(mutex_);
 
   const Services services_;
   const TopicDocuments documents_;
-  std::optional<std::uint64_t> told_alarms_;  // their revision; the thread's, before it the constructor's
+  // Of the list of alarms, the revision that was looked at, and whether it waits to be told. The thread's, before it
+  // the constructor's.
+  std::optional<std::uint64_t> seen_alarms_;
+  bool owes_alarms_ = false;
 
   mutable Mutex mutex_;
   Condition changed_;

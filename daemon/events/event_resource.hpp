@@ -19,6 +19,8 @@ class EventResource final : public HttpResource {
   /// Of all addresses. Fewer than the server has places for callers without a token: the others are for what is
   /// fetched.
   static constexpr std::size_t kMost = 24;
+  /// Of these: strangers leave places to those whom a token vouches for.
+  static constexpr std::size_t kMostWithoutToken = 16;
 
   /// hub: outlives this and every stream.
   explicit EventResource(EventHub& hub);

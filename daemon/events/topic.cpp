@@ -5,15 +5,25 @@
 namespace fvd {
 
 bool Topic::take(TopicDocument document, HostTime now) {
-  newest_ = document.text;
-  const bool is_first = !told_;
-  if (!is_first) {
-    if (document.compared == told_->compared) return false;
-    if (document.urgent == told_->urgent && now - told_at_ < patience_) return false;
+  newest_ = std::move(document);
+  if (!told_) {
+    told_ = newest_;
+    told_at_ = now;
+    return false;
   }
-  told_ = std::move(document);
+  if (!owes()) return false;
+  if (newest_.urgent == told_->urgent && now - told_at_ < patience_) return false;
+  told_ = newest_;
   told_at_ = now;
-  return !is_first;
+  has_shown_another_ = false;
+  return true;
+}
+
+bool Topic::owes() const { return told_ && (has_shown_another_ || newest_.compared != told_->compared); }
+
+const std::string& Topic::show() {
+  has_shown_another_ = has_shown_another_ || owes();
+  return newest_.text;
 }
 
 }  // namespace fvd

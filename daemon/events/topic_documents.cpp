@@ -19,10 +19,12 @@ Reply without(Reply document, std::initializer_list<const char*> keys) {
   return document;
 }
 
-/// What is told at once of a device: that it is there, that it was lost.
+/// What is told at once of a device: that it is there, that it was lost, that it stands.
 Reply presence_of(const Reply& health, const char* device) {
   const Reply& all = health.at(device);
-  return {{"open", all.at("open")}, {"openings", all.at("openings")}};
+  Reply told{{"open", all.at("open")}, {"openings", all.at("openings")}};
+  if (all.contains("standstill")) told["standstill"] = all.at("standstill");
+  return told;
 }
 
 }  // namespace
@@ -73,7 +75,7 @@ TopicDocument TopicDocuments::health() const {
 
 TopicDocument TopicDocuments::alarms() const {
   const std::string text = text_of(alarms_json(services_.alarms.newest()));
-  return {text, text, text};
+  return {text, text, ""};
 }
 
 }  // namespace fvd

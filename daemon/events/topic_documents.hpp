@@ -23,9 +23,9 @@ class TopicDocuments {
   [[nodiscard]] TopicDocument job(const MachineStatus& machine) const;
   /// As control.state tells it to who has it not. Less time alone is no change, a renewal is.
   [[nodiscard]] TopicDocument control() const;
-  /// As system.health; counters and figures alone are not urgent.
+  /// As system.health. Counters and figures alone are not urgent; that a device is there, that the stage stands, is.
   [[nodiscard]] TopicDocument health() const;
-  /// The list of alarm.list.
+  /// The list of alarm.list; none is urgent, for lines of the log come as they like.
   [[nodiscard]] TopicDocument alarms() const;
 
  private:

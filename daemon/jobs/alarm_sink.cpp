@@ -5,6 +5,8 @@
 
 #include <spdlog/sinks/sink.h>
 
+#include "daemon/access/refused_calls.hpp"
+
 namespace fvd {
 
 namespace {
@@ -19,6 +21,7 @@ class AlarmSink final : public spdlog::sinks::sink {
  public:
   explicit AlarmSink(std::shared_ptr<AlarmLog> alarms) : alarms_(std::move(alarms)) { set_level(spdlog::level::warn); }
   void log(const spdlog::details::log_msg& message) override {
+    if (std::string_view(message.logger_name.data(), message.logger_name.size()) == RefusedCalls::kLogger) return;
     alarms_->note(alarm_level(message.level), {message.payload.data(), message.payload.size()}, message.time);
   }
   void flush() override {}

@@ -10,7 +10,8 @@
 
 namespace fvd {
 
-/// Notes lines of level warning and above, whatever the pattern. context: thread-safe.
+/// Notes lines of level warning and above, whatever the pattern, but for those of refused calls, which callers make as
+/// many as they like of. context: thread-safe.
 [[nodiscard]] spdlog::sink_ptr alarm_sink(std::shared_ptr<AlarmLog> alarms);
 
 }  // namespace fvd

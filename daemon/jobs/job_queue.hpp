@@ -60,9 +60,7 @@ class JobQueue final : public JobService, public ResultService, public HistorySe
   [[nodiscard]] JobPage list(const JobFilter& filter, std::int64_t before, int most) const override {
     return deps_.store.history().page(filter, before, most);
   }
-  [[nodiscard]] ValueList values(const ValueQuery& query) const override {
-    return deps_.store.history().values(query);
-  }
+  [[nodiscard]] ValueList values(const ValueQuery& query) const override { return deps_.store.history().values(query); }
 
   /// Prepares once, when the devices are up first, the recipe that was prepared when the daemon ended. context: the
   /// machine's thread.

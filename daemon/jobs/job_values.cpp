@@ -18,7 +18,8 @@ StoredValue job_value(const std::string& measurement, const std::string& name, c
           value.expanded_u, limits.lower, limits.upper, verdict_text(value.verdict)};
 }
 
-void add_measurement(const std::string& name, const EvaluatedMeasurement& measurement, std::vector<StoredValue>& values) {
+void add_measurement(const std::string& name, const EvaluatedMeasurement& measurement,
+                     std::vector<StoredValue>& values) {
   for (const auto& [key, value] : measurement.values) values.push_back(job_value(name, key, value));
   if (!measurement.values.empty()) return;
   StoredValue missing;

@@ -91,6 +91,7 @@ class MachineBoard final : public MachineView {
   mutable Mutex mutex_;
   MachineRecord record_ FVD_GUARDED_BY(mutex_);
   JobCounts ended_ FVD_GUARDED_BY(mutex_);
+  std::string completed_job_ FVD_GUARDED_BY(mutex_);        ///< the latest
   std::vector<std::string> untold_ FVD_GUARDED_BY(mutex_);  ///< changes that the log lacks, in their order
 
   mutable Mutex status_mutex_;  // held for a pointer's copy alone, inside mutex_ or without it

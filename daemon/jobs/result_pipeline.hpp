@@ -22,8 +22,8 @@ struct JobResult {
   std::vector<WrittenBytes> written;  ///< what the digests are made of
   std::optional<ErrorCode> error;     ///< why the job failed though it has a result: too few points are valid
   std::string message;
-  std::string verdict;           ///< as JobStatus
-  std::string reason_codes;      ///< likewise
+  std::string verdict;              ///< as JobStatus
+  std::string reason_codes;         ///< likewise
   std::vector<StoredValue> values;  ///< for the job database
 };
 

@@ -65,6 +65,7 @@ struct MachineStatus {
   std::string error_message;
   std::optional<CameraInfo> camera;  ///< that is open
   JobCounts ended;
+  std::string completed_job;      ///< whose result is the newest, whatever has begun since; empty = none is known
   DevicesHealth health;           ///< as it was between jobs and commands, half a second ago at most if none runs
   std::optional<DiskSpace> disk;  ///< likewise; nothing if it cannot be told
 };

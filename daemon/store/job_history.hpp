@@ -68,9 +68,9 @@ class JobHistory {
   /// What it refers to outlives the history. kept: the ends that the database does not have yet.
   JobHistory(Connection reader, std::function<KeptEnds()> kept) : reader_(reader), kept_(std::move(kept)) {}
 
-  /// At most so many jobs that fit the filter, the newest first; fewer, or none, where no more of kMostLookedAt do: then
-  /// `next` tells that the list goes on. before: JobPage::next of the part before; 0 = from the newest on. Jobs that
-  /// come meanwhile change nothing in the parts that follow. Throws Error kDatabase.
+  /// At most so many jobs that fit the filter, the newest first; fewer, or none, where no more of kMostLookedAt do:
+  /// then `next` tells that the list goes on. before: JobPage::next of the part before; 0 = from the newest on. Jobs
+  /// that come meanwhile change nothing in the parts that follow. Throws Error kDatabase.
   [[nodiscard]] JobPage page(const JobFilter& filter, std::int64_t before, int most) const;
 
   /// Of the newest kMostLookedAt jobs. Those that ended before the database had version 13 have none, and one whose end

@@ -77,9 +77,9 @@ using JobKey = std::variant<std::string, ClientSeq>;
 
 struct StoredJob {
   JobStatus status;
-  std::string result_dir;          ///< empty = no result
-  std::string result_json;         ///< text of result.json, empty = no result
-  bool files_pending = false;      ///< files of the result are still to be made
+  std::string result_dir;             ///< empty = no result
+  std::string result_json;            ///< text of result.json, empty = no result
+  bool files_pending = false;         ///< files of the result are still to be made
   std::vector<StoredValue> values{};  ///< of the result, on the way into the database; JobHistory gives them back
 };
 

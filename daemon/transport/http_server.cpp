@@ -67,6 +67,7 @@ struct HttpServer::Impl {
              gate,
              wrong_tokens,
              s.refusals,
+             failed_fetches,
              worker,
              logins,
              files,
@@ -182,6 +183,7 @@ struct HttpServer::Impl {
   WrongTokens wrong_tokens;  // network thread only, as the next two
   std::set<std::shared_ptr<HttpSession>> sessions;
   std::uint64_t connections = 0;  // since the start
+  RefusedCalls failed_fetches;
   HttpSessionHost host;
   Worker worker;  // after what its tasks refer to
   Worker logins;

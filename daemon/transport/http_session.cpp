@@ -1,6 +1,7 @@
 #include "daemon/transport/http_session.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <boost/asio/write.hpp>
 
@@ -118,6 +119,11 @@ void HttpSession::take_head(ErrorCodeOf error) {
   if (const auto refusal = host_.gate.refusal_of(head_, own_address_)) {
     note_refusal(refusal->error);
     return refuse(*refusal);
+  }
+  // Beast knows a body's end where `chunked` is the last coding alone. What a body of another coding would be must not
+  // be read here as the next request.
+  if (parser_->get().count(http::field::transfer_encoding) > 0 && !parser_->chunked()) {
+    return refuse({400, "bad_request", "send a body with Content-Length, or with Transfer-Encoding: chunked alone"});
   }
   const http::verb method = parser_->get().method();
   const bool is_get = method == http::verb::get || method == http::verb::head;
@@ -248,23 +254,31 @@ void HttpSession::watch_client() {
   socket_.async_wait(Socket::wait_read, [self = shared_from_this(), watch = watch_](ErrorCodeOf error) {
     // What ends the watch of a request that was answered is the next request.
     if (error || self->is_closed_ || watch != self->watch_) return;
-    ErrorCodeOf ignored;
-    if (self->socket_.available(ignored) == 0) self->close();
+    ErrorCodeOf gone;
+    if (self->socket_.available(gone) == 0) return self->close();
+    // Behind a stream comes no other request: what is sent all the same would hide the client's end.
+    if (!self->fetch_ || !self->fetch_->stream) return;
+    std::array<char, kDrainChunk_bytes> dropped{};
+    self->socket_.read_some(asio::buffer(dropped), gone);
+    if (gone) return self->close();
+    self->watch_client();
   });
 }
 
 void HttpSession::end_wait_now() {
   is_ending_ = true;
   if (fetch_ && fetch_->stream) return close();
-  if (fetch_ && fetch_->is_put_off) {
-    return refuse({503, "shutting_down", "the daemon stops; ask again when it is back"});
-  }
+  if (fetch_ && fetch_->is_put_off) return refuse_at_end();
   check_wait(false);
 }
 
 void HttpSession::give_up() {
-  if (waiting_) end_wait(host_.dispatcher.ended(*waiting_));
+  if (waiting_) return end_wait(host_.dispatcher.ended(*waiting_));
+  // What comes back from the worker finds no request then.
+  if (fetch_ && fetch_->is_made) refuse_at_end();
 }
+
+void HttpSession::refuse_at_end() { refuse({503, "shutting_down", "the daemon stops; ask again when it is back"}); }
 
 void HttpSession::check_wait(bool timed_out) {
   if (!waiting_) return;

@@ -4,10 +4,13 @@
 embed_page.py --out FOLDER --source FILE.cpp [--depfile FILE] [--npm NPM --node NODE] [--must] [--no-build]
   --out       where the page is built: files.txt ("path<TAB>type" lines), the files, and each as *.gz
   --depfile   what the source depends on, for ninja and make
-  --must      fail where the page cannot be built; without it the source says that there is none, and so does a message
+  --must      fail where the page cannot be built; without it the source says that there is none, a message says why,
+              and the next build tries again
   --no-build  the page is in --out already
 """
 import argparse
+import contextlib
+import fcntl
 import hashlib
 import os
 import re
@@ -16,7 +19,8 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 # Made by the build itself, or not the page's.
-IGNORED = {"node_modules", "dist", "methods.ts", "README.md", ".gitignore"}
+LOCK = ".build_lock"
+IGNORED = {"node_modules", "dist", "methods.ts", "README.md", ".gitignore", LOCK}
 PATIENCE_S = 600  # of one program; npm waits for a network that is not there
 NPM_OPTIONS = ("--ignore-scripts", "--no-audit", "--no-fund", "--fetch-retries=1", "--fetch-retry-mintimeout=1000",
                "--fetch-timeout=60000")
@@ -46,11 +50,24 @@ def install_packages(npm, folder):
     run([npm, "ci", *NPM_OPTIONS], folder)
 
 
+@contextlib.contextmanager
+def alone(folder):
+    """Builds of several build folders share the packages and methods.ts: one waits for the other."""
+    try:
+        lock = open(os.path.join(folder, LOCK), "w", encoding="utf-8")
+    except OSError as error:
+        raise NoPage(str(error)) from error
+    with lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # until it is closed
+        yield
+
+
 def build(options):
     if not options.npm or not options.node:
         raise NoPage("npm and node are needed")
-    install_packages(options.npm, HERE)
-    run([options.node, "build.mjs", "--out", options.out], HERE)
+    with alone(HERE):
+        install_packages(options.npm, HERE)
+        run([options.node, "build.mjs", "--out", options.out], HERE)
 
 
 def read_files(folder):
@@ -92,6 +109,16 @@ def source_of(files):
                    "}  // namespace fvd\n")
 
 
+def write_source(path, text, must_be_new):
+    """One that is as it was need not be compiled again; with must_be_new it counts as written all the same."""
+    if not must_be_new and os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            if file.read() == text:
+                return
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
 def sources(folder):
     """Every file of the page's sources, and the folders: a file that is added changes its folder."""
     for parent, folders, names in os.walk(folder):
@@ -102,9 +129,11 @@ def sources(folder):
                 yield os.path.join(parent, name)
 
 
-def write_depfile(path, target, folder):
+def write_depfile(path, target, folder, again):
     # Without the folder of the packages and of a page that is built by hand: both come and go.
     wanted = [each for each in sources(folder) if each != folder]
+    if again:
+        wanted.append(target + ".never")  # a file that never is: the next build tries again
     with open(path, "w", encoding="utf-8") as file:
         file.write(target.replace(" ", "\\ ") + ":" +
                    "".join(" \\\n  " + each.replace(" ", "\\ ") for each in wanted) + "\n")
@@ -130,10 +159,9 @@ def main():
         print(f"the operator page was not built, and fvd is built without it (-DFVD_WEB=ON makes this an error): {reason}",
               file=sys.stderr)
         files = []
-    with open(options.source, "w", encoding="utf-8") as file:
-        file.write(source_of(files))
+    write_source(options.source, source_of(files), must_be_new=bool(files))
     if options.depfile:
-        write_depfile(options.depfile, options.source, HERE)
+        write_depfile(options.depfile, options.source, HERE, again=not files)
 
 
 main()

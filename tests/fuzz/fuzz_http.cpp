@@ -74,6 +74,7 @@ struct Front {
   const HttpGate gate{{"fvd.example"}};
   WrongTokens wrong_tokens;
   RefusedCalls refused_calls;
+  RefusedCalls failed_fetches;
   Fetched fetched_resource;
   const std::vector<MountedResource> resources{{"/", &fetched_resource}};
 };
@@ -88,6 +89,7 @@ class Connection {
               front.gate,
               front.wrong_tokens,
               front.refused_calls,
+              front.failed_fetches,
               worker_,
               worker_,
               worker_,

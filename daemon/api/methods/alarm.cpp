@@ -26,9 +26,10 @@ struct AlarmParams {
 };
 
 void describe_alarms(Fields& fields) {
-  ResultFields(fields).list("alarms", static_cast<std::int64_t>(AlarmLog::kMostKept), describe_alarm,
-                            "the newest first; of more than 200 those go first that were acknowledged, then warnings, then errors; "
-                            "these, and those of before the daemon's start, are in the log");
+  ResultFields(fields).list(
+      "alarms", static_cast<std::int64_t>(AlarmLog::kMostKept), describe_alarm,
+      "the newest first; of more than 200 those go first that were acknowledged, then warnings, then errors; "
+      "these, and those of before the daemon's start, are in the log");
 }
 
 void describe_acknowledged(Fields& fields) {
@@ -38,14 +39,15 @@ void describe_acknowledged(Fields& fields) {
 }  // namespace
 
 void add_alarm_methods(MethodTable& methods, const Services& services) {
-  methods["alarm.list"] = {.about = {.summary = "Lines of the log of level warning and above that somebody has to see",
-                                     .role = Role::kView,
-                                     .params = described<NoParams>(),
-                                     .result = describe_alarms},
-                           // 100 KiB of text: not on the network thread.
-                           .run = [&alarms = services.alarms](const Call&) -> Answer {
-                             return Reply{{"alarms", alarms_json(alarms.newest())}};
-                           }};
+  methods["alarm.list"] = {
+      .about = {.summary = "Warnings and errors of the log that somebody has to see, but for refused calls",
+                .role = Role::kView,
+                .params = described<NoParams>(),
+                .result = describe_alarms},
+      // 100 KiB of text: not on the network thread.
+      .run = [&alarms = services.alarms](const Call&) -> Answer {
+        return Reply{{"alarms", alarms_json(alarms.newest())}};
+      }};
   methods["alarm.acknowledge"] = {
       .about = {.summary = "Says that somebody has seen an alarm; one that was acknowledged stays so",
                 .role = Role::kOperate,

@@ -82,12 +82,13 @@ struct ValuesParams {
   }
 };
 
-void describe_jobs(Fields& fields) {
+void describe_job_page(Fields& fields) {
   const ResultFields result(fields);
   result.list("jobs", kMostJobs, describe_job_row, "the newest first");
-  result.text("next", kLongestCursor_bytes,
-              "before which the list goes on; empty = these are the last. An answer looks at 20,000 jobs at most: where "
-              "few of them fit, it has fewer than were asked for, or none, and still a `next`");
+  result.text(
+      "next", kLongestCursor_bytes,
+      "before which the list goes on; empty = these are the last. An answer looks at 20,000 jobs at most: where "
+      "few of them fit, it has fewer than were asked for, or none, and still a `next`");
 }
 
 void describe_points(Fields& fields) {
@@ -95,8 +96,9 @@ void describe_points(Fields& fields) {
   result.list("points", kMostPoints, describe_value_point,
               "the oldest first, among the newest 20,000 jobs; none of jobs that ended under a version of fvd before "
               "0.6.0");
-  result.boolean("searched_all",
-                 "false = fewer than were asked for have the value, and jobs before the newest 20,000 were not looked at");
+  result.boolean(
+      "searched_all",
+      "false = fewer than were asked for have the value, and jobs before the newest 20,000 were not looked at");
 }
 
 Answer list_jobs(const HistoryService& history, const ListParams& params) {
@@ -119,7 +121,7 @@ void add_history_methods(MethodTable& methods, const Services& services) {
   methods["job.list"] = {.about = {.summary = "Jobs from the newest on, part by part; the running one too",
                                    .role = Role::kView,
                                    .params = described<ListParams>(),
-                                   .result = describe_jobs,
+                                   .result = describe_job_page,
                                    .errors = {ErrorCode::kDatabase},
                                    .is_long = true},
                          .run = with<ListParams>([&history = services.history](const Call&, const ListParams& params) {

@@ -188,9 +188,10 @@ TEST_F(AListing, RefusesAValueThatIsNotNamed) {
     params[key] = value;
     return params;
   };
-  for (const json& wrong : {json::object(), json{{"measurement", "step"}}, json{{"value", "height_um"}},
-                            changed("most", 1), changed("most", 2001), changed("measurement", std::string(65, 'm')),
-                            changed("value", 5), changed("value", std::string(129, 'v')), changed("recipe", 5), changed("before", "x")}) {
+  for (const json& wrong :
+       {json::object(), json{{"measurement", "step"}}, json{{"value", "height_um"}}, changed("most", 1),
+        changed("most", 2001), changed("measurement", std::string(65, 'm')), changed("value", 5),
+        changed("value", std::string(129, 'v')), changed("recipe", 5), changed("before", "x")}) {
     EXPECT_NE(refusal_of("value.list", wrong), "") << wrong;
   }
   EXPECT_FALSE(service_.history.asked_value);

@@ -56,6 +56,7 @@ class ChangingMachine final : public MachineView {
   void end_job(JobState how) {
     change([how](MachineStatus& status) {
       status.job->state = how;
+      if (how == JobState::kCompleted) status.completed_job = status.job->job_id;
       status.state = ScanState::kReady;
     });
   }

@@ -142,6 +142,18 @@ TEST_F(AnEventHub, TellsTheResultsOfAllThatCompleted) {
   EXPECT_THAT(completed, ElementsAre("job-1", "job-2", "job-4", "job-5")) << "what ended before it is no news";
 }
 
+TEST_F(AnEventHub, LosesNoResultToTheNextJob) {
+  EventHub hub(services_);
+  std::uint64_t place = hub.begin({}).place;
+  machine_.start_job("job-1");
+  // What a listener sees that is called after the next job was accepted.
+  machine_.change([](MachineStatus& status) {
+    status.completed_job = "job-1";
+    status.job->job_id = "job-2";
+  });
+  EXPECT_EQ(until(hub, place, "result").back().data, (json{{"job_id", "job-1"}}));
+}
+
 TEST_F(AnEventHub, TellsWhoHasControl) {
   EventHub hub(services_);
   std::uint64_t place = hub.begin({}).place;
@@ -171,6 +183,15 @@ TEST_F(AnEventHub, TellsOfAlarms) {
   EXPECT_EQ(two[0]["text"], "it is warm");
   service_.alarms.acknowledge(2, "");
   EXPECT_EQ(until(hub, place, "alarms").back().data[0]["acknowledged"], true);
+}
+
+TEST_F(AnEventHub, ForgetsNoAlarmThatWaits) {
+  EventHub hub(services_);
+  std::uint64_t place = hub.begin({}).place;
+  for (int i = 0; i < 20; ++i) service_.alarms.note(AlarmLevel::kError, "alarm " + std::to_string(i), {});
+  std::size_t told = 1;
+  while (told < 21 && !HasFailure()) told = until(hub, place, "alarms").back().data.size();
+  EXPECT_EQ(told, 21U);
 }
 
 TEST_F(AnEventHub, GoesOnWhereAReaderWas) {

@@ -23,12 +23,15 @@ using ::testing::HasSubstr;
 
 class AnEventResource : public ::testing::Test {
  protected:
-  ResourceAnswer get(const std::string& address, const std::string& path = EventResource::kPath) {
+  ResourceAnswer get(const std::string& address, const std::string& path = EventResource::kPath,
+                     bool has_token = false) {
     ResourceRequest request;
     request.path = path;
     request.address = address;
+    request.has_token = has_token;
     return resource_.get(request);
   }
+  ResourceAnswer get_with_token(const std::string& address) { return get(address, EventResource::kPath, true); }
   test::ChangingMachine machine_;
   FakeJobService service_;
   const Services services_ = machine_.in(service_.services());
@@ -56,6 +59,7 @@ TEST_F(AnEventResource, OpensNothingForAHeader) {
     const ResourceAnswer answer = resource_.get(request);
     EXPECT_EQ(answer.status, 200);
     EXPECT_FALSE(answer.stream);
+    EXPECT_TRUE(answer.is_endless);
   }
 }
 
@@ -81,11 +85,29 @@ TEST_F(AnEventResource, LimitsStreamsOfAnAddress) {
 TEST_F(AnEventResource, LimitsStreamsOfAll) {
   std::vector<ResourceAnswer> open;
   for (std::size_t i = 0; i < EventResource::kMost; ++i) {
+    open.push_back(get_with_token("10.0.0." + std::to_string(i / EventResource::kMostOfAddress)));
+    EXPECT_TRUE(open.back().stream) << i;
+  }
+  EXPECT_EQ(get_with_token("10.0.0.99").status, 503);
+  open.clear();
+  EXPECT_TRUE(get("10.0.0.99").stream);
+}
+
+TEST_F(AnEventResource, KeepsPlacesForCallersWithAToken) {
+  std::vector<ResourceAnswer> open;
+  for (std::size_t i = 0; i < EventResource::kMostWithoutToken; ++i) {
     open.push_back(get("10.0.0." + std::to_string(i / EventResource::kMostOfAddress)));
     EXPECT_TRUE(open.back().stream) << i;
   }
   EXPECT_EQ(get("10.0.0.99").status, 503);
-  open.clear();
+  for (std::size_t i = EventResource::kMostWithoutToken; i < EventResource::kMost; ++i) {
+    open.push_back(get_with_token("10.0.1.1"));
+    EXPECT_TRUE(open.back().stream) << i;
+  }
+  EXPECT_EQ(get_with_token("10.0.1.2").status, 503);
+  open.pop_back();
+  EXPECT_EQ(get("10.0.0.99").status, 503) << "that place is none for it";
+  open.erase(open.begin());
   EXPECT_TRUE(get("10.0.0.99").stream);
 }
 
@@ -125,6 +147,16 @@ TEST_F(AServerOfEvents, TellsAPageWhatHappens) {
   EXPECT_EQ(lines[0], "id: 17-1");
   EXPECT_EQ(lines[1], "event: state");
   EXPECT_EQ(json::parse(lines[2].substr(6))["state"], "executing");
+}
+
+TEST_F(AServerOfEvents, SaysNoLengthWhereThereIsNone) {
+  HttpClient page(server_->port());
+  const auto head = page.head(EventResource::kPath);
+  ASSERT_TRUE(head);
+  EXPECT_EQ(head->status, 200);
+  EXPECT_EQ(head->fields.at("content-type"), "text/event-stream");
+  EXPECT_EQ(head->fields.count("content-length"), 0U);
+  EXPECT_EQ(page.head(EventResource::kPath).value_or(HttpReply{}).status, 200) << "the connection goes on";
 }
 
 TEST_F(AServerOfEvents, GoesOnAfterAReconnection) {

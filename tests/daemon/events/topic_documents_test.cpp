@@ -125,5 +125,23 @@ TEST_F(TopicDocumentsTest, KnowALostDeviceFromAFigure) {
   EXPECT_NE(documents.health().urgent, before.urgent);
 }
 
+TEST_F(TopicDocumentsTest, TakeStandstillForUrgent) {
+  const TopicDocuments documents(services_);
+  service_.machine.signals.part_release = true;
+  const TopicDocument stands = documents.health();
+  service_.machine.signals.part_release = false;
+  const TopicDocument moves = documents.health();
+  ASSERT_NE(parsed(stands)["stage"]["standstill"], parsed(moves)["stage"]["standstill"]);
+  EXPECT_NE(moves.urgent, stands.urgent);
+}
+
+TEST_F(TopicDocumentsTest, TakeNoAlarmForUrgent) {
+  const TopicDocuments documents(services_);
+  const TopicDocument before = documents.alarms();
+  service_.alarms.note(AlarmLevel::kError, "it is warm", {});
+  EXPECT_NE(documents.alarms().compared, before.compared);
+  EXPECT_EQ(documents.alarms().urgent, before.urgent);
+}
+
 }  // namespace
 }  // namespace fvd

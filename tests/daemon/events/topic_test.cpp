@@ -47,5 +47,29 @@ TEST_F(ATopic, TellsFiguresAfterAWhile) {
   EXPECT_FALSE(told("ready", 2, 0));
 }
 
+TEST_F(ATopic, CorrectsWhatItHasShown) {
+  (void)told("executing", 0, 0);
+  EXPECT_FALSE(told("executing", 1, 0));
+  EXPECT_TRUE(topic_.owes());
+  EXPECT_EQ(topic_.show(), "executing1@0");
+  EXPECT_FALSE(told("executing", 0, 0)) << "it waits all the same";
+  EXPECT_TRUE(topic_.owes());
+  now_ += milliseconds(100);
+  EXPECT_TRUE(told("executing", 0, 0)) << "whoever was shown the other one would have it for good";
+  EXPECT_FALSE(topic_.owes());
+  now_ += milliseconds(100);
+  EXPECT_FALSE(told("executing", 0, 0)) << "once";
+}
+
+TEST_F(ATopic, TellsNothingOfWhatNobodySaw) {
+  (void)told("executing", 0, 0);
+  EXPECT_EQ(topic_.show(), "executing0@0");
+  EXPECT_FALSE(told("executing", 1, 0));
+  EXPECT_FALSE(told("executing", 0, 0));
+  EXPECT_FALSE(topic_.owes());
+  now_ += milliseconds(200);
+  EXPECT_FALSE(told("executing", 0, 0));
+}
+
 }  // namespace
 }  // namespace fvd

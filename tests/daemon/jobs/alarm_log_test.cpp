@@ -11,8 +11,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/logger.h>
+#include <spdlog/spdlog.h>
 
+#include "daemon/access/refused_calls.hpp"
 #include "daemon/jobs/alarm_sink.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/expect_error.hpp"
 
 namespace fvd {
@@ -112,9 +115,9 @@ TEST_F(AnAlarmLog, DropsWhatWasSeenFirstThenWarningsThenErrors) {
 
 TEST_F(AnAlarmLog, AcknowledgesNoAlarmOfAnotherStart) {
   note("a");
-  FVD_EXPECT_ERROR_SAYING(kBadInput, log_.acknowledge(1, "2027-01-15T07:00:00.007Z"),
-                          AllOf(HasSubstr("2027-01-15T08:00:00.007Z"), HasSubstr("started again"),
-                                HasSubstr("alarm.list")));
+  FVD_EXPECT_ERROR_SAYING(
+      kBadInput, log_.acknowledge(1, "2027-01-15T07:00:00.007Z"),
+      AllOf(HasSubstr("2027-01-15T08:00:00.007Z"), HasSubstr("started again"), HasSubstr("alarm.list")));
   FVD_EXPECT_ERROR(kBadInput, log_.acknowledge(1, "x"));
   EXPECT_FALSE(newest().acknowledged);
   EXPECT_EQ(log_.revision(), 1U);
@@ -260,6 +263,22 @@ TEST(AnAlarmSink, NotesLinesOfLevelWarningAndAbove) {
   EXPECT_EQ(told[1].level, AlarmLevel::kError);
   EXPECT_EQ(told[0].level, AlarmLevel::kCritical);
   EXPECT_GT(told[0].time_utc, "2020") << "the line's time";
+}
+
+TEST(AnAlarmSink, LeavesRefusedCallsOut) {
+  const auto alarms = std::make_shared<AlarmLog>();
+  const test::CapturedLog log;
+  spdlog::default_logger()->sinks().push_back(alarm_sink(alarms));
+  RefusedCalls refused;
+  for (int port = 1; port <= 16; ++port) {
+    const std::string number = std::to_string(port);
+    refused.tell("address 10.0.0." + number, "HTTP from 10.0.0.9:" + number + " was refused");
+  }
+  spdlog::warn("the disk is nearly full");
+  ASSERT_THAT(alarms->newest(), SizeIs(1));
+  EXPECT_EQ(alarms->newest()[0].text, "the disk is nearly full");
+  EXPECT_EQ(log.lines_with("was refused"), 16U) << "the log has them";
+  EXPECT_EQ(log.lines_with("[warning]"), 17U);
 }
 
 }  // namespace

@@ -52,10 +52,11 @@ TEST(ValuesOfAResult, AreThoseOfTheEvaluationInTheRecipesOrderAndThenOfTheMap) {
   broken.verdict = Verdict::kInvalid;
   result.evaluation->measurements = {{"broken", broken}, {"step", a_step()}};
 
-  EXPECT_THAT(values_of(result), ElementsAre(StoredValue{"step", "height_um", 50.01, 0.01, 0.02, 49.0, 51.0, "uncertain"},
-                                             StoredValue{"step", "width_um", {}, {}, {}, {}, {}, ""},
-                                             StoredValue{"broken", "Sa_um", {}, {}, {}, {}, {}, "invalid"},
-                                             StoredValue{"map", "valid_fraction", 0.97, {}, {}, 0.5, {}, "pass"}));
+  EXPECT_THAT(values_of(result),
+              ElementsAre(StoredValue{"step", "height_um", 50.01, 0.01, 0.02, 49.0, 51.0, "uncertain"},
+                          StoredValue{"step", "width_um", {}, {}, {}, {}, {}, ""},
+                          StoredValue{"broken", "Sa_um", {}, {}, {}, {}, {}, "invalid"},
+                          StoredValue{"map", "valid_fraction", 0.97, {}, {}, 0.5, {}, "pass"}));
 }
 
 TEST(ValuesOfAResult, LeaveTheMapOutWhereTheRecipeHasAMeasurementOfThatName) {

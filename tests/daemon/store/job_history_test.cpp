@@ -30,7 +30,9 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-StoredValue height_of(double value_um) { return {"step", "height_um", value_um, 0.01, 0.02, 49.0, std::nullopt, "pass"}; }
+StoredValue height_of(double value_um) {
+  return {"step", "height_um", value_um, 0.01, 0.02, 49.0, std::nullopt, "pass"};
+}
 
 /// A hundred thousand jobs, of which every hundredth has another recipe, and every tenth failed.
 constexpr const char* kManyJobs =

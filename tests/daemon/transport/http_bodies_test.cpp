@@ -5,6 +5,7 @@
 #include <future>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -144,6 +145,25 @@ TEST_F(AServerOfBodies, TellsWhoWaitsThatItEnds) {
   EXPECT_EQ(nlohmann::json::parse(reply->body)["error"], "shutting_down");
 }
 
+TEST_F(AServerOfBodies, TellsWhoWaitsForAWorkerThatItEnds) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  serve([&](const ResourceRequest&) {
+    begun.set_value();
+    released.get_future().wait();
+    return text_answer("too late");
+  });
+  HttpClient slow(server_->port());
+  slow.send(slow.get_request("/slow"));
+  begun.get_future().wait();
+  std::thread ending([this] { server_.reset(); });
+  const HttpReply reply = slow.reply().value_or(HttpReply{});
+  released.set_value();
+  ending.join();
+  EXPECT_EQ(reply.status, 503);
+  EXPECT_THAT(reply.body, HasSubstr("shutting_down"));
+}
+
 TEST_F(AServerOfBodies, CallsWhileAResourceWorks) {
   std::promise<void> begun;
   std::promise<void> released;
@@ -212,6 +232,18 @@ TEST_F(AServerOfStreams, NoticesReadersThatGo) {
     HttpClient one(server_->port());
     open(one);
     EXPECT_EQ(news_.readers, 1);
+  }
+  EXPECT_TRUE(comes([this] { return news_.readers == 0; }));
+}
+
+TEST_F(AServerOfStreams, NoticesThatReadersGoWhoSaidMore) {
+  {
+    HttpClient one(server_->port());
+    open(one);
+    one.send(std::string(100'000, 'x'));
+    news_.add("news\n");
+    EXPECT_EQ(one.line(), "news") << "it is no request";
+    one.send(one.get_request("/"));
   }
   EXPECT_TRUE(comes([this] { return news_.readers == 0; }));
 }

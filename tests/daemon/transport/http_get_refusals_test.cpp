@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.hpp"
 #include "daemon/transport/http_fields.hpp"
 #include "tests/daemon/transport/resource_server.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/rpc_text.hpp"
 
 namespace fvd {
@@ -125,6 +128,42 @@ TEST_F(AServerThatIsCareful, TakesNoBodyWithAGet) {
     EXPECT_FALSE(one.reply()) << "what was hidden in the body is no request";
   }
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n"), 200);
+}
+
+TEST_F(AServerThatIsCareful, TakesNoBodyWhoseEndIsUnknown) {
+  FakeResource& resource = serve([](const ResourceRequest&) { return text_answer("x"); });
+  const std::string hidden = "GET /hidden HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const std::string length = "Content-Length: " + std::to_string(hidden.size()) + "\r\n";
+  const std::string call = "POST /api/jsonrpc HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n";
+  for (const std::string& coding : {std::string("gzip"), std::string("chunked, identity"), std::string("")}) {
+    for (const std::string& begin : {std::string("GET / HTTP/1.1\r\nHost: localhost\r\n"), call}) {
+      const std::string field = "Transfer-Encoding: " + coding + "\r\n";
+      for (const std::string& fields : {field, field + length, length + field}) {
+        HttpClient one(server_->port());
+        const auto reply = one.ask(begin + fields + "\r\n" + hidden);
+        ASSERT_TRUE(reply) << fields;
+        EXPECT_EQ(reply->status, 400) << fields;
+        EXPECT_FALSE(one.reply()) << "what was hidden in the body is no request: " << fields;
+      }
+    }
+  }
+  EXPECT_EQ(resource.asked, 0);
+  const std::string ping = test::call("system.ping");
+  std::ostringstream chunk;
+  chunk << std::hex << ping.size() << "\r\n" << ping << "\r\n0\r\n\r\n";
+  EXPECT_EQ(status_of(call + "Transfer-Encoding: chunked\r\n\r\n" + chunk.str()), 200);
+}
+
+TEST_F(AServerThatIsCareful, TellsTheLogOfFailuresAsOneAlarm) {
+  const test::CapturedLog log;
+  serve([](const ResourceRequest&) -> ResourceAnswer { throw Error(ErrorCode::kDatabase, "the database is gone"); });
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(get("/" + std::to_string(i)).status, 500);
+  server_.reset();
+  EXPECT_GE(log.lines_with("the database is gone"), 1U);
+  EXPECT_EQ(log.lines_with("[error] what is asked for by GET cannot be answered: the database is gone"),
+            log.lines_with("[error]"));
+  EXPECT_EQ(log.lines_with("that was GET /0; 1 could"), 1U);
+  EXPECT_EQ(log.lines_with("[info] that was GET /"), log.lines_with("[error]"));
 }
 
 TEST_F(AServerThatIsCareful, LooksAtWhoAsks) {
