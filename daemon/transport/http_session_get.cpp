@@ -164,9 +164,9 @@ void HttpSession::fetch() {
     return refuse({403, "not_allowed",
                    "this caller may not look; send Authorization: Bearer TOKEN of one who may, or see rpc.allow"});
   }
-  using Answer = std::shared_ptr<ResourceAnswer>;
+  using Made = std::shared_ptr<ResourceAnswer>;
   fetch_->is_made = true;
-  work<Answer>(
+  work<Made>(
       host_.files,
       [resource = fetch_->resource, request = fetch_->request, &failures = host_.failed_fetches] {
         return std::make_shared<ResourceAnswer>(answer_of(*resource, request, failures));
