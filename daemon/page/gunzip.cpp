@@ -32,7 +32,8 @@ class Inflater {
 std::string unpacked(std::string_view gzip) {
   Inflater inflater;
   z_stream& stream = inflater.stream();
-  stream.next_in = reinterpret_cast<const Bytef*>(gzip.data());
+  // zlib reads it only; older interfaces do not say so.
+  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(gzip.data()));
   stream.avail_in = static_cast<uInt>(gzip.size());
   std::string plain;
   std::array<char, 16384> piece{};

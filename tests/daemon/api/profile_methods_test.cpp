@@ -84,7 +84,8 @@ TEST_F(AProfile, IsThatOfTheBand) {
   for (std::size_t i = 0; i < wanted.z_um.size(); ++i) {
     const json& height = profile["height_um"][i];
     ASSERT_EQ(height.is_null(), std::isnan(wanted.z_um[i])) << i;
-    if (!height.is_null()) EXPECT_NEAR(height.get<double>(), wanted.z_um[i], 1e-9) << i;
+    if (height.is_null()) continue;
+    EXPECT_NEAR(height.get<double>(), wanted.z_um[i], 1e-9) << i;
   }
 }
 
