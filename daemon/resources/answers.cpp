@@ -20,7 +20,7 @@ ResourceAnswer not_modified(const std::string& etag, const std::string& cache_co
   return answer;
 }
 
-std::string number_text(double value) {
+std::string number_field(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end.ptr};

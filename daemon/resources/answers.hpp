@@ -16,6 +16,6 @@ namespace fvd {
 [[nodiscard]] ResourceAnswer not_modified(const std::string& etag, const std::string& cache_control);
 
 /// The shortest text from which the number reads back, with a point; finite.
-[[nodiscard]] std::string number_text(double value);
+[[nodiscard]] std::string number_field(double value);
 
 }  // namespace fvd

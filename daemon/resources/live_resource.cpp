@@ -38,9 +38,9 @@ ResourceAnswer LiveResource::get(const ResourceRequest& request) {
     answer.fields.emplace_back("X-Fvd-Seq", std::to_string(picture->seq));
     answer.fields.emplace_back("X-Fvd-Width-Px", std::to_string(picture->image_width_px));
     answer.fields.emplace_back("X-Fvd-Height-Px", std::to_string(picture->image_height_px));
-    if (std::isfinite(picture->z_um)) answer.fields.emplace_back("X-Fvd-Z-Um", number_text(picture->z_um));
-    answer.fields.emplace_back("X-Fvd-Focus", number_text(picture->focus));
-    answer.fields.emplace_back("X-Fvd-Saturated-Fraction", number_text(picture->saturated_fraction));
+    if (std::isfinite(picture->z_um)) answer.fields.emplace_back("X-Fvd-Z-Um", number_field(picture->z_um));
+    answer.fields.emplace_back("X-Fvd-Focus", number_field(picture->focus));
+    answer.fields.emplace_back("X-Fvd-Saturated-Fraction", number_field(picture->saturated_fraction));
     answer.body = picture->jpeg;
     return answer;
   }
