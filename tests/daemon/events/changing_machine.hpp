@@ -31,6 +31,7 @@ class ChangingMachine final : public MachineView {
     const MutexLock lock(mutex_);
     return status_;
   }
+  [[nodiscard]] bool stage_stands() const override { return snapshot()->signals.part_release; }
   void on_change(std::function<void()> listener, const void* whose) override {
     const MutexLock lock(telling_mutex_);
     listeners_.erase(whose);

@@ -127,9 +127,11 @@ TEST_F(TopicDocumentsTest, KnowALostDeviceFromAFigure) {
 
 TEST_F(TopicDocumentsTest, TakeStandstillForUrgent) {
   const TopicDocuments documents(services_);
-  service_.machine.signals.part_release = true;
+  machine_.signals.part_release = true;
+  service_.machine = machine_;
   const TopicDocument stands = documents.health();
-  service_.machine.signals.part_release = false;
+  machine_.signals.part_release = false;
+  service_.machine = machine_;
   const TopicDocument moves = documents.health();
   ASSERT_NE(parsed(stands)["stage"]["standstill"], parsed(moves)["stage"]["standstill"]);
   EXPECT_NE(moves.urgent, stands.urgent);
