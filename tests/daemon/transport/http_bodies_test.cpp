@@ -29,8 +29,8 @@ using ::testing::HasSubstr;
 class AServerOfBodies : public test::ResourceServer {};
 
 TEST_F(AServerOfBodies, SendsLongBodiesPieceByPiece) {
-  constexpr std::size_t kPiece_bytes = 200'000;
-  constexpr int kPieces = 60;
+  static constexpr std::size_t kPiece_bytes = 200'000;
+  static constexpr int kPieces = 60;
   serve([this](const ResourceRequest&) {
     ResourceAnswer answer;
     answer.source = std::make_unique<FakeBody>(bodies_, kPiece_bytes, kPieces);
