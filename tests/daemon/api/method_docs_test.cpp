@@ -126,7 +126,6 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"stage.stop", nothing},
       {"error.reset", nothing, R"({"z_um":1,"homed":true})"},
       {"session.info", nothing},
-      {"control.state", nothing},
       {"control.acquire", {{"owner", "test"}}},
       {"control.state", nothing},
       {"control.release", nothing},

