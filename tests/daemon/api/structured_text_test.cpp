@@ -89,7 +89,7 @@ class TheStructuredText : public ADispatcher {
   }
   [[nodiscard]] JobStatus job(std::int64_t seq) const { return service_.job(ClientSeq{seq}); }
   /// A known job, as of before.
-  void let_know(std::int64_t seq, const std::string& part) { static_cast<void>(service_.start({seq, part})); }
+  void let_know(std::int64_t seq, const std::string& part) { static_cast<void>(service_.start({seq, part, ""})); }
 
   test::StructuredText plc_{test::read_text(FVD_SOURCE_DIR "/daemon/api/examples/line_loop.st")};
   std::set<std::string> free_;  // parts that may go
