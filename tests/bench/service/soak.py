@@ -9,7 +9,7 @@ import json
 import os
 import sys
 
-from rig import Client, Rig, recipe, wait_for
+from rig import Client, Rig, recipe, resident_kib, wait_for
 
 BLOCK = 50  # jobs between two lines of progress
 KEEP_GIB = 1  # the least that can be configured: results of 2,000 jobs take twice as much
@@ -18,11 +18,6 @@ SLACK_GIB = 0.25
 PART = recipe(slices=5)
 PART["acquire"]["camera"].update(width_px=256, height_px=192)
 PART["keep"] = {"slices": True}
-
-
-def kib(pid):
-    with open(f"/proc/{pid}/status", encoding="ascii") as status:
-        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
 
 
 def descriptors(pid):
@@ -73,7 +68,7 @@ def main():
         pid = rig.daemon.pid
         for seq in range(1, jobs + 1):
             measure(rig, seq)
-            memory.append((seq, kib(pid)))
+            memory.append((seq, resident_kib(pid)))
             files.append(descriptors(pid))
             if seq % BLOCK == 0 or seq == jobs:
                 sizes.append(gib(rig.state))
