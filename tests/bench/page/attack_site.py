@@ -20,8 +20,8 @@ class Site:
         self.client = rig.start()
         self.port = rig.http_port
         self.jobs = [self.measure(seq, part) for seq, part in enumerate(("part", SCRIPT_PART, FORMULA_PART), 1)]
-        self.client.ask("recipe.save", id="evil", text=json.dumps(RECIPE | {"description": SCRIPT_RECIPE}), base_version=0,
-                        author="attack")
+        evil = json.dumps(RECIPE | {"description": SCRIPT_RECIPE})
+        self.client.ask("recipe.save", id="evil", text=evil, base_version=0, author="attack")
         folder = rig.state / "results" / self.jobs[0]
         (folder / "beside.txt").write_text("a file that no record names")
         self.linked = "step_log.csv"
@@ -32,11 +32,13 @@ class Site:
     def measure(self, seq, part):
         self.client.ask("job.start", seq=seq, part_id=part, recipe="part")
         ended = wait_for(lambda: self.client.ask("job.wait", seq=seq), what="a job")
-        wait_for(lambda: "pending" not in json.dumps(self.client.ask("result.get", seq=seq, format="complete")["result"]["files"]),
-                 what="the result's files")
+        wait_for(lambda: "pending" not in json.dumps(self.result(seq)["files"]), what="the result's files")
         self.client.ask("result.ack", seq=seq)
         wait_for(lambda: self.client.ask("system.state")["ready"], what="ready")
         return ended["job_id"]
+
+    def result(self, seq):
+        return self.client.ask("result.get", seq=seq, format="complete")["result"]
 
     def condition(self):
         """What an attack that was refused has not changed."""

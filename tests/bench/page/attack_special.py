@@ -73,9 +73,9 @@ def a_log_line(site):
     forged = "[2026-01-01 00:00:00.000] [critical] FORGED"
     line = f"x\n{forged}"
     operator = Http(site.port, site.rig.tokens["operate"])
-    asked = (("job.start", {"seq": 901, "part_id": line, "recipe": "part"}), ("job.start", {"seq": 901, "part_id": "p", "recipe": line}),
-             ("job.start", {"seq": 901, "part_id": "p", "recipe": "part", "client": line}), ("control.acquire", {"owner": line}),
-             (line, {}), ("job.start", {"seq": 901, "part_id": "p", "recipe": "part", "session": line, "client": line}))
+    start = {"seq": 901, "part_id": "p", "recipe": "part"}
+    asked = (*(("job.start", start | {key: line}) for key in ("part_id", "recipe", "client")),
+             ("control.acquire", {"owner": line}), (line, {}))
     taken = []
     for method, params in asked:
         try:
@@ -95,14 +95,16 @@ def a_smuggled_request(site):
     call = json.dumps({"jsonrpc": "2.0", "id": 7, "method": "stage.stop", "params": {}}).encode()
     host = f"Host: 127.0.0.1:{site.port}"
     token = f"Authorization: Bearer {site.rig.tokens['operate']}"
-    hidden = f"POST /api/jsonrpc HTTP/1.1\r\n{host}\r\n{token}\r\n{JSON_TYPE}\r\nContent-Length: {len(call)}\r\n\r\n".encode() + call
-    to_end = {"to_end": True, "within_s": 5}
-    replies = [
-        site.raw("POST", "/api/jsonrpc", JSON_TYPE, "Content-Length: 2", f"Content-Length: {2 + len(hidden)}", body=b"{}" + hidden, **to_end),
-        site.raw("POST", "/api/jsonrpc", JSON_TYPE, "Content-Length: 2", "Transfer-Encoding: chunked", body=b"0\r\n\r\n" + hidden,
-                 **to_end),
-        site.raw("POST", "/api/jsonrpc", JSON_TYPE, "Transfer-Encoding: xchunked", body=b"0\r\n\r\n" + hidden, **to_end),
-        site.raw("GET", "/nothing", f"Content-Length: {len(hidden)}", body=hidden, **to_end),
-    ]
+    lines = ("POST /api/jsonrpc HTTP/1.1", host, token, JSON_TYPE, f"Content-Length: {len(call)}", "", "")
+    hidden = "\r\n".join(lines).encode() + call
+    last_piece = b"0\r\n\r\n"
+    ways = (
+        ("POST", "/api/jsonrpc", ("Content-Length: 2", f"Content-Length: {2 + len(hidden)}"), b"{}"),
+        ("POST", "/api/jsonrpc", ("Content-Length: 2", "Transfer-Encoding: chunked"), last_piece),
+        ("POST", "/api/jsonrpc", ("Transfer-Encoding: xchunked",), last_piece),
+        ("GET", "/nothing", (f"Content-Length: {len(hidden)}",), b""),
+    )
+    replies = [site.raw(method, path, JSON_TYPE, *fields, body=begin + hidden, to_end=True, within_s=5)
+               for method, path, fields, begin in ways]
     executed = [reply for reply in replies if b'"id":7' in reply.data.replace(b" ", b"")]
     return say(f"{replies}", not executed and all(reply.status in (None, 400, 404, 501) for reply in replies))

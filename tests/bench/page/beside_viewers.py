@@ -20,8 +20,10 @@ WARM_UP = 3
 PART = {
     "format": 2,
     "description": "The whole of the simulated sensor",
-    "acquire": {"scan": {"start_um": -7, "step_um": 5, "slices": 41}, "camera": {"pixel_format": "Mono8", "exposure_us": 1000}},
-    "reconstruct": {"focus": {"window_px": 9, "min_prominence": 0.5}, "lateral": {"pixel_pitch_x_um": 1.0, "pixel_pitch_y_um": 1.0}},
+    "acquire": {"scan": {"start_um": -7, "step_um": 5, "slices": 41},
+                "camera": {"pixel_format": "Mono8", "exposure_us": 1000}},
+    "reconstruct": {"focus": {"window_px": 9, "min_prominence": 0.5},
+                    "lateral": {"pixel_pitch_x_um": 1.0, "pixel_pitch_y_um": 1.0}},
 }
 
 

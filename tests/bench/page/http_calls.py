@@ -66,8 +66,10 @@ class Reply:
 
 def is_whole(data):
     head, end, body = data.partition(b"\r\n\r\n")
+    if not end or head.startswith((b"HTTP/1.1 204", b"HTTP/1.1 304")):
+        return bool(end)
     lengths = [line.split(b":")[1] for line in head.split(b"\r\n") if line.lower().startswith(b"content-length:")]
-    return bool(end) and (bool(lengths) and len(body) >= int(lengths[0]) or head.startswith((b"HTTP/1.1 204", b"HTTP/1.1 304")))
+    return bool(lengths) and len(body) >= int(lengths[0])
 
 
 def send_raw(port, data, within_s=30.0, pieces_s=None, to_end=False):

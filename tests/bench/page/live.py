@@ -25,10 +25,11 @@ PER_S = 10  # slices; as many pictures as there may be at most
 PART = {
     "format": 2,
     "description": "Ten slices a second of the whole sensor",
-    "acquire": {"scan": {"mode": "continuous", "start_um": -100, "step_um": 2, "slices": SECONDS * PER_S, "speed_um_per_s": 2 * PER_S,
-                         "allowed_lost_slices": SECONDS * PER_S - 10},
+    "acquire": {"scan": {"mode": "continuous", "start_um": -100, "step_um": 2, "slices": SECONDS * PER_S,
+                         "speed_um_per_s": 2 * PER_S, "allowed_lost_slices": SECONDS * PER_S - 10},
                 "camera": {"pixel_format": "Mono8", "exposure_us": 2000}},
-    "reconstruct": {"focus": {"window_px": 9, "distance_px": 1}, "lateral": {"pixel_pitch_x_um": 1.0, "pixel_pitch_y_um": 1.0}},
+    "reconstruct": {"focus": {"window_px": 9, "distance_px": 1},
+                    "lateral": {"pixel_pitch_x_um": 1.0, "pixel_pitch_y_um": 1.0}},
 }
 
 
@@ -50,7 +51,8 @@ class Scans:
         ask("job.start", seq=self.seq, part_id="part", recipe="part")
         wait_for(lambda: ask("job.status", seq=self.seq)["slices_done"] > 0, what="the first slice")
         begun, used_s = time.monotonic(), processor_s(self.rig.daemon.pid)
-        wait_for(lambda: ask("job.wait", seq=self.seq, until="acquired")["acquired"] or ask("job.status", seq=self.seq)["done"],
+        # One that fails never says that the part is free.
+        wait_for(lambda: any(ask("job.wait", seq=self.seq, until="acquired")[key] for key in ("acquired", "done")),
                  what="the scan's end")
         passed_s = time.monotonic() - begun
         used = (processor_s(self.rig.daemon.pid) - used_s) / passed_s
@@ -86,9 +88,10 @@ def main():
                 widest = max(widest, told["widest_px"])
                 print(f"live: {alone:.3f} of a core alone, {one:.3f} with one viewer, {five:.3f} with five; "
                       f"{slices_per_s:.1f} slices/s; {told}", flush=True)
-    print(json.dumps({"preview_fps": round(statistics.median(fps), 1), "preview_source_fps": round(statistics.median(source), 1),
-                      "preview_width_px": widest, "preview_core_percent": round(100 * statistics.median(cost_5), 1),
-                      "preview_core_percent_of_1": round(100 * statistics.median(cost_1), 1)}))
+    of_5, of_1 = (round(100 * statistics.median(cost), 1) for cost in (cost_5, cost_1))
+    print(json.dumps({"preview_fps": round(statistics.median(fps), 1),
+                      "preview_source_fps": round(statistics.median(source), 1), "preview_width_px": widest,
+                      "preview_core_percent": of_5, "preview_core_percent_of_1": of_1}))
 
 
 main()

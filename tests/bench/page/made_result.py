@@ -93,16 +93,22 @@ def files_of(rows, width):
             "mask.png": png_of(masks, width, 16), "texture.png": png_of(textures, width, 8)}
 
 
+def digest_of(data):
+    return hashlib.sha256(data).hexdigest()
+
+
 def record_of(text, rows, width, files, **job):
     """result.json of the other job with what is different."""
     result = json.loads(text)
     valid = sum(each_once(rows, lambda row: sum(not math.isnan(z) for z in row)))
     points = width * len(rows)
     result["job"].update(job)
-    result["focus"].update(width_px=width, height_px=len(rows), pixel_pitch_x_um=PITCH_UM[0], pixel_pitch_y_um=PITCH_UM[1])
-    result["values"].update(points=points, valid_points=valid, valid_fraction=round(valid / points, 6))
-    result["values"]["hole_points"] = {name: 0 for name in result["values"]["hole_points"]} | {"low_prominence": points - valid}
-    result["files"] = [{"name": name, "state": "written", "size_bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+    result["focus"].update(width_px=width, height_px=len(rows))
+    result["focus"].update(pixel_pitch_x_um=PITCH_UM[0], pixel_pitch_y_um=PITCH_UM[1])
+    values = result["values"]
+    values.update(points=points, valid_points=valid, valid_fraction=round(valid / points, 6))
+    values["hole_points"] = dict.fromkeys(values["hole_points"], 0) | {"low_prominence": points - valid}
+    result["files"] = [{"name": name, "state": "written", "size_bytes": len(data), "sha256": digest_of(data)}
                        for name, data in files.items()]
     return json.dumps(result, indent=2) + "\n"
 

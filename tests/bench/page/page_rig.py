@@ -29,8 +29,9 @@ class PageRig(Rig):
         if made.returncode != 0:
             sys.exit(f"fvdctl token new: {made.stderr}")
         token, line = made.stdout.split("\n")[:2]
-        with open(os.open(self.folder / "tokens", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "w", encoding="ascii") as file:
-            file.write(line + "\n")
+        file = os.open(self.folder / "tokens", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        with open(file, "w", encoding="ascii") as tokens:
+            tokens.write(line + "\n")
         return token
 
     def log(self):

@@ -112,7 +112,8 @@ def main():
         missed, disordered = compare([event.id for event in reference.seen if event.id], reader.ids)
     print(f"reconnects: {resumed} of {cuts} went on, {len(reader.ids)} events read, {len(reference.seen)} told")
     key = "reconnects_of_50" if cuts == 50 else f"reconnects_of_{cuts}"
-    print(json.dumps({key: resumed, "events_missed": missed, "events_disordered": disordered, "events_told": len(reference.seen)}))
+    print(json.dumps({key: resumed, "events_missed": missed, "events_disordered": disordered,
+                      "events_told": len(reference.seen)}))
 
 
 main()

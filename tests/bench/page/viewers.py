@@ -11,7 +11,8 @@ class Viewers:
 
     def __init__(self, port, readers, never=0):
         words = [sys.executable, pathlib.Path(__file__).with_name("viewer_load.py"), port, readers, never]
-        self.program = subprocess.Popen([str(word) for word in words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.program = subprocess.Popen([str(word) for word in words], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        text=True)
         self.told = None
         if self.program.stdout.readline() != "there\n":
             self.program.wait()
