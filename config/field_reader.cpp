@@ -323,6 +323,16 @@ void FieldReader::optional_field(std::string_view name, bool& present, const std
   if (problems_.size() == problems_before) present = true;
 }
 
+void FieldReader::nullable_field(std::string_view name, bool& is_null, const std::function<void(Fields&)>& member) {
+  const json* found = find(name);
+  if (found == nullptr) return;
+  is_null = found->is_null();
+  if (is_null) return;
+  const std::size_t problems_before = problems_.size();
+  member(*this);
+  if (problems_.size() > problems_before && !found->is_structured()) problems_.back().message += ", or null";
+}
+
 void FieldReader::relate(std::string_view name, double value, Relation relation, std::string_view other,
                          double other_value, double offset) {
   if (!object_.is_object() || refused_.contains(name) || refused_.contains(other)) return;

@@ -42,6 +42,7 @@ class FieldReader final : public Fields {
   void word_or(std::string_view name, std::string& word, const std::vector<std::string>& words,
                const std::function<void(Fields&)>& member) override;
   void optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) override;
+  void nullable_field(std::string_view name, bool& is_null, const std::function<void(Fields&)>& member) override;
   void relate(std::string_view name, double value, Relation relation, std::string_view other, double other_value,
               double offset) override;
   void require(std::string_view name) override;

@@ -164,6 +164,10 @@ class SchemaWriter final : public Fields {
     if (present) return;
     for (ShapeSchema& shape : shapes) shape.properties[std::string(name)].erase("default");
   }
+  void nullable_field(std::string_view name, bool& is_null, const std::function<void(Fields&)>& member) override {
+    member(*this);
+    for (ShapeSchema& shape : shapes) accept_null(shape.properties[std::string(name)], is_null);
+  }
   /// Draft 7 cannot compare two values: the schema says it in words.
   void relate(std::string_view name, double, Relation relation, std::string_view other, double,
               double offset) override {
@@ -180,6 +184,21 @@ class SchemaWriter final : public Fields {
   }
 
  private:
+  static void accept_null(ordered_json& schema, bool is_default) {
+    if (schema.contains("enum")) {
+      schema["enum"].push_back(nullptr);
+    } else if (schema.contains("type")) {
+      schema["type"] = ordered_json::array({schema["type"], "null"});
+    } else if (schema.contains("anyOf")) {
+      schema["anyOf"].push_back({{"type", "null"}});
+    } else if (schema.contains("allOf") || schema.contains("oneOf")) {
+      const ordered_json meaning = schema["description"];
+      schema.erase("description");
+      const ordered_json null{{"type", "null"}};
+      schema = {{"anyOf", ordered_json::array({schema, null})}, {"description", meaning}};
+    }  // anything else accepts null already
+    if (is_default) schema["default"] = nullptr;
+  }
   /// By reference to its definition where the type has a name. The definition is begun before it is described, so that
   /// an element which contains its own type ends there.
   ordered_json schema_of(const std::string& type, const std::function<void(Fields&)>& members) {

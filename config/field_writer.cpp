@@ -74,6 +74,13 @@ class ValueWriter final : public Fields {
   void optional_field(std::string_view, bool& present, const std::function<void(Fields&)>& member) override {
     if (present) member(*this);
   }
+  void nullable_field(std::string_view name, bool& is_null, const std::function<void(Fields&)>& member) override {
+    if (is_null) {
+      put(name, nullptr);
+    } else {
+      member(*this);
+    }
+  }
   void relate(std::string_view, double, Relation, std::string_view, double, double) override {}
   void require(std::string_view) override {}
 

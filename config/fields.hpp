@@ -119,6 +119,8 @@ class Fields {
   /// A field that may have no value: member describes the field `name`, present says whether the field has a value.
   /// optional() is the typed form.
   virtual void optional_field(std::string_view name, bool& present, const std::function<void(Fields&)>& member) = 0;
+  /// A field whose value is null, or what member describes under the same name. is_null: which of them.
+  virtual void nullable_field(std::string_view name, bool& is_null, const std::function<void(Fields&)>& member) = 0;
   /// Refuses a value of `name` that does not stand in this relation to `other` + offset. Both are fields of this
   /// object, described before; their values are given as read, in the unit of their keys.
   virtual void relate(std::string_view name, double value, Relation relation, std::string_view other,

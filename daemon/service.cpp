@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@
 #include "daemon/base/version.hpp"
 #include "daemon/config_reload.hpp"
 #include "daemon/devices/left_threads.hpp"
+#include "daemon/jobs/alarm_sink.hpp"
 #include "daemon/port_probe.hpp"
 
 namespace fvd {
@@ -97,7 +99,7 @@ void reload(const Options& options, Config& config, App& app, const std::string&
   }
   if (plan.changes.empty()) spdlog::info("the configuration was read again: nothing differs");
   config = wanted.config;
-  spdlog::set_level(spdlog::level::from_str(config.log.level));
+  set_log_level(spdlog::level::from_str(config.log.level));
   // Before it removes anything.
   app.engine().note_configuration(config, "SIGHUP: " + (changes.empty() ? "nothing differs" : changes));
   app.engine().take(config.store);
@@ -119,8 +121,9 @@ int await_end(const Options& options, Config& config, App& app, const ServiceSig
 }  // namespace
 
 int serve(const Options& options, Config config) {
-  set_up_service_log();
-  spdlog::set_level(spdlog::level::from_str(config.log.level));
+  const auto alarms = std::make_shared<AlarmLog>();
+  set_up_service_log(alarm_sink(alarms));
+  set_log_level(spdlog::level::from_str(config.log.level));
   spdlog::info("fvd {} starts", kVersion);
   const ServiceSignals signals;
   static std::atomic<bool> thread_failed = false;
@@ -130,7 +133,7 @@ int serve(const Options& options, Config config) {
     ::kill(::getpid(), SIGTERM);
   });
   if (!await_ports(config, signals)) return exit_code::kOk;
-  App app(config, options.new_database);
+  App app(config, options.new_database, alarms);
   spdlog::info("listening on {}:{}", config.rpc.address, app.rpc_port());
   if (const auto port = app.http_port()) spdlog::info("HTTP on {}:{}", config.http.address, *port);
   if (const auto port = app.metrics_port()) spdlog::info("metrics on {}:{}", config.metrics.address, *port);

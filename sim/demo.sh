@@ -6,6 +6,7 @@
 # --json     the last line printed is one JSON object with the figures
 # --world    a file of sim/worlds without .json, or a path; likewise --plant of sim/plants
 set -euo pipefail
+export FVD_WEB=${FVD_WEB:-AUTO}  # without npm, or without a network for it, there is a demo without the page
 source "$(dirname "${BASH_SOURCE[0]}")/../tests/support/setup.sh"
 
 usage() { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }

@@ -79,6 +79,7 @@ struct StageStatus {
   int alarm_code = 0;
   std::string alarm_text;
   Micrometers position;  ///< measured
+  HostTime sampled{};    ///< when; of an axis that is sampled all the time
   std::vector<StageTemperature> temperatures;
 };
 

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "daemon/access/access_error.hpp"
 #include "daemon/access/token_file.hpp"
 
 namespace fvd {
@@ -70,7 +71,11 @@ Identity AccessRules::of_local_peer(const LocalPeer& peer) const {
 
 std::optional<Identity> AccessRules::of_token(std::string_view token) const {
   if (token_file_.empty()) return std::nullopt;
-  return holder_of(token, read_credentials(token_file_));
+  try {
+    return holder_of(token, read_credentials(token_file_));
+  } catch (const Error& error) {
+    throw TokensUnreadable(error.what());
+  }
 }
 
 }  // namespace fvd

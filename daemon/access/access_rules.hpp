@@ -33,8 +33,8 @@ class AccessRules {
   /// root and the daemon's own user administer; of several groups the highest role.
   [[nodiscard]] Identity of_local_peer(const LocalPeer& peer) const;
 
-  /// Nothing for a token that the file has not. Reads the file: what was taken out of it holds no longer. Throws Error
-  /// kBadConfig.
+  /// Nothing for a token that the file has not. Reads the file: what was taken out of it holds no longer. Throws
+  /// TokensUnreadable.
   [[nodiscard]] std::optional<Identity> of_token(std::string_view token) const;
   [[nodiscard]] bool has_tokens() const noexcept { return !token_file_.empty(); }
 

@@ -54,7 +54,8 @@ Credential credential_from(const std::string& line, const std::string& place) {
   if (credential.hash.empty() || words >> more) refuse("expected 'name role hash', as fvdctl token new prints it");
   if (!is_name(credential.name)) refuse("the name must be 1 to 32 letters, digits, '.', '_' and '-'");
   const auto known = role_from_name(role);
-  if (!known) refuse("'" + role.substr(0, kLongestName) + "' is no role; expected view, operate, set_up or administer");
+  // The word itself may be a token that stands in the wrong place.
+  if (!known) refuse("the second word is no role; expected view, operate, set_up or administer");
   credential.role = known.value_or(Role::kNone);
   if (credential.hash.size() != kHashDigits || credential.hash.find_first_not_of(kHexDigits) != std::string::npos) {
     refuse("the hash must be 64 digits 0..9, a..f; a token itself does not belong here");

@@ -2,7 +2,9 @@
 
 /// Who calls a method.
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -18,6 +20,8 @@ struct Caller {
   std::string name = kDefaultClient;  ///< the client's, as its request gives it
   Identity who{};                     ///< as the transport recognised him
   HostTime received{};                ///< when the request came
+  /// That its connection takes; a longer one becomes an error.
+  std::size_t longest_reply_bytes = std::numeric_limits<std::size_t>::max();
 };
 
 /// "plc (connection 3, 192.168.0.7:40312, address 192.168.0.7, operate)", for the log.

@@ -9,6 +9,7 @@
 #include "daemon/api/access.hpp"
 #include "daemon/api/json_shapes.hpp"
 #include "daemon/api/replies.hpp"
+#include "daemon/api/reply_size.hpp"
 #include "daemon/api/rpc_errors.hpp"
 #include "daemon/base/log_scope.hpp"
 
@@ -110,25 +111,27 @@ std::optional<Handled> Dispatcher::handle_line(std::string_view line, const Call
                                         : handle_request(*document, caller, {may_block, false});
   if (answer.would_block) return std::nullopt;
   Handled handled;
-  if (answer.reply) handled.reply = reply_line(*answer.reply);
+  if (answer.reply) handled.reply = line_within(std::move(*answer.reply), caller.longest_reply_bytes);
   handled.waiting = std::move(answer.waiting);
   handled.log_in = std::move(answer.log_in);
   handled.is_accepted = answer.is_accepted;
   return handled;
 }
 
-std::optional<Handled> Dispatcher::try_overtake(std::string_view line, const Caller& caller, Behind behind) const {
+const Method* Dispatcher::overtaker(std::string_view line) const {
   const Method* method = method_of(line);
-  if (method == nullptr || !method->peek) return std::nullopt;
-  if (behind == Behind::kWork && !method->about.is_urgent) return std::nullopt;
-  // Who may not yet may log in with a line before it: then it keeps its turn.
-  if (!may_call(caller, method->about)) return std::nullopt;
-  return handle_line(line, caller, false);
+  return method != nullptr && method->peek ? method : nullptr;
 }
 
-bool Dispatcher::is_urgent(std::string_view line) const {
-  const Method* method = method_of(line);
-  return method != nullptr && method->about.is_urgent;
+bool Dispatcher::may_overtake(const Method& method, const Caller& caller, Behind behind) {
+  if (behind == Behind::kWork && !method.about.is_urgent) return false;
+  // Who may not yet may log in with a line before it: then it keeps its turn.
+  return may_call(caller, method.about);
+}
+
+std::string Dispatcher::job_on_board() const {
+  const auto snapshot = services_.machine.snapshot();
+  return snapshot->job ? snapshot->job->job_id : std::string();
 }
 
 bool Dispatcher::is_log_in(std::string_view line) const {
@@ -136,12 +139,27 @@ bool Dispatcher::is_log_in(std::string_view line) const {
   return method != nullptr && method->about.is_log_in;
 }
 
+bool Dispatcher::is_long(std::string_view line) const {
+  Problems ignored;  // told when the line is handled
+  const auto document = parse_strict_json(line, ignored, JsonComments::kRefused);
+  if (!document) return false;
+  const auto is_one = [this](const json& request) {
+    const Method* method = method_in(request);
+    return method != nullptr && method->about.is_long;
+  };
+  return document->is_array() ? std::any_of(document->begin(), document->end(), is_one) : is_one(*document);
+}
+
 const Method* Dispatcher::method_of(std::string_view line) const {
   Problems ignored;  // told when its turn comes
   const auto document = parse_strict_json(line, ignored, JsonComments::kRefused);
-  if (!document || !document->is_object()) return nullptr;
-  const auto name = document->find("method");
-  if (name == document->end() || !name->is_string()) return nullptr;
+  return document ? method_in(*document) : nullptr;
+}
+
+const Method* Dispatcher::method_in(const json& request) const {
+  if (!request.is_object()) return nullptr;
+  const auto name = request.find("method");
+  if (name == request.end() || !name->is_string()) return nullptr;
   const auto method = methods_.find(name->get<std::string>());
   return method == methods_.end() ? nullptr : &method->second;
 }
@@ -269,8 +287,11 @@ std::optional<Answer> Dispatcher::answer_of(const Method& method, const Call& ca
     throw;
   } catch (const Error& error) {
     if (about.needs_id) {
-      warn_of(call.caller, call.method + " was refused to " + text_of(call.caller) + ": " +
-                               std::string(error_name(error.code())) + ": " + error.what());
+      const auto* const tokens = dynamic_cast<const TokensUnreadable*>(&error);
+      warn_of(call.caller,
+              call.method + " was refused to " + text_of(call.caller) + ": " + std::string(error_name(error.code())) +
+                  ": " + error.what(),
+              tokens != nullptr ? tokens->reason() : std::string());
     }
     note(method, call, error_name(error.code()));
     throw;
@@ -317,11 +338,6 @@ void Dispatcher::note_refusal(const Method& method, const Call& call, const Acce
   if (call.caller.who.role > Role::kNone) note(method, call, error_name(error.code()));
 }
 
-void Dispatcher::warn_of(const Caller& caller, const std::string& text) const {
-  if (caller.who.role == Role::kNone) return refused_calls_.tell(caller.who.name, text);
-  spdlog::warn("{}", text);
-}
-
 bool Dispatcher::may_have_come(const WaitingRequest& waiting) const {
   if (const auto* task = std::get_if<std::shared_ptr<DeviceTask>>(&waiting.until.awaited)) {
     return (*task)->outcome().has_value();
@@ -365,40 +381,6 @@ std::string Dispatcher::ended(const WaitingRequest& waiting) const {
                                          : "the daemon stops, and the command with it; ask for system.state when it is "
                                            "back, and then for the command again if it is still to be done",
                                   scan_state_name(services_.machine.snapshot()->state)));
-}
-
-std::string Dispatcher::too_long() {
-  return reply_line(
-      failure_reply(nullptr, json_rpc::kInvalidRequest,
-                    "the line is longer than " + std::to_string(kMaxLineBytes) + " bytes; the connection is closed"));
-}
-
-std::string Dispatcher::foreign_protocol() {
-  return reply_line(
-      failure_reply(nullptr, json_rpc::kInvalidRequest,
-                    "this port takes JSON-RPC, one JSON text a line, no HTTP and no TLS; the connection is closed"));
-}
-
-std::string Dispatcher::mistaken(std::string_view mistake) {
-  return reply_line(failure_reply(nullptr, json_rpc::kParseError, std::string(mistake) + "; the connection is closed"));
-}
-
-std::string Dispatcher::no_json() {
-  return reply_line(failure_reply(nullptr, json_rpc::kParseError,
-                                  "parse error: too many lines in a row are no JSON; the connection is closed"));
-}
-
-std::string Dispatcher::not_allowed_here() {
-  return reply_line(
-      failure_reply(nullptr, AccessCode::kNotAllowed,
-                    "from here nobody may do anything: see rpc.allow and rpc.groups in the configuration; "
-                    "the connection is closed"));
-}
-
-std::string Dispatcher::too_many_connections() {
-  return reply_line(failure_reply(nullptr, rpc_error(ErrorCode::kBusy).code,
-                                  "too many connections; the connection is closed",
-                                  {{"error", "too_many_connections"}, {"retry", true}}));
 }
 
 }  // namespace fvd

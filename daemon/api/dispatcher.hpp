@@ -12,7 +12,6 @@
 
 #include "daemon/access/access_error.hpp"
 #include "daemon/api/method.hpp"
-#include "daemon/api/refused_calls.hpp"
 #include "daemon/jobs/services.hpp"
 
 namespace fvd {
@@ -32,7 +31,7 @@ struct Handled {
   bool is_accepted = false;                 ///< it asked for something that exists and that the caller may
 };
 
-/// context: thread-safe; keeps no state between calls but the number of refused ones.
+/// context: thread-safe; keeps no state between calls.
 class Dispatcher {
  public:
   static constexpr std::size_t kMaxLineBytes = 65536;
@@ -49,14 +48,20 @@ class Dispatcher {
 
   /// What a line stands behind on its connection.
   enum class Behind { kWork, kWait };
-  /// The same for a line with a single request that may overtake what is open: an urgent one always, any that
-  /// try_handle() answers while the open one waits for a job or the devices.
-  [[nodiscard]] std::optional<Handled> try_overtake(std::string_view line, const Caller& caller, Behind behind) const;
+  /// The method of a line with a single request that may overtake others where try_handle() answers it; null for any
+  /// other line. Valid as long as the dispatcher.
+  [[nodiscard]] const Method* overtaker(std::string_view line) const;
+  /// Whether such a request of that caller may overtake what is open: an urgent one always, any while the open one
+  /// waits for a job or the devices. Costs nothing.
+  [[nodiscard]] static bool may_overtake(const Method& method, const Caller& caller, Behind behind);
+  /// The running or the latest job: an urgent request that try_handle() could not answer waits for another one.
+  [[nodiscard]] std::string job_on_board() const;
 
-  /// True for a line with a single request that nothing may hold back: a stop.
-  [[nodiscard]] bool is_urgent(std::string_view line) const;
   /// True for a line with a single request that only says who the caller is: nobody waits behind slow calls for that.
   [[nodiscard]] bool is_log_in(std::string_view line) const;
+  /// True for a line with a request, or a batch with one, that reads much for people: nobody waits behind it for what a
+  /// line needs.
+  [[nodiscard]] bool is_long(std::string_view line) const;
 
   /// Every method with its description.
   [[nodiscard]] const MethodTable& methods() const noexcept { return methods_; }
@@ -102,6 +107,8 @@ class Dispatcher {
 
   /// Of a line with a single request; null for any other.
   [[nodiscard]] const Method* method_of(std::string_view line) const;
+  /// Null for what names none.
+  [[nodiscard]] const Method* method_in(const Json& request) const;
   [[nodiscard]] std::optional<Handled> handle_line(std::string_view line, const Caller& caller, bool may_block) const;
   [[nodiscard]] Outcome handle_request(const Json& request, const Caller& caller, Mode mode) const;
   [[nodiscard]] Outcome handle_batch(const Json& batch, const Caller& caller, bool may_block) const;
@@ -116,12 +123,13 @@ class Dispatcher {
   [[nodiscard]] static AuditEntry audit_entry(const Call& call, std::string_view outcome);
   /// The same for who may not; of callers without a role none is written down.
   void note_refusal(const Method& method, const Call& call, const AccessError& error) const;
-  /// Warns of a refusal; of callers without a role few are told.
-  void warn_of(const Caller& caller, const std::string& text) const;
+  /// Warns of a refusal, as RefusedCalls lets it.
+  void warn_of(const Caller& caller, const std::string& text, const std::string& details = {}) const {
+    services_.refusals.tell(caller.who.name, text, details);
+  }
 
   Services services_;
   const MethodTable methods_;
-  mutable RefusedCalls refused_calls_;
 };
 
 }  // namespace fvd

@@ -28,6 +28,7 @@ struct MethodDescription {
   /// Overtakes what the same connection asked for before, if peek answers it: nothing holds a stop back.
   bool is_urgent = false;
   bool is_log_in = false;   ///< says who the caller is: waits for no other call
+  bool is_long = false;     ///< reads much for people: no call that a line waits for waits for it
   bool is_audited = false;  ///< who asked for it is written down
   /// Every reply has a form of at most kCompactReply_bytes, and every error reply has: a PLC polls it.
   bool is_brief = false;

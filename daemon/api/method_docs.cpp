@@ -48,9 +48,8 @@ void add_unit(const std::string& name, ordered_json& property) {
 }
 
 /// A result has no defaults, and a range only where it is one that a client can use.
-ordered_json result_schema(const DescribeFields& describe) {
+void make_result_schema(ordered_json& schema) {
   constexpr double kNoRange = 9.1e15;
-  ordered_json schema = schema_of(describe);
   for (auto& [name, property] : schema["properties"].items()) {
     property.erase("default");
     for (const char* key : {"minimum", "maximum"}) {
@@ -58,7 +57,13 @@ ordered_json result_schema(const DescribeFields& describe) {
     }
     if (property.value("maxLength", std::size_t{0}) == kUnlimited_bytes) property.erase("maxLength");
     add_unit(name, property);
+    if (property.contains("items") && property["items"].contains("properties")) make_result_schema(property["items"]);
   }
+}
+
+ordered_json result_schema(const DescribeFields& describe) {
+  ordered_json schema = schema_of(describe);
+  make_result_schema(schema);
   return schema;
 }
 

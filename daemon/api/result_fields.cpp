@@ -63,6 +63,32 @@ void ResultFields::boolean(std::string_view name, std::string_view meaning, Pres
   });
 }
 
+void ResultFields::number_or_null(std::string_view name, std::string_view meaning, Presence presence) const {
+  add(name, presence, [&](Fields& fields) {
+    bool is_null = false;
+    double none = 0.0;
+    fields.nullable_field(name, is_null, [&](Fields& value) { value.number(name, none, kAnyNumber, meaning); });
+  });
+}
+
+void ResultFields::choice_or_null(std::string_view name, const std::vector<std::string>& accepted,
+                                  std::string_view meaning, Presence presence) const {
+  add(name, presence, [&](Fields& fields) {
+    bool is_null = false;
+    std::string none = accepted.front();
+    fields.nullable_field(name, is_null, [&](Fields& value) { value.choice(name, none, accepted, meaning); });
+  });
+}
+
+void ResultFields::list(std::string_view name, std::int64_t most,
+                        const std::function<void(const ResultFields&)>& element, std::string_view meaning,
+                        Presence presence) const {
+  add(name, presence, [&](Fields& fields) {
+    const ObjectList none{0, {}, [&element](Fields& described) { element(ResultFields(described)); }};
+    static_cast<void>(fields.object_list(name, none, {0, most}, meaning));
+  });
+}
+
 void ResultFields::any(std::string_view name, std::string_view meaning, Presence presence) const {
   add(name, presence, [&](Fields& fields) {
     std::string none;

@@ -3,6 +3,8 @@
 /// Describes results: names, types, ranges and meanings, without the values.
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -44,6 +46,13 @@ class ResultFields {
   void number(std::string_view name, NumberRange range, std::string_view meaning,
               Presence presence = Presence::kAlways) const;
   void boolean(std::string_view name, std::string_view meaning, Presence presence = Presence::kAlways) const;
+  /// null where there is none; the meaning says why.
+  void number_or_null(std::string_view name, std::string_view meaning, Presence presence = Presence::kAlways) const;
+  void choice_or_null(std::string_view name, const std::vector<std::string>& accepted, std::string_view meaning,
+                      Presence presence = Presence::kAlways) const;
+  /// A list of at most so many objects, each described by `element`.
+  void list(std::string_view name, std::int64_t most, const std::function<void(const ResultFields&)>& element,
+            std::string_view meaning, Presence presence = Presence::kAlways) const;
   /// A list, an object, or a value of several types: the meaning says which.
   void any(std::string_view name, std::string_view meaning, Presence presence = Presence::kAlways) const;
 
@@ -57,6 +66,7 @@ class ResultFields {
 /// What several results say alike.
 inline const std::vector<std::string> kJobStates{"processing", "completed", "aborted", "failed"};
 inline const std::vector<std::string> kEvaluations{"ok", "nok", "uncertain", "invalid", "undefined"};
+inline const std::vector<std::string> kVerdicts{"pass", "fail", "uncertain", "invalid"};
 /// The key that counts what did not fit.
 void describe_left_out(const ResultFields& result);
 

@@ -168,10 +168,14 @@ void put_back_folder_where_missing(const fs::path& from, const fs::path& to, std
     return;
   }
   (void)make_directories(hidden);
-  for (const auto& entry : fs::directory_iterator(from)) {
-    const fs::path name = entry.path().filename();
-    if (name.string().starts_with('.') || fs::exists(to / name)) continue;
-    copy_whole(entry.path(), hidden / name, to / name);
+  for (fs::directory_iterator entry(from, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path name = entry->path().filename();
+    std::error_code ignored;
+    if (name.string().starts_with('.') || fs::exists(to / name, ignored)) continue;
+    copy_whole(entry->path(), hidden / name, to / name);
+  }
+  if (error) {
+    throw Error(ErrorCode::kBadInput, "cannot list " + from.string() + " of the backup: " + error.message());
   }
   sync_directory(to);
   file_calls().remove_all(hidden);
@@ -274,6 +278,11 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   if (std::error_code error; fs::exists(aside, error)) restored.replaced = aside;
   restored.dropped = drop_oldest_replaced(state);
   return restored;
+}
+
+bool is_half_restored(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / kUnfinished, error);
 }
 
 }  // namespace fvd

@@ -28,4 +28,7 @@ struct Restored {
 /// where a daemon runs, kStorageFull, kStorageWrite.
 Restored restore_backup(const std::filesystem::path& folder, const InstrumentPaths& instrument);
 
+/// True of a folder that a restoration began to fill and did not finish.
+[[nodiscard]] bool is_half_restored(const std::filesystem::path& folder);
+
 }  // namespace fvd

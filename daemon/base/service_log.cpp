@@ -1,5 +1,6 @@
 #include "daemon/base/service_log.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
@@ -77,9 +78,16 @@ std::shared_ptr<spdlog::logger> journal_logger(JournalEntry deliver) {
   return std::make_shared<spdlog::logger>("fvd", std::make_shared<JournalSink>(std::move(deliver)));
 }
 
-void set_up_service_log() {
-  spdlog::set_default_logger(stderr_is_the_journal() ? journal_logger(send_to_journal)
-                                                     : spdlog::stderr_color_mt("fvd"));
+void set_up_service_log(spdlog::sink_ptr warnings) {
+  auto logger = stderr_is_the_journal() ? journal_logger(send_to_journal) : spdlog::stderr_color_mt("fvd");
+  if (warnings) logger->sinks().push_back(std::move(warnings));
+  spdlog::set_default_logger(std::move(logger));
+}
+
+void set_log_level(spdlog::level::level_enum level) {
+  const auto logger = spdlog::default_logger();
+  if (!logger->sinks().empty()) logger->sinks().front()->set_level(level);
+  logger->set_level(std::min(level, spdlog::level::warn));
 }
 
 }  // namespace fvd

@@ -19,7 +19,12 @@ using JournalEntry = std::function<bool(const std::vector<std::string>&)>;
 [[nodiscard]] std::shared_ptr<spdlog::logger> journal_logger(JournalEntry deliver);
 
 /// The journal's logger if standard error is connected to the journal (JOURNAL_STREAM), else one to standard error in
-/// colours. context: once, before any thread starts.
-void set_up_service_log();
+/// colours. warnings: gets lines of level warning and above beside it; null = nothing does. context: once, before any
+/// thread starts.
+void set_up_service_log(spdlog::sink_ptr warnings = nullptr);
+
+/// The least severe level that goes to the journal or the terminal. What gets warnings beside it gets them whatever the
+/// level is. context: any thread.
+void set_log_level(spdlog::level::level_enum level);
 
 }  // namespace fvd

@@ -65,7 +65,8 @@ void describe(RpcConfig& rpc, Fields& fields) {
 void describe(HttpConfig& http, Fields& fields) {
   fields.text("address", http.address, kMaxName, "numeric IPv4 or IPv6 address to listen on");
   fields.optional("port", http.port, [](Fields& in, int& port) {
-    in.integer("port", port, {0, 65535}, "TCP port of POST /api/jsonrpc; 0 = any free one; absent = none");
+    in.integer("port", port, {0, 65535},
+               "TCP port of the operator page and of POST /api/jsonrpc; 0 = any free one; absent = none");
   });
   fields.list(
       "hosts", http.hosts, {0, 20},

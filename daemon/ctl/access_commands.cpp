@@ -45,9 +45,8 @@ constexpr int kStageLost = 1111;  ///< nobody but the drive itself can tell any 
 bool await_standstill(RpcClient& client) {
   const auto deadline = std::chrono::steady_clock::now() + kStandstillTime;
   do {
-    const Json state = client.call("system.state");
-    if (state.value("part_release", false)) return true;
-    if (state.value("error_code", 0) == kStageLost) return false;
+    if (client.call("system.health").value("stage", Json::object()).value("standstill", false)) return true;
+    if (client.call("system.state").value("error_code", 0) == kStageLost) return false;
     std::this_thread::sleep_for(kLookPeriod);
   } while (std::chrono::steady_clock::now() < deadline);
   return false;
@@ -125,8 +124,8 @@ void add_access_commands(CLI::App& app, AccessArguments& a, const std::function<
 
   sub = app.add_subcommand(
       "kiosk-url",
-      "print the address of a page of your own (fvd serves none) for a kiosk that may operate, and the "
-      "line of its new token for the credential file; asks no daemon");
+      "print the address of the operator page for a kiosk that may operate, with its token, and the line of that for "
+      "the credential file; asks no daemon");
   sub->add_option("page", a.page, "address of the page, e.g. http://microscope-3/")->required();
   sub->add_option("name", a.name, "of the kiosk")->required();
   sub->callback([&a, &chosen, terminal] { chosen = [&a, terminal] { return kiosk_url(a, terminal); }; });

@@ -27,7 +27,7 @@ InstrumentPaths paths_of(const fs::path& config, const fs::path& instead) {
   std::error_code error;
   const fs::path base = fs::absolute(config).parent_path();
   const fs::path parts = base / "conf.d";
-  const bool has_parts = fs::is_directory(parts, error) && !fs::is_empty(parts, error);
+  const bool has_parts = fs::is_directory(parts, error) && !fs::is_empty(parts, error) && !is_half_restored(parts);
   const fs::path& source = fs::exists(config, error) || instead.empty() ? config : instead / "fvd.json";
   if (!fs::exists(source, error)) {
     throw Error(ErrorCode::kBadConfig,

@@ -17,6 +17,7 @@
 #include "daemon/ctl/evaluation_text.hpp"
 #include "daemon/ctl/exit_codes.hpp"
 #include "daemon/ctl/export_command.hpp"
+#include "daemon/ctl/history_commands.hpp"
 #include "daemon/ctl/job_commands.hpp"
 #include "daemon/ctl/measure_command.hpp"
 #include "daemon/ctl/objective_commands.hpp"
@@ -40,6 +41,7 @@ constexpr std::chrono::seconds kCommandTimeout{330};  ///< the daemon gives a co
 struct Arguments {
   ConnectionArguments connection;
   AccessArguments access;
+  JobsArguments jobs;
   std::string job;
   std::string seq = "auto";
   std::string client = kClientName;
@@ -246,6 +248,9 @@ void add_command_groups(CLI::App& app, Arguments& a, const Terminal& terminal, C
   add_backup_commands(app, a.backup, terminal, chosen);
   add_objective_commands(
       app, a.objective, [&a] { return connect(a.connection); }, terminal, chosen);
+
+  add_history_commands(
+      app, a.jobs, [&a] { return connect(a.connection); }, terminal, chosen);
 
   add_access_commands(
       app, a.access, [&a] { return connect(a.connection); }, terminal, chosen);

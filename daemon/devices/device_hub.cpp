@@ -1,6 +1,7 @@
 #include "daemon/devices/device_hub.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -10,11 +11,18 @@
 
 namespace fvd {
 
+namespace {
+
+/// An axis that is sampled all the time is sampled some times within this: an older sample tells nothing of now.
+constexpr std::chrono::milliseconds kLongestSampleAge{200};
+
+}  // namespace
+
 DeviceHub::DeviceHub(DeviceOpeners openers, Clock& clock, std::function<void(bool)> on_rest)
     : clock_(clock),
       on_rest_(std::move(on_rest)),
-      camera_(std::move(openers.camera), ErrorCode::kCameraDisconnected, Predecessor::kIgnored),
-      axis_(std::move(openers.axis), ErrorCode::kStageDisconnected, Predecessor::kAwaited) {
+      camera_(std::move(openers.camera), ErrorCode::kCameraDisconnected, Predecessor::kIgnored, "fvd-reap-camera"),
+      axis_(std::move(openers.axis), ErrorCode::kStageDisconnected, Predecessor::kAwaited, "fvd-reap-stage") {
   // The axis first: one that moves on from before is stopped before a camera is waited for.
   rows_.push_back({.kind = "stage", .slot = axis_, .check = [this] { return check_axis(); }});
   rows_.push_back({.kind = "camera",
@@ -113,14 +121,26 @@ std::optional<DeviceFailure> DeviceHub::standstill_or_drop() {
   return failure;
 }
 
+bool DeviceHub::seen_standing() const {
+  const Rest rest = last_rest();
+  const auto stands = axis_.seen([&rest](const Axis& axis) {
+    if (!axis.connected()) return false;
+    const std::optional<StageStatus> seen = axis.last_seen();
+    if (!seen) return true;
+    return HostClock::now() - seen->sampled <= kLongestSampleAge && !reports_motion(*seen) &&
+           rest.holds(seen->position);
+  });
+  return stands.value_or(false);
+}
+
 bool DeviceHub::moved_unasked() const {
   // A report of motion alone is none: some drives say so for every disturbance of a servo that holds.
   const std::optional<StageStatus> seen = axis_.get().last_seen();
-  const Micrometers window = rest_window(axis_.get().info().feedback_resolution) * 2.0;
-  if (!seen || abs(seen->position - rest_) <= window) return false;
+  const Rest rest = last_rest();
+  if (!seen || rest.holds(seen->position)) return false;
   spdlog::warn(
       "the stage is at {} um and rested at {} um, and fvd did not move it: was it moved by hand, or by another master?",
-      seen->position.value, rest_.value);
+      seen->position.value, rest.place.value);
   return true;
 }
 
@@ -129,7 +149,9 @@ std::optional<DeviceFailure> DeviceHub::measure_standstill() {
   try {
     const auto rest = bring_to_rest(axis_.get(), clock_, [this] { set_at_rest(false); });
     if (rest) {
-      rest_ = *rest;
+      const Rest measured{*rest, rest_window(axis_.get().info().feedback_resolution) * 2.0};
+      const MutexLock lock(rest_mutex_);
+      rest_ = measured;
     } else {
       restless_ = {ErrorCode::kNotReady, "the stage was found moving and is being stopped; wait until it rests"};
     }
@@ -140,6 +162,11 @@ std::optional<DeviceFailure> DeviceHub::measure_standstill() {
   }
   set_at_rest(!restless_);
   return restless_;
+}
+
+DeviceHub::Rest DeviceHub::last_rest() const {
+  const MutexLock lock(rest_mutex_);
+  return rest_;
 }
 
 void DeviceHub::set_at_rest(bool at_rest) {

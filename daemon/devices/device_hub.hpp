@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/base/clock.hpp"
+#include "core/base/mutex.hpp"
+#include "core/base/units.hpp"
 #include "core/hw/axis.hpp"
 #include "core/hw/camera.hpp"
 #include "daemon/devices/device_slot.hpp"
@@ -24,7 +26,7 @@ struct DeviceFacts {
   bool simulated = false;
 };
 
-/// context: one thread, the machine's thread.
+/// context: one thread, the machine's thread, except seen_standing().
 class DeviceHub {
  public:
   /// on_rest: told whenever at_rest() changes, on the machine's thread.
@@ -63,8 +65,19 @@ class DeviceHub {
 
   /// The axis' standstill was measured since it was opened, and no motion was seen since.
   [[nodiscard]] bool at_rest() const { return at_rest_; }
+  /// The axis is connected, and its newest sample, 200 ms old at most, says that it stands where standstill was
+  /// measured last. An axis that nobody samples (replay) counts as standing. Asks nothing of the axis, waits for no
+  /// device. context: any thread.
+  [[nodiscard]] bool seen_standing() const;
 
  private:
+  /// Where standstill was measured last, and how far from there the axis counts as being there.
+  struct Rest {
+    Micrometers place;
+    Micrometers window;
+
+    [[nodiscard]] bool holds(Micrometers position) const { return abs(position - place) <= window; }
+  };
   struct Row {
     const char* kind;  ///< as messages name it
     AnyDeviceSlot& slot;
@@ -78,12 +91,14 @@ class DeviceHub {
   [[nodiscard]] bool moved_unasked() const;
   [[nodiscard]] std::optional<DeviceFailure> measure_standstill();
   [[nodiscard]] std::optional<DeviceFailure> standstill_or_drop();
+  [[nodiscard]] Rest last_rest() const;
   void set_at_rest(bool at_rest);
 
   Clock& clock_;
   std::function<void(bool)> on_rest_;
   bool at_rest_ = false;
-  Micrometers rest_;                       ///< where standstill was measured last
+  mutable Mutex rest_mutex_;
+  Rest rest_ FVD_GUARDED_BY(rest_mutex_);
   std::optional<DeviceFailure> restless_;  ///< why it was not, the last time
   int checked_opening_ = 0;                ///< of the axis, whose standstill was asked for
   DeviceSlot<Camera> camera_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
 #include "daemon/devices/left_threads.hpp"
 #include "daemon/devices/reaper.hpp"
 
@@ -59,8 +60,12 @@ class DeviceSlot final : public AnyDeviceSlot {
   /// before it is done.
   using Opener = std::function<std::unique_ptr<Device>()>;
 
-  DeviceSlot(Opener opener, ErrorCode lost, Predecessor predecessor)
-      : opener_(std::move(opener)), lost_(lost), predecessor_(predecessor), reaper_(last_wait(predecessor)) {}
+  /// closer: name of the thread that closes what was given up, as Reaper has it; each slot has another.
+  DeviceSlot(Opener opener, ErrorCode lost, Predecessor predecessor, std::string closer)
+      : opener_(std::move(opener)),
+        lost_(lost),
+        predecessor_(predecessor),
+        reaper_(std::move(closer), last_wait(predecessor)) {}
   ~DeviceSlot() override { drop(); }
   DeviceSlot(const DeviceSlot&) = delete;
   DeviceSlot& operator=(const DeviceSlot&) = delete;
@@ -79,6 +84,7 @@ class DeviceSlot final : public AnyDeviceSlot {
         return false;
       }
       device_ = std::move(*opened);
+      show(device_.get());
       failure_.reset();
       ++openings_;
       return true;
@@ -90,6 +96,7 @@ class DeviceSlot final : public AnyDeviceSlot {
     return false;
   }
   void drop() override {
+    show(nullptr);
     if (device_) closed_ = reaper_.bury(std::move(device_));
   }
   [[nodiscard]] bool connected() const override { return device_ && device_->connected(); }
@@ -98,15 +105,31 @@ class DeviceSlot final : public AnyDeviceSlot {
 
   /// The device; ensure() returned true before.
   [[nodiscard]] Device& get() const { return *device_; }
+  /// What a question tells of the open device; nothing where none is open. The question is quick and takes no more of
+  /// the device than any thread may, for giving it up waits for that. context: any thread.
+  template <typename Question>
+  [[nodiscard]] auto seen(Question question) const -> std::optional<decltype(question(std::declval<const Device&>()))> {
+    const MutexLock lock(shown_mutex_);
+    if (shown_ == nullptr) return std::nullopt;
+    return question(*shown_);
+  }
   /// How often a device was opened so far.
   [[nodiscard]] int openings() const { return openings_; }
 
  private:
+  void show(const Device* device) {
+    const MutexLock lock(shown_mutex_);
+    shown_ = device;
+  }
+
   Opener opener_;
   ErrorCode lost_;
   Predecessor predecessor_;
   Closed closed_;  // of the device that was given up last
   std::unique_ptr<Device> device_;
+  mutable Mutex shown_mutex_;
+  // device_ for other threads; null before it is given up.
+  const Device* shown_ FVD_GUARDED_BY(shown_mutex_) = nullptr;
   int openings_ = 0;
   std::optional<DeviceFailure> failure_;
   Reaper reaper_;  // last: it is done with every device before the rest goes

@@ -17,9 +17,9 @@ constexpr std::chrono::minutes kLongestClosing{5};
 
 }  // namespace
 
-Reaper::Reaper(std::chrono::milliseconds last_wait)
+Reaper::Reaper(std::string name, std::chrono::milliseconds last_wait)
     : last_wait_(last_wait),
-      thread_(start_thread("fvd-reaper", [work = work_](const std::stop_token& stop) { run(*work, stop); })) {}
+      thread_(start_thread(name, [name, work = work_](const std::stop_token& stop) { run(name, *work, stop); })) {}
 
 Reaper::~Reaper() {
   thread_.request_stop();
@@ -45,8 +45,8 @@ Closed Reaper::enqueue(std::shared_ptr<void> device) {
   return closed;
 }
 
-void Reaper::run(Work& work, const std::stop_token& stop) {
-  ThreadTicks ticks("fvd-reaper", kLongestClosing);
+void Reaper::run(const std::string& name, Work& work, const std::stop_token& stop) {
+  ThreadTicks ticks(name, kLongestClosing);
   for (;;) {
     ticks.rest();
     Burial burial;

@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 #include "core/base/mutex.hpp"
@@ -20,7 +21,8 @@ using Closed = std::shared_ptr<const std::atomic<bool>>;
 /// (left_threads.hpp), for `last_wait` at most.
 class Reaper {
  public:
-  explicit Reaper(std::chrono::milliseconds last_wait = std::chrono::milliseconds(200));
+  /// name: of its thread, at most 15 bytes; by it the watchdog tells whose device hangs.
+  explicit Reaper(std::string name, std::chrono::milliseconds last_wait = std::chrono::milliseconds(200));
   ~Reaper();
   Reaper(const Reaper&) = delete;
   Reaper& operator=(const Reaper&) = delete;
@@ -45,7 +47,7 @@ class Reaper {
   };
 
   Closed enqueue(std::shared_ptr<void> device);
-  static void run(Work& work, const std::stop_token& stop);
+  static void run(const std::string& name, Work& work, const std::stop_token& stop);
 
   const std::chrono::milliseconds last_wait_;
   std::shared_ptr<Work> work_ = std::make_shared<Work>();

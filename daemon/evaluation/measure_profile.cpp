@@ -85,24 +85,14 @@ std::optional<metrology::MonteCarlo> drawn(const HeightField& field, const Profi
   return metrology::monte_carlo(field, region, monte_carlo, values_of, pool);
 }
 
-/// Whether the line with its band leaves the field.
-bool leaves(const HeightField& field, const ProfileLine& line) {
-  const double length_um = std::hypot(line.to_x_um - line.from_x_um, line.to_y_um - line.from_y_um);
-  const double aside_x_um = line.band_width_um / 2.0 * std::abs(line.to_y_um - line.from_y_um) / length_um;
-  const double aside_y_um = line.band_width_um / 2.0 * std::abs(line.to_x_um - line.from_x_um) / length_um;
-  return std::min(line.from_x_um, line.to_x_um) - aside_x_um < 0.0 ||
-         std::min(line.from_y_um, line.to_y_um) - aside_y_um < 0.0 ||
-         std::max(line.from_x_um, line.to_x_um) + aside_x_um > field.width() * field.pitch_x_um ||
-         std::max(line.from_y_um, line.to_y_um) + aside_y_um > field.height() * field.pitch_y_um;
-}
-
 /// The profile, or why there is none in made.
 std::optional<Profile> extracted(const HeightField& field, const ProfileLine& line, EvaluatedMeasurement& made) {
   try {
     return metrology::extract_profile(field, line);
   } catch (const Error& error) {
     made.reason = error.what();
-    made.reason_code = leaves(field, line) ? evaluation_code::kRegionOutside : evaluation_code::kInvalid;
+    made.reason_code =
+        error.code() == ErrorCode::kRegionOutside ? evaluation_code::kRegionOutside : evaluation_code::kInvalid;
     return std::nullopt;
   }
 }

@@ -1,9 +1,10 @@
 #pragma once
 
-/// Keeps the newest slice of a scan as a small picture for viewers.
+/// Keeps the newest picture of what the camera sees, for viewers.
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,10 +14,12 @@
 
 namespace fvd {
 
-/// A picture of at most 640 x 480 pixels, 8 bit.
+/// At most 1280 pixels a side, 8 bit.
 struct PreviewPicture {
   std::uint64_t seq = 0;  ///< counts pictures
   Plane<std::uint8_t> pixels;
+  int image_width_px = 0;  ///< of the camera's image
+  int image_height_px = 0;
   double z_um = 0.0;
   double focus = 0.0;  ///< mean modified Laplacian of the central region of the whole image, grey levels
   double saturated_fraction = 0.0;
@@ -25,23 +28,28 @@ struct PreviewPicture {
 /// Scales the image down by a whole factor; a pixel of the picture is the mean of the pixels it covers.
 [[nodiscard]] PreviewPicture make_preview(const ImageView& image, double z_um);
 
-/// {"seq", "width_px", "height_px", "z_um", "focus", "saturated_fraction", "png_base64"} as a JSON text.
+/// {"seq", "width_px", "height_px", "z_um", "focus", "saturated_fraction", "png_base64"} as a JSON text: a picture of
+/// at most 640 x 480 pixels, made of the given one.
 [[nodiscard]] std::string preview_json(const PreviewPicture& picture);
 
 /// A measurement offers its slices and never waits. context: thread-safe.
 class PreviewHub {
  public:
-  /// Skips the slice if there is no viewer, the last picture is younger than 0.2 s, or the lock is taken.
+  /// Skips the slice if there is no viewer, the last picture is younger than 0.1 s, or the lock is taken.
   void offer(const ImageView& image, double z_um);
-  /// The newest picture as preview_json(); nothing before the first. The caller counts as a viewer for 3 s.
+  /// Keeps an image that somebody took between the jobs, whether there is a viewer or not.
+  std::shared_ptr<const PreviewPicture> take(const ImageView& image, double z_um);
+  /// The newest picture; null before the first. The caller counts as a viewer for 3 s.
+  [[nodiscard]] std::shared_ptr<const PreviewPicture> newest_picture();
+  /// The same as preview_json(), which is made on the caller's thread.
   [[nodiscard]] std::optional<std::string> newest();
-  /// Drops the picture: it belongs to a scan that is over.
+  /// Drops the picture: it belongs to a scan that is over. The numbers of pictures go on.
   void clear();
 
  private:
   std::atomic<HostTime> wanted_until_{HostTime{}};
   Mutex mutex_;
-  std::optional<PreviewPicture> newest_ FVD_GUARDED_BY(mutex_);
+  std::shared_ptr<const PreviewPicture> newest_ FVD_GUARDED_BY(mutex_);
   HostTime taken_ FVD_GUARDED_BY(mutex_){};
   std::uint64_t seq_ FVD_GUARDED_BY(mutex_) = 0;
 };

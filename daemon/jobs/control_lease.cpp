@@ -19,7 +19,12 @@ ControlLease::ControlLease(std::function<HostTime()> now, std::function<bool()> 
     : now_(std::move(now)), job_runs_(std::move(job_runs)) {}
 
 ControlLease::Holder ControlLease::acquire(const Request& request) {
-  const bool job_runs = job_runs_();  // not under the lock
+  Holder holder = take(request, job_runs_());  // not under the lock
+  tell();
+  return holder;
+}
+
+ControlLease::Holder ControlLease::take(const Request& request, bool job_runs) {
   const Holder wanted{request.who.name, request.owner, now_() + request.time};
   const MutexLock lock(mutex_);
   const auto before = holder_locked(job_runs);
@@ -45,10 +50,23 @@ ControlLease::Holder ControlLease::acquire(const Request& request) {
 }
 
 void ControlLease::release(const std::string& who) {
-  const MutexLock lock(mutex_);
-  if (!holder_ || holder_->who != who) return;
-  spdlog::info("{} gives control up", text_of(*holder_));
-  holder_.reset();
+  {
+    const MutexLock lock(mutex_);
+    if (!holder_ || holder_->who != who) return;
+    spdlog::info("{} gives control up", text_of(*holder_));
+    holder_.reset();
+  }
+  tell();
+}
+
+void ControlLease::on_change(std::function<void()> listener) {
+  const MutexLock lock(telling_mutex_);
+  listener_ = std::move(listener);
+}
+
+void ControlLease::tell() {
+  const MutexLock lock(telling_mutex_);
+  if (listener_) listener_();
 }
 
 void ControlLease::require(const std::string& who) const {

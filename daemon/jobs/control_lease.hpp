@@ -44,13 +44,21 @@ class ControlLease {
   /// Nothing where nobody holds it, or his time is over.
   [[nodiscard]] std::optional<Holder> holder() const;
 
+  /// Called after control was taken, renewed or given up, from any thread; returns at once. Nobody tells that the time
+  /// is over. An empty one ends it: after the return the one before is not called again.
+  void on_change(std::function<void()> listener);
+
  private:
+  Holder take(const Request& request, bool job_runs);
   [[nodiscard]] std::optional<Holder> holder_locked(bool job_runs) const FVD_REQUIRES(mutex_);
+  void tell();
 
   const std::function<HostTime()> now_;
   const std::function<bool()> job_runs_;
   mutable Mutex mutex_;
   std::optional<Holder> holder_ FVD_GUARDED_BY(mutex_);
+  Mutex telling_mutex_;  // held while the listener runs
+  std::function<void()> listener_ FVD_GUARDED_BY(telling_mutex_);
 };
 
 }  // namespace fvd

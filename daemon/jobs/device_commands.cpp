@@ -121,6 +121,7 @@ void require_target(Micrometers target, const StageInfo& stage) {
 DeviceTask::Work snap_work(const CameraSettings& settings) {
   return [settings](const Devices& devices, const std::stop_token& stop) {
     const Shot shot = shoot(devices, settings, stop);
+    if (devices.pictures != nullptr) devices.pictures->take(shot.frame.image, shot.z_um);
     const fs::path folder = devices.state_dir / "snaps";
     const fs::path path = new_snap(folder);
     write_new_file(path, encode_image_png(shot.frame.image));
@@ -140,6 +141,7 @@ DeviceTask::Work snap_work(const CameraSettings& settings) {
 DeviceTask::Work preview_work(const CameraSettings& settings) {
   return [settings](const Devices& devices, const std::stop_token& stop) {
     const Shot shot = shoot(devices, settings, stop);
+    if (devices.pictures != nullptr) return preview_json(*devices.pictures->take(shot.frame.image, shot.z_um));
     PreviewPicture picture = make_preview(shot.frame.image, shot.z_um);
     picture.seq = shot.frame.id;
     return preview_json(picture);

@@ -17,12 +17,15 @@
 
 namespace fvd {
 
+class PreviewHub;
+
 struct Devices {
   Camera& camera;
   Axis& stage;
   Clock& clock;
   std::filesystem::path state_dir;
   const ObjectiveConfig* objective = nullptr;  ///< that was confirmed, and does not change meanwhile; nullptr = none
+  PreviewHub* pictures = nullptr;              ///< gets the images that are taken, for who looks on; nullptr = nobody
 };
 
 /// What a command does to the axis: a part may not be touched while a command moves it.

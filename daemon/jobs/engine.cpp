@@ -1,7 +1,9 @@
 #include "daemon/jobs/engine.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <thread>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -22,10 +24,14 @@ int thread_count(int configured) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-MachineBoard::Constants constants(const Config& config, const JobStore& store) {
-  return {config.camera.simulated || config.stage.simulated, store.epoch(),
-          [&store] { return store.unacknowledged_count(); }, [&store] { return store.unacknowledged_results(); },
-          [&store] { return store.newest_seqs(); },          config.rpc.fifo_results};
+MachineBoard::Constants constants(const Config& config, const JobStore& store, std::function<bool()> axis_stands) {
+  return {config.camera.simulated || config.stage.simulated,
+          store.epoch(),
+          [&store] { return store.unacknowledged_count(); },
+          [&store] { return store.unacknowledged_results(); },
+          [&store] { return store.newest_seqs(); },
+          config.rpc.fifo_results,
+          std::move(axis_stands)};
 }
 
 std::size_t memory_budget_bytes(const Config& config) {
@@ -36,6 +42,7 @@ std::size_t memory_budget_bytes(const Config& config) {
 
 Engine::Engine(const Config& config, const EngineDependencies& deps)
     : state_dir_(config.paths.state_dir),
+      alarms_(deps.alarms ? deps.alarms : std::make_shared<AlarmLog>()),
       pool_(thread_count(config.compute.threads)),
       pages_(std::make_shared<KeptPages>(memory_budget_bytes(config))),
       history_(config.paths.state_dir / "stage_history.json"),
@@ -44,7 +51,7 @@ Engine::Engine(const Config& config, const EngineDependencies& deps)
       recipes_({config.paths.recipe_dir, config.paths.state_dir / "recipes"},
                {config.stage.min, config.stage.max, config.stage.take_up, config.stage.speed_um_per_s},
                deps.store.recipe_versions()),
-      board_(constants(config, deps.store), deps.store.latest()),
+      board_(constants(config, deps.store, [this] { return hub_.seen_standing(); }), deps.store.latest()),
       access_(config.rpc.access),
       control_([] { return HostClock::now(); }, [this] { return board_.read().state.job != JobStage::kNone; }),
       audit_(deps.store.audit()),

@@ -3,6 +3,7 @@
 /// The parts that measure, wired: one machine, its devices, its thread, its jobs and commands.
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/devices/device_hub.hpp"
 #include "daemon/export/preview_hub.hpp"
+#include "daemon/jobs/alarm_log.hpp"
 #include "daemon/jobs/audit_log.hpp"
 #include "daemon/jobs/control_lease.hpp"
 #include "daemon/jobs/following_files.hpp"
@@ -38,7 +40,8 @@ struct EngineDependencies {
   Clock& clock;
   DeviceOpeners openers;
   ResultPipeline make_result = store_result;
-  RepeatabilityOf repeatability = {};  ///< of the recipes' values; empty = as its own gauge studies found it
+  RepeatabilityOf repeatability = {};     ///< of the recipes' values; empty = as its own gauge studies found it
+  std::shared_ptr<AlarmLog> alarms = {};  ///< that the log's lines come to; null = none do
 };
 
 /// context: made and destroyed on one thread; the services are thread-safe.
@@ -61,8 +64,12 @@ class Engine {
   }
 
   [[nodiscard]] Services services() {
-    return {board_, jobs_, jobs_, tasks_, recipes_, objectives_, study_runner_, control_, audit_, access_};
+    return {board_,   jobs_,  jobs_,   tasks_,    recipes_, objectives_, study_runner_,
+            control_, audit_, access_, refusals_, jobs_,    *alarms_};
   }
+
+  /// For who looks on. context: any thread.
+  [[nodiscard]] PictureSource& pictures() { return tasks_; }
 
   /// What a reload changes while all goes on. context: any thread.
   void take(const StoreConfig& limits) { retention_.set_limits(limits); }
@@ -84,6 +91,7 @@ class Engine {
   void note_health();
 
   const std::filesystem::path state_dir_;
+  const std::shared_ptr<AlarmLog> alarms_;
   WorkerPool pool_;
   KeptPagesPtr pages_;
   StageHistory history_;
@@ -93,6 +101,7 @@ class Engine {
   PreviewHub preview_;
   MachineBoard board_;
   AccessRules access_;
+  RefusedCalls refusals_;
   ControlLease control_;
   AuditLog audit_;
   ObjectiveBook objectives_;

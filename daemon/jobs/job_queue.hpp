@@ -27,7 +27,7 @@ namespace fvd {
 /// A job is offered (the machine takes no other), made durable, accepted (readers see it) and posted. Files and the
 /// database are read and written between these steps, with no lock held.
 /// context: thread-safe.
-class JobQueue final : public JobService, public ResultService {
+class JobQueue final : public JobService, public ResultService, public HistoryService {
  public:
   struct Dependencies {
     JobStore& store;
@@ -56,6 +56,11 @@ class JobQueue final : public JobService, public ResultService {
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override;
   int acknowledge(const JobKey& key) override;
   [[nodiscard]] std::shared_ptr<DeviceTask> evaluate(const JobKey& key, const std::string& recipe_id) override;
+
+  [[nodiscard]] JobPage list(const JobFilter& filter, std::int64_t before, int most) const override {
+    return deps_.store.history().page(filter, before, most);
+  }
+  [[nodiscard]] ValueList values(const ValueQuery& query) const override { return deps_.store.history().values(query); }
 
   /// Prepares once, when the devices are up first, the recipe that was prepared when the daemon ended. context: the
   /// machine's thread.

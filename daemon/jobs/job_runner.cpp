@@ -229,7 +229,7 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
   // The row is durable before anybody can see the job's end; a database that fails must not hide how it ended.
   std::optional<StorageProblem> storage;
   try {
-    deps_.store.finish(ended, end.result.directory, end.result.text, end.result.files_pending);
+    deps_.store.finish(ended, end.result.directory, end.result.text, end.result.files_pending, end.result.values);
   } catch (const Error& failure) {
     spdlog::critical("job {}: its end is not stored yet, no job is taken before it is: {}", ended.job_id,
                      failure.what());

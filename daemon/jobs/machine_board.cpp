@@ -57,11 +57,14 @@ void MachineRecord::require(Command command) const {
 
 namespace {
 
-/// Counts a job that has ended by this change of the record.
-void count_end(const std::optional<JobStatus>& before, const std::optional<JobStatus>& after, JobCounts& ended) {
-  if (!after || after->state == JobState::kProcessing) return;
-  if (before && before->job_id == after->job_id && before->state != JobState::kProcessing) return;
-  switch (after->state) {
+/// A job has ended by this change of the record.
+bool is_end(const std::optional<JobStatus>& before, const std::optional<JobStatus>& after) {
+  if (!after || after->state == JobState::kProcessing) return false;
+  return !before || before->job_id != after->job_id || before->state == JobState::kProcessing;
+}
+
+void count_end(JobState how, JobCounts& ended) {
+  switch (how) {
     case JobState::kCompleted:
       ++ended.completed;
       break;
@@ -80,12 +83,17 @@ MachineBoard::MachineBoard(Constants constants, std::optional<JobStatus> latest_
     : constants_(std::move(constants)) {
   const MutexLock lock(mutex_);
   record_.job = std::move(latest_job);
+  if (record_.job && record_.job->state == JobState::kCompleted) completed_job_ = record_.job->job_id;
   publish_locked();
 }
 
 std::shared_ptr<const MachineStatus> MachineBoard::snapshot() const {
   const MutexLock lock(status_mutex_);
   return status_;
+}
+
+bool MachineBoard::stage_stands() const {
+  return snapshot()->signals.part_release && (!constants_.axis_stands || constants_.axis_stands());
 }
 
 void MachineBoard::on_change(std::function<void()> listener, const void* whose) {
@@ -109,7 +117,10 @@ void MachineBoard::update(const std::function<void(MachineRecord&)>& change) {
     change(next);
     const ScanState before = scan_state(record_.state);
     const bool was_free = signals(record_.state).part_release;
-    count_end(record_.job, next.job, ended_);
+    if (is_end(record_.job, next.job)) {
+      count_end(next.job->state, ended_);
+      if (next.job->state == JobState::kCompleted) completed_job_ = next.job->job_id;
+    }
     record_ = std::move(next);
     publish_locked();
     const ScanState now = scan_state(record_.state);
@@ -142,6 +153,7 @@ void MachineBoard::publish_locked() {
   if (record_.devices) status->camera = record_.devices->camera;
   status->epoch = constants_.epoch;
   status->ended = ended_;
+  status->completed_job = completed_job_;
   status->health = record_.health;
   status->disk = record_.disk;
   if (record_.failure) {

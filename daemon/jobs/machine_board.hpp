@@ -56,11 +56,13 @@ class MachineBoard final : public MachineView {
     std::function<int()> results_waiting;  ///< must not block, as the next two
     std::function<int()> results_valid{};  ///< the completed ones among them
     std::function<std::shared_ptr<const NewestSeqs>()> newest_seqs{};
-    int fifo_results = 1000;  ///< more that wait are an overrun
+    int fifo_results = 1000;                 ///< more that wait are an overrun
+    std::function<bool()> axis_stands = {};  ///< as DeviceHub::seen_standing(); empty = whenever it is measured
   };
   MachineBoard(Constants constants, std::optional<JobStatus> latest_job);
 
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override;
+  [[nodiscard]] bool stage_stands() const override;
   void on_change(std::function<void()> listener, const void* whose = nullptr) override;
 
   [[nodiscard]] MachineRecord read() const;
@@ -89,6 +91,7 @@ class MachineBoard final : public MachineView {
   mutable Mutex mutex_;
   MachineRecord record_ FVD_GUARDED_BY(mutex_);
   JobCounts ended_ FVD_GUARDED_BY(mutex_);
+  std::string completed_job_ FVD_GUARDED_BY(mutex_);        ///< the latest
   std::vector<std::string> untold_ FVD_GUARDED_BY(mutex_);  ///< changes that the log lacks, in their order
 
   mutable Mutex status_mutex_;  // held for a pointer's copy alone, inside mutex_ or without it

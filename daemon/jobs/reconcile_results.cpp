@@ -15,9 +15,11 @@
 
 #include "config/strict_json.hpp"
 #include "core/base/error.hpp"
+#include "daemon/export/durable_file.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/export/storage_error.hpp"
+#include "daemon/jobs/job_values.hpp"
 #include "daemon/jobs/result_pipeline.hpp"
 #include "daemon/result/evaluate.hpp"
 
@@ -77,6 +79,7 @@ Found result_in(const fs::path& folder, const JobStatus& interrupted) {
     status.slices_done = result.slices.measured;
     status.frames = result.frames;
     note_verdict(result, status.verdict, status.reason_codes);
+    job.values = values_of(result);
     job.files_pending = std::any_of(result.files.begin(), result.files.end(), [](const ResultFile& file) {
       const bool no_digest = file.state == FileState::kWritten && !file.files && file.sha256.empty();
       return file.state == FileState::kPending || no_digest;
@@ -149,8 +152,11 @@ void restore_refused_evaluations(JobStore& store, const fs::path& results) {
     if (!store.evaluations().find(id)) continue;
     if (file_calls().rename_to_new(entry->path(), results / id) == 0) {
       spdlog::warn("evaluation {} was refused, and its row was on the disk all the same: it is there from now on", id);
+      sync_directory(results);
     } else if (errno != EEXIST) {
-      spdlog::error("evaluation {} has a row and no files: {} cannot be renamed", id, entry->path().string());
+      // Under its hidden name it would be removed as something that nobody knows.
+      throw storage_error(errno, "give its files back to evaluation " + id + ", which has a row, by renaming",
+                          entry->path());
     }
   }
 }
@@ -166,7 +172,8 @@ Reconciled reconcile_results(JobStore& store, const fs::path& results) {
     const Found& found = *looked;
     const bool was_told = ended.acknowledged || !ended_by_this_start(store, ended.job_id);
     if (found.whole && !was_told) {
-      store.finish(found.whole->status, found.whole->result_dir, found.whole->result_json, found.whole->files_pending);
+      store.finish(found.whole->status, found.whole->result_dir, found.whole->result_json, found.whole->files_pending,
+                   found.whole->values);
       spdlog::warn("job {}: the daemon stopped between its result and its row: it is {} with the result in {}",
                    ended.job_id, job_state_name(found.whole->status.state), folder.string());
       ++done.adopted;

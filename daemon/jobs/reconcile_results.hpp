@@ -26,7 +26,8 @@ Reconciled reconcile_results(JobStore& store, const std::filesystem::path& resul
 [[nodiscard]] std::string refused_evaluation(const std::string& evaluation_id);
 
 /// Gives back the folders of evaluations that were refused although the disk had their rows: those are told now.
-/// context: at the start, before hidden folders are removed. Throws Error kDatabase.
+/// context: at the start, before hidden folders are removed. Throws Error kDatabase; kStorageFull or kStorageWrite
+/// where one cannot be renamed.
 void restore_refused_evaluations(JobStore& store, const std::filesystem::path& results);
 
 }  // namespace fvd

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "daemon/export/result_json.hpp"
+#include "daemon/jobs/job_values.hpp"
 #include "daemon/result/evaluate.hpp"
 
 namespace fvd {
@@ -35,6 +36,7 @@ JobResult store_result(AtomicDirectory& directory, const ResultData& acquired, F
     result.message = shortage->message;
   }
   note_verdict(files.result, result.verdict, result.reason_codes);
+  result.values = values_of(files.result);
   return result;
 }
 

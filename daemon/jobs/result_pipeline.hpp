@@ -11,6 +11,7 @@
 #include "daemon/export/atomic_directory.hpp"
 #include "daemon/export/result_writer.hpp"
 #include "daemon/result/result_data.hpp"
+#include "daemon/store/stored_value.hpp"
 
 namespace fvd {
 
@@ -21,8 +22,9 @@ struct JobResult {
   std::vector<WrittenBytes> written;  ///< what the digests are made of
   std::optional<ErrorCode> error;     ///< why the job failed though it has a result: too few points are valid
   std::string message;
-  std::string verdict;       ///< as JobStatus
-  std::string reason_codes;  ///< likewise
+  std::string verdict;              ///< as JobStatus
+  std::string reason_codes;         ///< likewise
+  std::vector<StoredValue> values;  ///< for the job database
 };
 
 /// Notes what the result says of the part.

@@ -115,10 +115,11 @@ void Retention::run(const std::stop_token& stop) {
     if (first || has_limits(config())) run_once(stop);
     ticks_.rest();
     MutexLock lock(mutex_);
-    (void)limits_changed_.wait_for(lock, stop, kPeriod, [this] {
+    const bool are_others = limits_changed_.wait_for(lock, stop, kPeriod, [this] {
       mutex_.assert_held();
       return std::exchange(has_other_limits_, false);
     });
+    if (are_others) is_short_ = false;  // what was told was told of the limits before
   }
 }
 

@@ -16,20 +16,25 @@
 #include "core/hw/camera.hpp"
 #include "core/stage/step_history.hpp"
 #include "daemon/access/access_rules.hpp"
+#include "daemon/access/refused_calls.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/devices/devices_health.hpp"
+#include "daemon/jobs/alarm.hpp"
 #include "daemon/jobs/control_lease.hpp"
 #include "daemon/jobs/device_task.hpp"
 #include "daemon/jobs/jog.hpp"
 #include "daemon/jobs/machine_state.hpp"
 #include "daemon/recipes/recipe_service.hpp"
 #include "daemon/store/audit_table.hpp"
+#include "daemon/store/job_history.hpp"
 #include "daemon/store/job_status.hpp"
 #include "daemon/store/objective_table.hpp"
 #include "daemon/store/sequence_numbers.hpp"
 #include "daemon/study/study_desk.hpp"
 
 namespace fvd {
+
+struct PreviewPicture;
 
 /// Jobs that ended since the daemon's start.
 struct JobCounts {
@@ -60,6 +65,7 @@ struct MachineStatus {
   std::string error_message;
   std::optional<CameraInfo> camera;  ///< that is open
   JobCounts ended;
+  std::string completed_job;      ///< whose result is the newest, whatever has begun since; empty = none is known
   DevicesHealth health;           ///< as it was between jobs and commands, half a second ago at most if none runs
   std::optional<DiskSpace> disk;  ///< likewise; nothing if it cannot be told
 };
@@ -70,6 +76,10 @@ class MachineView {
   virtual ~MachineView() = default;
   /// No lock that is held across a database or file access; never null.
   [[nodiscard]] virtual std::shared_ptr<const MachineStatus> snapshot() const = 0;
+  /// True if the snapshot says part_release and the stage's newest sample bears it out: the snapshot alone is as old as
+  /// the last look at the devices, which is minutes while a job is evaluated. Asks nothing of the devices, waits for
+  /// none. context: any thread.
+  [[nodiscard]] virtual bool stage_stands() const = 0;
   /// Called after every change of a job or the machine, from any thread; must return at once. One for each `whose`; an
   /// empty one ends it: after the return it is not called again.
   virtual void on_change(std::function<void()> listener, const void* whose = nullptr) = 0;
@@ -161,6 +171,17 @@ class TaskService {
   [[nodiscard]] virtual std::optional<StepHistorySummary> stage_history() const = 0;
 };
 
+/// Pictures of what the camera sees, for who looks on.
+/// context: thread-safe; no device is asked and nothing is waited for.
+class PictureSource {
+ public:
+  virtual ~PictureSource() = default;
+
+  /// The newest slice of the job that runs, or the newest image that somebody took since the last one; null before the
+  /// first. Whoever asks counts as a viewer for 3 s: without viewers a job keeps no slices for them.
+  [[nodiscard]] virtual std::shared_ptr<const PreviewPicture> newest_picture() = 0;
+};
+
 /// Which objective is on the microscope, as people confirm it.
 /// context: as JobService.
 class ObjectiveService {
@@ -214,6 +235,34 @@ class AuditService {
   [[nodiscard]] virtual std::vector<AuditEntry> newest(int most, std::int64_t before) = 0;
 };
 
+/// Jobs and values in lists.
+/// context: as JobService; a long list keeps nobody else waiting.
+class HistoryService {
+ public:
+  virtual ~HistoryService() = default;
+
+  /// As JobHistory::page().
+  [[nodiscard]] virtual JobPage list(const JobFilter& filter, std::int64_t before, int most) const = 0;
+  /// As JobHistory::values().
+  [[nodiscard]] virtual ValueList values(const ValueQuery& query) const = 0;
+};
+
+/// What somebody has to see.
+/// context: every function thread-safe; blocks for nothing.
+class AlarmService {
+ public:
+  virtual ~AlarmService() = default;
+
+  /// All that are kept, the newest first.
+  [[nodiscard]] virtual std::vector<Alarm> newest() const = 0;
+  /// Somebody has seen this one. Repeating it changes nothing. time_utc: its Alarm::time_utc, for numbers begin anew
+  /// with each start; empty = whichever has the number. Throws Error kBadInput where there is none of that number any
+  /// more, or it is of another time.
+  virtual void acknowledge(std::int64_t number, std::string_view time_utc) = 0;
+  /// Counts the changes of what newest() tells.
+  [[nodiscard]] virtual std::uint64_t revision() const noexcept = 0;
+};
+
 /// All that the API is built on; each may be another object.
 struct Services {
   MachineView& machine;
@@ -226,6 +275,9 @@ struct Services {
   ControlLease& control;
   AuditService& audit;
   const AccessRules& access;
+  RefusedCalls& refusals;  ///< of all ways in: the log's limit is one
+  HistoryService& history;
+  AlarmService& alarms;
 };
 
 }  // namespace fvd

@@ -39,6 +39,8 @@ std::shared_ptr<DeviceTask> TaskRunner::preview(const CameraSettings& settings) 
   return std::make_shared<DeviceTask>(DeviceTask::Outcome{std::move(*picture), std::nullopt, {}});
 }
 
+std::shared_ptr<const PreviewPicture> TaskRunner::newest_picture() { return deps_.preview.newest_picture(); }
+
 std::shared_ptr<JogHold> TaskRunner::last_jog() {
   const MutexLock lock(mutex_);
   return jog_;
@@ -98,7 +100,8 @@ DeviceTask::Outcome TaskRunner::performed(const DeviceTask& task, const std::sto
   // Gone before the camera may be given up: its end waits for a call that is under way.
   const std::stop_callback wake(stop, [this] { deps_.hub.camera().interrupt(); });
   const ObjectiveConfig* objective = find_objective(deps_.objectives, deps_.board.read().objective);
-  return task.perform({deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.state_dir, objective}, stop);
+  return task.perform({deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.state_dir, objective, &deps_.preview},
+                      stop);
 }
 
 void TaskRunner::refuse(DeviceTask& task) {

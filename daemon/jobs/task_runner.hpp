@@ -23,7 +23,7 @@ namespace fvd {
 
 /// One command at a time. Every command that was taken is answered, whatever happens.
 /// context: thread-safe; the commands run on the machine's thread.
-class TaskRunner final : public TaskService {
+class TaskRunner final : public TaskService, public PictureSource {
  public:
   struct Dependencies {
     MachineBoard& board;
@@ -42,6 +42,7 @@ class TaskRunner final : public TaskService {
   void jog(const JogRequest& request) override;
   [[nodiscard]] bool extend_jog(const JogRequest& request) override;
   [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override;
+  [[nodiscard]] std::shared_ptr<const PreviewPicture> newest_picture() override;
 
   /// Ends the command that was taken last, if it still waits or runs. May be called inside MachineBoard::update().
   [[nodiscard]] std::stop_source task_stop();

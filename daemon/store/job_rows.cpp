@@ -1,24 +1,20 @@
 #include "daemon/store/job_rows.hpp"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/base/error.hpp"
 
 namespace fvd {
 
-namespace {
-
-constexpr std::array kAllJobStates{JobState::kProcessing, JobState::kCompleted, JobState::kAborted, JobState::kFailed};
-
-JobState state_from_name(const std::string& name) {
-  for (const JobState state : kAllJobStates) {
+JobState job_state_in_row(const std::string& name) {
+  constexpr std::array kAll{JobState::kProcessing, JobState::kCompleted, JobState::kAborted, JobState::kFailed};
+  for (const JobState state : kAll) {
     if (job_state_name(state) == name) return state;
   }
   return JobState::kFailed;
 }
-
-}  // namespace
 
 StoredJob read_job_row(const Statement& row) {
   StoredJob job;
@@ -32,7 +28,7 @@ StoredJob read_job_row(const Statement& row) {
   status.request.seq = integer();
   status.request.part_id = text();
   status.request.recipe = text();
-  status.state = state_from_name(text());
+  status.state = job_state_in_row(text());
   if (const std::string name = text(); !name.empty()) status.error = error_from_name(name);
   status.error_message = text();
   status.acknowledged = integer() != 0;
@@ -105,6 +101,39 @@ StoredJob job_in(const Database& database, const KeptEnds& kept, const JobKey& k
   return as_it_stands(read_job_row(query), kept);
 }
 
+namespace {
+
+/// SQLite keeps infinity, and JSON has no word for it.
+std::optional<double> finite(const std::optional<double>& number) {
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+void write_values(const Database& database, const StoredJob& end) {
+  Statement row(database, "SELECT number FROM jobs WHERE job_id = ?");
+  row.bind(end.status.job_id);
+  if (!row.step()) return;
+  const std::int64_t number = row.integer(0);
+  Statement(database, "DELETE FROM job_values WHERE number = ?").bind(number).run();
+  for (const StoredValue& value : end.values) {
+    Statement(
+        database,
+        "INSERT OR IGNORE INTO job_values (number, measurement, name, value, u, expanded_u, lower, upper, verdict) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(number)
+        .bind(value.measurement)
+        .bind(value.name)
+        .bind(finite(value.value))
+        .bind(finite(value.u))
+        .bind(finite(value.expanded_u))
+        .bind(finite(value.lower))
+        .bind(finite(value.upper))
+        .bind(value.verdict)
+        .run();
+  }
+}
+
+}  // namespace
+
 void write_end(const Database& database, const StoredJob& end) {
   const auto integer = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
   const JobStatus& ended = end.status;
@@ -133,6 +162,7 @@ void write_end(const Database& database, const StoredJob& end) {
       .bind(ended.reason_codes)
       .bind(ended.job_id)
       .run();
+  write_values(database, end);
 }
 
 }  // namespace fvd

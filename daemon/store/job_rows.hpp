@@ -19,6 +19,8 @@ namespace fvd {
   "result_json, acquired, temperature_c, files_pending, session, ended_utc, verdict, reason_codes, removed_utc"
 
 [[nodiscard]] StoredJob read_job_row(const Statement& row);
+/// The state that a row names; kFailed for a name that nobody knows.
+[[nodiscard]] JobState job_state_in_row(const std::string& name);
 
 /// Ends that could not be stored yet, by job_id.
 using KeptEnds = std::map<std::string, StoredJob>;
@@ -35,7 +37,8 @@ using KeptEnds = std::map<std::string, StoredJob>;
 /// Throws Error kUnknownJob.
 [[nodiscard]] StoredJob job_in(const Database& database, const KeptEnds& kept, const JobKey& key);
 
-/// Writes the end of a job into its row, without a transaction of its own.
+/// Writes the end of a job into its row, and the values of its result in place of any before, without a transaction of
+/// its own.
 void write_end(const Database& database, const StoredJob& end);
 
 }  // namespace fvd

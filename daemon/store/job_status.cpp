@@ -31,8 +31,8 @@ void require_not_removed(const JobStatus& job) {
                                              "tells what the job came to");
 }
 
-std::string utc_now() {
-  const auto now = std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+std::string utc_text(std::chrono::system_clock::time_point moment) {
+  const auto now = std::chrono::floor<std::chrono::milliseconds>(moment);
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
   std::tm utc{};
   gmtime_r(&seconds, &utc);
@@ -43,6 +43,8 @@ std::string utc_now() {
                 static_cast<int>(now.time_since_epoch().count() % 1000));
   return text.data();
 }
+
+std::string utc_now() { return utc_text(std::chrono::system_clock::now()); }
 
 std::int64_t seconds_since(const std::string& utc) {
   std::tm then{};

@@ -2,15 +2,18 @@
 
 /// A job as its client asked for it and as it stands.
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "core/base/clock.hpp"
 #include "core/base/error.hpp"
 #include "core/scan/frame_ledger.hpp"
+#include "daemon/store/stored_value.hpp"
 
 namespace fvd {
 
@@ -53,7 +56,9 @@ struct JobStatus {
 /// Throws Error kResultRemoved where the job's result was removed, and says when.
 void require_not_removed(const JobStatus& job);
 
-/// This moment as ended_utc tells it.
+/// A moment as ended_utc tells it, to the millisecond.
+[[nodiscard]] std::string utc_text(std::chrono::system_clock::time_point moment);
+/// This moment.
 [[nodiscard]] std::string utc_now();
 /// Seconds since a moment that utc_now() told; 0 for one that lies ahead, because clocks are set, and for no moment.
 [[nodiscard]] std::int64_t seconds_since(const std::string& utc);
@@ -72,9 +77,10 @@ using JobKey = std::variant<std::string, ClientSeq>;
 
 struct StoredJob {
   JobStatus status;
-  std::string result_dir;      ///< empty = no result
-  std::string result_json;     ///< text of result.json, empty = no result
-  bool files_pending = false;  ///< files of the result are still to be made
+  std::string result_dir;             ///< empty = no result
+  std::string result_json;            ///< text of result.json, empty = no result
+  bool files_pending = false;         ///< files of the result are still to be made
+  std::vector<StoredValue> values{};  ///< of the result, on the way into the database; JobHistory gives them back
 };
 
 }  // namespace fvd

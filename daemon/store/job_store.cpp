@@ -65,6 +65,8 @@ struct JobStore::Impl {
   Database reader FVD_GUARDED_BY(read_mutex){Database::reader_of(database)};
   Mutex log_mutex;  // held while the write-ahead log is moved; never together with another
   Database log_mover FVD_GUARDED_BY(log_mutex){Database::reader_of(database)};
+  Mutex history_mutex;  // held while long lists are read: nobody else waits for them; never together with another
+  Database history_reader FVD_GUARDED_BY(history_mutex){Database::reader_of(database)};
   mutable Mutex kept_mutex;                       // innermost
   KeptEnds kept_ends FVD_GUARDED_BY(kept_mutex);  ///< that could not be stored yet
   RecipeTable recipes{{database, mutex}, {reader, read_mutex}};
@@ -75,6 +77,7 @@ struct JobStore::Impl {
   StorageReserve reserve FVD_GUARDED_BY(mutex);
   StoreMarker marker FVD_GUARDED_BY(mutex);
   AuditTable audit{{database, mutex}, {reader, read_mutex}};
+  JobHistory history{{history_reader, history_mutex}, [this] { return kept(); }};
   std::int64_t epoch = 0;  // set before the store is used, as the next one
   std::vector<std::string> interrupted;
   std::atomic<int> waiting{0};  // ended and not acknowledged; written under the mutex, read without
@@ -222,8 +225,8 @@ void JobStore::Impl::store_kept_ends_locked() {
 }
 
 void JobStore::finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json,
-                      bool files_pending) {
-  StoredJob end{ended, result_dir, result_json, files_pending};
+                      bool files_pending, const std::vector<StoredValue>& values) {
+  StoredJob end{ended, result_dir, result_json, files_pending, values};
   if (end.status.ended_utc.empty()) end.status.ended_utc = utc_now();
   const MutexLock lock(impl_->mutex);
   bool was_running = true;  // also where the database cannot be asked
@@ -376,6 +379,7 @@ ObjectiveTable& JobStore::objectives() noexcept { return impl_->objectives; }
 AuditTable& JobStore::audit() noexcept { return impl_->audit; }
 EvaluationTable& JobStore::evaluations() noexcept { return impl_->evaluations; }
 ResultTable& JobStore::results() noexcept { return impl_->on_disk; }
+const JobHistory& JobStore::history() const noexcept { return impl_->history; }
 
 const std::vector<std::string>& JobStore::interrupted_by_start() const noexcept { return impl_->interrupted; }
 

@@ -14,6 +14,7 @@
 #include "daemon/store/audit_table.hpp"
 #include "daemon/store/curve_width_table.hpp"
 #include "daemon/store/evaluation_table.hpp"
+#include "daemon/store/job_history.hpp"
 #include "daemon/store/job_status.hpp"
 #include "daemon/store/objective_table.hpp"
 #include "daemon/store/result_table.hpp"
@@ -54,9 +55,9 @@ class JobStore {
 
   /// Makes the end of the job `ended.job_id` durable. ended.state is not kProcessing. Throws Error kUnknownJob;
   /// kDatabase and kStorageFull if the end is not on disk: it is kept in memory then and told with
-  /// JobStatus::not_durable by every function here, until it could be stored.
+  /// JobStatus::not_durable by every function here, until it could be stored. values: of its result, stored with it.
   void finish(const JobStatus& ended, const std::string& result_dir, const std::string& result_json,
-              bool files_pending = false);
+              bool files_pending = false, const std::vector<StoredValue>& values = {});
   /// The files of an ended job's result as they stand now: what differs from finish() is told in result_json. Throws
   /// Error kUnknownJob, kDatabase, kStorageFull.
   void note_files(const std::string& job_id, const std::string& result_json, bool files_pending);
@@ -106,6 +107,7 @@ class JobStore {
   [[nodiscard]] EvaluationTable& evaluations() noexcept;
   [[nodiscard]] ResultTable& results() noexcept;
   [[nodiscard]] AuditTable& audit() noexcept;
+  [[nodiscard]] const JobHistory& history() const noexcept;
 
   /// The ids of the jobs that this start found running and ended: nobody was told of their ends yet.
   [[nodiscard]] const std::vector<std::string>& interrupted_by_start() const noexcept;

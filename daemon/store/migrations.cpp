@@ -229,6 +229,30 @@ CREATE TABLE audit (
 )");
 }
 
+/// Version 13: what lists of jobs and run charts are read from. The index holds all that a list tells, so that it never
+/// looks into rows, which are long. Values are found by their job; those of jobs that ended before are not filled in.
+void keep_what_lists_and_charts_need(Database& database) {
+  database.execute(R"(
+CREATE INDEX jobs_history ON jobs (number, job_id, client, seq, part_id, recipe, state, verdict, ended_utc, error);
+CREATE TABLE job_values (
+  number      INTEGER NOT NULL,
+  measurement TEXT    NOT NULL,
+  name        TEXT    NOT NULL,
+  value       REAL,
+  u           REAL,
+  expanded_u  REAL,
+  lower       REAL,
+  upper       REAL,
+  verdict     TEXT    NOT NULL,
+  PRIMARY KEY (number, measurement, name)
+) STRICT, WITHOUT ROWID;
+CREATE TRIGGER job_values_go_with_their_job AFTER DELETE ON jobs
+BEGIN
+  DELETE FROM job_values WHERE number = old.number;
+END;
+)");
+}
+
 constexpr std::array kSteps{
     MigrationStep{"tables for jobs and starts", create_tables},
     MigrationStep{"sequence numbers belong to a client", give_sequence_numbers_to_clients},
@@ -243,6 +267,7 @@ constexpr std::array kSteps{
     MigrationStep{"sessions, verdicts and removed results of jobs, floors of numbers, the prepared recipe",
                   keep_what_a_line_asks},
     MigrationStep{"who asked for what", keep_who_asked_for_what},
+    MigrationStep{"what lists of jobs and run charts are read from", keep_what_lists_and_charts_need},
 };
 
 void require_own_file(const Database& database, int version) {

@@ -110,6 +110,7 @@ void StudyBook::take_back_refused() noexcept {
     // Hidden first: a start clears what is left of it.
     const fs::path folder = folder_ / id_of(number);
     const fs::path hidden = folder_ / ("." + id_of(number) + ".refused.tmp");
+    file_calls().remove_all(hidden);  // of the same number before
     if (file_calls().rename(folder, hidden) == 0) file_calls().remove_all(hidden);
     std::error_code error;
     return !fs::exists(folder, error) && !error;

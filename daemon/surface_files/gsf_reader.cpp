@@ -3,9 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
+#include <span>
 
 #include "daemon/export/length_text.hpp"
 #include "daemon/surface_files/file_bytes.hpp"
+#include "daemon/surface_files/map_rows.hpp"
 #include "daemon/surface_files/surface_readers.hpp"
 
 namespace fvd {
@@ -71,30 +74,66 @@ std::optional<double> told_pitch_um(const FileBytes& file, const Header& header,
   return pitch_um;
 }
 
+/// Sizes that fit the file.
+GridSize checked_size(const FileBytes& file, const Header& header) {
+  const GridSize size = size_of(file, header);
+  if (header.value("ZUnits") != "m") refuse(file.path(), "header, ZUnits", "the heights are not in m");
+  const std::uint64_t needed = header.data_offset + size.points() * sizeof(float);
+  if (file.size() != needed) {
+    refuse(file.path(), byte_place(header.data_offset),
+           "the file has " + std::to_string(file.size()) + " bytes in place of " + std::to_string(needed));
+  }
+  return size;
+}
+
+void clear_infinities(std::span<float> heights) {
+  for (float& height : heights) {
+    if (!std::isfinite(height)) height = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+class GsfRows final : public MapRows {
+ public:
+  explicit GsfRows(const std::filesystem::path& path) : file_(path) {
+    const Header header = header_of(file_);
+    size_ = checked_size(file_, header);
+    data_offset_ = header.data_offset;
+  }
+  [[nodiscard]] GridSize size() const noexcept override { return size_; }
+  void read(int x, int y, int count, float* to) const override {
+    const auto point =
+        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(size_.width) + static_cast<std::uint64_t>(x);
+    const std::span<float> heights(to, static_cast<std::size_t>(count));
+    file_.read(data_offset_ + point * sizeof(float), heights.data(), heights.size_bytes());
+    clear_infinities(heights);
+  }
+
+ private:
+  FileBytes file_;
+  GridSize size_;
+  std::uint64_t data_offset_ = 0;
+};
+
 }  // namespace
 
 Surface read_gsf(const std::filesystem::path& path, const SurfaceReadOptions& options) {
   const FileBytes file(path);
   const Header header = header_of(file);
-  const GridSize size = size_of(file, header);
-  if (header.value("ZUnits") != "m") refuse(path, "header, ZUnits", "the heights are not in m");
+  const GridSize size = checked_size(file, header);
   const double pitch_x_um =
       pitch_of(path, "header, XReal", told_pitch_um(file, header, "XReal", size.width), options.pitch_x_um);
   const double pitch_y_um =
       pitch_of(path, "header, YReal", told_pitch_um(file, header, "YReal", size.height), options.pitch_y_um);
-  const std::uint64_t needed = header.data_offset + size.points() * sizeof(float);
-  if (file.size() != needed) {
-    refuse(path, byte_place(header.data_offset),
-           "the file has " + std::to_string(file.size()) + " bytes in place of " + std::to_string(needed));
-  }
   Surface surface = empty_surface(path, size, pitch_x_um, pitch_y_um);
   const auto heights = surface.height_m.pixels();
   file.read(header.data_offset, heights.data(), heights.size_bytes());
-  for (float& height : heights) {
-    if (!std::isfinite(height)) height = std::numeric_limits<float>::quiet_NaN();
-  }
+  clear_infinities(heights);
   if (!header.value("Title").empty()) surface.title = header.value("Title");
   return surface;
+}
+
+std::shared_ptr<const MapRows> open_gsf_rows(const std::filesystem::path& path) {
+  return std::make_shared<GsfRows>(path);
 }
 
 }  // namespace fvd

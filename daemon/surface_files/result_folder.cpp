@@ -7,6 +7,7 @@
 #include "core/focus/lateral_period.hpp"
 #include "daemon/export/result_json.hpp"
 #include "daemon/surface_files/file_bytes.hpp"
+#include "daemon/surface_files/png_rows.hpp"
 #include "daemon/surface_files/surface_readers.hpp"
 #include "drivers/replay/image_file.hpp"
 
@@ -22,6 +23,18 @@ struct Candidate {
   const char* name;
   Surface (*read)(const fs::path&, const SurfaceReadOptions&);
 };
+
+constexpr Candidate kHeights[] = {
+    {"height.tiff", read_float_tiff}, {"height.gsf", read_gsf}, {"height.sdf", read_sdf}, {"height.x3p", read_x3p}};
+constexpr Candidate kSigmas[] = {{"sigma.tiff", read_float_tiff}, {"sigma.gsf", read_gsf}};
+
+template <std::size_t size>
+fs::path first_path(const fs::path& folder, const Candidate (&candidates)[size]) {
+  for (const Candidate& candidate : candidates) {
+    if (is_plain_file(folder / candidate.name)) return folder / candidate.name;
+  }
+  return {};
+}
 
 /// The first of the files that is there; nothing where none is.
 template <std::size_t size>
@@ -40,21 +53,9 @@ void check_shape(const fs::path& path, int width, int height, const Surface& sur
              std::to_string(surface.width()) + " x " + std::to_string(surface.height()));
 }
 
-/// Looked at first: the decoder takes memory for whatever size the head tells.
-void check_png_size(const fs::path& path, const Surface& surface) {
-  constexpr std::size_t kPlace = 16;  // of width and height, big-endian, behind signature and chunk head
-  const std::string head = FileBytes(path).text(kPlace, 8);
-  if (head.size() < 8) refuse(path, byte_place(kPlace), "the file ends");
-  const auto side = [&head](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = at; i < at + 4; ++i) value = value << 8U | static_cast<unsigned char>(head[i]);
-    return static_cast<int>(std::min(value, 0x7FFFFFFFU));
-  };
-  check_shape(path, side(0), side(4), surface);
-}
-
 Plane<MaskReasons> mask_of(const fs::path& path, const Surface& surface) {
-  check_png_size(path, surface);
+  const GridSize told = png_size(path);  // looked at first: the decoder takes memory for it
+  check_shape(path, told.width, told.height, surface);
   ImageFile image;
   try {
     read_png(path, image);
@@ -70,6 +71,14 @@ Plane<MaskReasons> mask_of(const fs::path& path, const Surface& surface) {
 }
 
 }  // namespace
+
+bool is_plain_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(fs::symlink_status(path, error));
+}
+
+fs::path heights_file(const fs::path& folder) { return first_path(folder, kHeights); }
+fs::path sigma_file(const fs::path& folder) { return first_path(folder, kSigmas); }
 
 Result read_result(const fs::path& folder) {
   const fs::path path = folder / "result.json";
@@ -91,9 +100,6 @@ ResultSurface read_result_surface(const fs::path& folder, const SurfaceReadOptio
   SurfaceReadOptions pitch;
   pitch.pitch_x_um = pitch_of(json, "/focus/pixel_pitch_x_um", focus.pixel_pitch_x_um, options.pitch_x_um);
   pitch.pitch_y_um = pitch_of(json, "/focus/pixel_pitch_y_um", focus.pixel_pitch_y_um, options.pitch_y_um);
-  constexpr Candidate kHeights[] = {
-      {"height.tiff", read_float_tiff}, {"height.gsf", read_gsf}, {"height.sdf", read_sdf}, {"height.x3p", read_x3p}};
-  constexpr Candidate kSigmas[] = {{"sigma.tiff", read_float_tiff}, {"sigma.gsf", read_gsf}};
   auto heights = first_of(folder, kHeights, pitch);
   if (!heights) refuse(folder, "folder", "it has no height.tiff, height.gsf, height.sdf or height.x3p");
   Surface& surface = read.surface = std::move(*heights);

@@ -24,4 +24,12 @@ struct ResultSurface {
 [[nodiscard]] ResultSurface read_result_surface(const std::filesystem::path& folder,
                                                 const SurfaceReadOptions& options = {});
 
+/// Whether a regular file is there, and no link to one.
+[[nodiscard]] bool is_plain_file(const std::filesystem::path& path);
+
+/// The files that read_result_surface() takes heights and standard errors from, as far as they are plain files; empty =
+/// there is none. context: thread-safe.
+[[nodiscard]] std::filesystem::path heights_file(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path sigma_file(const std::filesystem::path& folder);
+
 }  // namespace fvd

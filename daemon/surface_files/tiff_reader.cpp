@@ -5,9 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/surface_files/file_bytes.hpp"
+#include "daemon/surface_files/map_rows.hpp"
 #include "daemon/surface_files/surface_readers.hpp"
 #include "drivers/replay/tiff_handle.hpp"
 
@@ -48,28 +52,43 @@ void check_layout(const FileBytes& file, TIFF* tiff, const TiffPage& page) {
   if (TIFFIsTiled(tiff) != 0) refuse(path, "page 1", "tiles are not read");
 }
 
-/// Uncompressed strips are read by their places: libtiff would take a strip, which may be all of the file, at once.
-void read_plain(const FileBytes& file, TIFF* tiff, const TiffPage& page, Surface& surface) {
-  std::uint64_t* offsets = nullptr;
-  std::uint32_t rows_per_strip = page.height;
-  TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows_per_strip);
-  if (TIFFGetField(tiff, TIFFTAG_STRIPOFFSETS, &offsets) != 1 || offsets == nullptr || rows_per_strip == 0) {
-    refuse(file.path(), "page 1, StripOffsets", "it is missing");
-  }
-  const std::uint32_t strips = TIFFNumberOfStrips(tiff);
-  const bool wide = page.bits == 64;
-  const std::size_t bytes = wide ? sizeof(double) : sizeof(float);
-  std::string row(page.width * bytes, '\0');
-  for (std::uint32_t y = 0; y < page.height; ++y) {
-    const std::uint32_t strip = y / rows_per_strip;
-    if (strip >= strips) refuse(file.path(), "page 1, StripOffsets", "there are too few strips");
-    file.read(offsets[strip] + static_cast<std::uint64_t>(y % rows_per_strip) * row.size(), row.data(), row.size());
-    if (TIFFIsByteSwapped(tiff) != 0) {
-      for (std::size_t at = 0; at < row.size(); at += bytes) std::reverse(row.data() + at, row.data() + at + bytes);
+/// Where the rows of an uncompressed page stand: libtiff would take a strip, which may be all of the file, at once.
+class PlainRows {
+ public:
+  PlainRows(const FileBytes& file, TIFF* tiff, const TiffPage& page)
+      : width_(page.width), bytes_(page.bits / 8U), swapped_(TIFFIsByteSwapped(tiff) != 0) {
+    std::uint64_t* offsets = nullptr;
+    rows_per_strip_ = page.height;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows_per_strip_);
+    if (TIFFGetField(tiff, TIFFTAG_STRIPOFFSETS, &offsets) != 1 || offsets == nullptr || rows_per_strip_ == 0) {
+      refuse(file.path(), "page 1, StripOffsets", "it is missing");
     }
-    put_row(row.data(), wide, surface.height_m.row(static_cast<int>(y)), surface.width());
+    strips_.assign(offsets, offsets + TIFFNumberOfStrips(tiff));
+    if ((page.height - 1) / rows_per_strip_ >= strips_.size()) {
+      refuse(file.path(), "page 1, StripOffsets", "there are too few strips");
+    }
   }
-}
+
+  void read(const FileBytes& file, int x, int y, int count, float* to) const {
+    const auto row = static_cast<std::uint64_t>(y);
+    const std::uint64_t place = strips_[row / rows_per_strip_] + row % rows_per_strip_ * width_ * bytes_;
+    std::string samples(static_cast<std::size_t>(count) * bytes_, '\0');
+    file.read(place + static_cast<std::uint64_t>(x) * bytes_, samples.data(), samples.size());
+    if (swapped_) {
+      for (std::size_t at = 0; at < samples.size(); at += bytes_) {
+        std::reverse(samples.data() + at, samples.data() + at + bytes_);
+      }
+    }
+    put_row(samples.data(), bytes_ == sizeof(double), to, count);
+  }
+
+ private:
+  std::uint32_t width_;
+  std::size_t bytes_;  // of a sample
+  bool swapped_;
+  std::uint32_t rows_per_strip_ = 0;
+  std::vector<std::uint64_t> strips_;
+};
 
 void read_compressed(const FileBytes& file, TIFF* tiff, const TiffPage& page, const std::string& error,
                      Surface& surface) {
@@ -84,29 +103,60 @@ void read_compressed(const FileBytes& file, TIFF* tiff, const TiffPage& page, co
   }
 }
 
+/// A file that was looked at: its sizes fit.
+struct FloatTiff {
+  explicit FloatTiff(const std::filesystem::path& path) : file(path), tiff(open_tiff(path, error)) {
+    if (!tiff) refuse(path, byte_place(0), error.empty() ? "it is no TIFF" : error);
+    page = page_of(tiff.get());
+    check_layout(file, tiff.get(), page);
+    size = grid_size(path, "page 1, ImageWidth and ImageLength", page.width, page.height);
+    const std::uint64_t bytes = size.points() * (page.bits / 8U);
+    if (is_plain() && bytes > file.size()) refuse(path, "page 1", "the file is too short for its number of points");
+    if (bytes / kMaxRatio > file.size()) refuse(path, "page 1", "it is compressed by more than 200");
+  }
+  [[nodiscard]] bool is_plain() const { return page.compression == COMPRESSION_NONE; }
+
+  FileBytes file;
+  std::string error;  // before the handle, whose errors go there
+  Tiff tiff;
+  TiffPage page;
+  GridSize size;
+};
+
+class TiffRows final : public MapRows {
+ public:
+  TiffRows(FileBytes&& file, const GridSize& size, PlainRows&& rows)
+      : file_(std::move(file)), size_(size), rows_(std::move(rows)) {}
+  [[nodiscard]] GridSize size() const noexcept override { return size_; }
+  void read(int x, int y, int count, float* to) const override { rows_.read(file_, x, y, count, to); }
+
+ private:
+  const FileBytes file_;
+  const GridSize size_;
+  const PlainRows rows_;
+};
+
 }  // namespace
 
 Surface read_float_tiff(const std::filesystem::path& path, const SurfaceReadOptions& options) {
-  const FileBytes file(path);
-  std::string error;
-  const Tiff tiff = open_tiff(path, error);
-  if (!tiff) refuse(path, byte_place(0), error.empty() ? "it is no TIFF" : error);
-  const TiffPage page = page_of(tiff.get());
-  check_layout(file, tiff.get(), page);
-  const GridSize size = grid_size(path, "page 1, ImageWidth and ImageLength", page.width, page.height);
+  const FloatTiff tiff(path);
   const double pitch_x_um = pitch_of(path, "page 1", std::nullopt, options.pitch_x_um);
   const double pitch_y_um = pitch_of(path, "page 1", std::nullopt, options.pitch_y_um);
-  const std::uint64_t bytes = size.points() * (page.bits / 8U);
-  const bool plain = page.compression == COMPRESSION_NONE;
-  if (plain && bytes > file.size()) refuse(path, "page 1", "the file is too short for its number of points");
-  if (bytes / kMaxRatio > file.size()) refuse(path, "page 1", "it is compressed by more than 200");
-  Surface surface = empty_surface(path, size, pitch_x_um, pitch_y_um);
-  if (plain) {
-    read_plain(file, tiff.get(), page, surface);
-  } else {
-    read_compressed(file, tiff.get(), page, error, surface);
+  Surface surface = empty_surface(path, tiff.size, pitch_x_um, pitch_y_um);
+  if (!tiff.is_plain()) {
+    read_compressed(tiff.file, tiff.tiff.get(), tiff.page, tiff.error, surface);
+    return surface;
   }
+  const PlainRows rows(tiff.file, tiff.tiff.get(), tiff.page);
+  for (int y = 0; y < surface.height(); ++y) rows.read(tiff.file, 0, y, surface.width(), surface.height_m.row(y));
   return surface;
+}
+
+std::shared_ptr<const MapRows> open_tiff_rows(const std::filesystem::path& path) {
+  FloatTiff tiff(path);
+  if (!tiff.is_plain()) return nullptr;
+  PlainRows rows(tiff.file, tiff.tiff.get(), tiff.page);
+  return std::make_shared<TiffRows>(std::move(tiff.file), tiff.size, std::move(rows));
 }
 
 }  // namespace fvd

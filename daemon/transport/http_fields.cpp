@@ -79,11 +79,10 @@ std::string http_date(std::chrono::system_clock::time_point time) {
   std::tm utc{};
   ::gmtime_r(&seconds, &utc);
   std::array<char, 128> text{};  // by hand: strftime() writes names in the language of the system
-  const int length =
-      std::snprintf(text.data(), text.size(), "%s, %02d %s %04d %02d:%02d:%02d GMT",
-                    kDays.at(static_cast<std::size_t>(utc.tm_wday)), utc.tm_mday,
-                    kMonths.at(static_cast<std::size_t>(utc.tm_mon)), utc.tm_year + 1900, utc.tm_hour, utc.tm_min,
-                    utc.tm_sec);
+  const int length = std::snprintf(text.data(), text.size(), "%s, %02d %s %04d %02d:%02d:%02d GMT",
+                                   kDays.at(static_cast<std::size_t>(utc.tm_wday)), utc.tm_mday,
+                                   kMonths.at(static_cast<std::size_t>(utc.tm_mon)), utc.tm_year + 1900, utc.tm_hour,
+                                   utc.tm_min, utc.tm_sec);
   return {text.data(), static_cast<std::size_t>(length)};
 }
 

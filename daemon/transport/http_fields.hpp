@@ -25,8 +25,8 @@ inline constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kS
 /// True where Accept-Encoding names gzip, or anything, and not with q=0.
 [[nodiscard]] bool takes_gzip(std::string_view accept_encoding);
 
-/// True where If-None-Match has this ETag, or "*": the client has what it asks for. Weak and strong ones are compared as
-/// if they were weak. etag: with its quotes; an empty one matches nothing.
+/// True where If-None-Match has this ETag, or "*": the client has what it asks for. Weak and strong ones are compared
+/// as if they were weak. etag: with its quotes; an empty one matches nothing.
 [[nodiscard]] bool names_etag(std::string_view if_none_match, std::string_view etag);
 
 /// True for what a field's value may hold: printable ASCII and blanks, so that nothing in it can begin another field.

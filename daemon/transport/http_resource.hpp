@@ -23,9 +23,10 @@ struct ResourceRequest {
   std::optional<std::string> if_none_match;
   std::optional<std::string> range;
   std::optional<std::string> if_range;
-  std::string address;                      ///< of the client
-  std::chrono::milliseconds waited{0};      ///< since it was first asked; see ResourceAnswer::again_after
+  std::string address;                  ///< of the client
+  std::chrono::milliseconds waited{0};  ///< since it was first asked; see ResourceAnswer::again_after
   std::optional<std::string> last_event_id{};
+  bool has_token = false;  ///< that somebody has
 };
 
 /// A body that is made while it is sent, so that one piece of it is in memory at a time. context: one thread at a time.
@@ -42,15 +43,15 @@ class BodySource {
 class StreamSource {
  public:
   virtual ~StreamSource() = default;
-  /// What there is to send now, 64 KiB or one event that is longer; empty: nothing. Blocks for nothing. It is not called
-  /// before what it gave last was sent: a client that does not read holds one piece in memory, and loses what this has
-  /// dropped by the next call. One that reads nothing for a minute is closed.
+  /// What there is to send now, 64 KiB or one event that is longer; empty: nothing. Blocks for nothing. It is not
+  /// called before what it gave last was sent: a client that does not read holds one piece in memory, and loses what
+  /// this has dropped by the next call. One that reads nothing of a piece for 15 s is closed.
   virtual std::string next() = 0;
   /// Sent every ping_period() whatever else is sent, so that both ends notice when the other is gone.
   [[nodiscard]] virtual std::string ping() const = 0;
   [[nodiscard]] virtual std::chrono::milliseconds ping_period() const = 0;
-  /// ready: called, from any thread, when next() may have something; it returns at once. An empty one ends it: after the
-  /// return the one before is not called again.
+  /// ready: called, from any thread, when next() may have something; it returns at once. An empty one ends it: after
+  /// the return the one before is not called again.
   virtual void on_ready(std::function<void()> ready) = 0;
 };
 
@@ -64,6 +65,7 @@ struct ResourceAnswer {
   /// If there is one, nothing is sent yet: the same request comes again after this time, with `waited` grown.
   std::optional<std::chrono::milliseconds> again_after;
   std::unique_ptr<StreamSource> stream{};  ///< if there is one, it makes a body without length, to the connection's end
+  bool is_endless = false;                 ///< the answer to HEAD, where a GET would have such a stream
 };
 
 /// Everything below one path.

@@ -66,7 +66,8 @@ struct HttpServer::Impl {
              s.access,
              gate,
              wrong_tokens,
-             refused_calls,
+             s.refusals,
+             failed_fetches,
              worker,
              logins,
              files,
@@ -179,10 +180,10 @@ struct HttpServer::Impl {
   tcp::acceptor acceptor;
   asio::steady_timer pause;
   int port = 0;
-  WrongTokens wrong_tokens;  // network thread only, as the next three
-  RefusedCalls refused_calls;
+  WrongTokens wrong_tokens;  // network thread only, as the next two
   std::set<std::shared_ptr<HttpSession>> sessions;
   std::uint64_t connections = 0;  // since the start
+  RefusedCalls failed_fetches;
   HttpSessionHost host;
   Worker worker;  // after what its tasks refer to
   Worker logins;

@@ -1,10 +1,12 @@
 #include "daemon/transport/http_session.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <boost/asio/write.hpp>
 
 #include "core/base/error.hpp"
+#include "daemon/access/access_error.hpp"
 #include "daemon/transport/http_fields.hpp"
 #include "daemon/transport/http_message.hpp"
 #include "daemon/transport/http_routes.hpp"
@@ -118,6 +120,11 @@ void HttpSession::take_head(ErrorCodeOf error) {
     note_refusal(refusal->error);
     return refuse(*refusal);
   }
+  // Beast knows a body's end where `chunked` is the last coding alone. What a body of another coding would be must not
+  // be read here as the next request.
+  if (parser_->get().count(http::field::transfer_encoding) > 0 && !parser_->chunked()) {
+    return refuse({400, "bad_request", "send a body with Content-Length, or with Transfer-Encoding: chunked alone"});
+  }
   const http::verb method = parser_->get().method();
   const bool is_get = method == http::verb::get || method == http::verb::head;
   if (head_.path == kCallPath) {
@@ -177,8 +184,8 @@ void HttpSession::recognise() {
       [&access = host_.access, token = std::string(*token)]() -> Found {
         try {
           return {access.of_token(token), {}};
-        } catch (const Error& error) {
-          return {std::nullopt, error.what()};
+        } catch (const TokensUnreadable& error) {
+          return {std::nullopt, error.reason()};
         }
       },
       &HttpSession::take_identity);
@@ -186,8 +193,9 @@ void HttpSession::recognise() {
 
 void HttpSession::take_identity(std::pair<std::optional<Identity>, std::string> found) {
   if (!found.second.empty()) {
-    const std::string why = "nobody can be recognised by a token: " + found.second;
-    note_refusal(why);
+    const std::string why =
+        "nobody can be recognised by a token: the file of tokens cannot be read; the log of fvd says why";
+    note_refusal(why, found.second);
     return refuse({503, "no_tokens", why});
   }
   if (!found.first) return refuse_token("nobody has this token");
@@ -207,8 +215,8 @@ void HttpSession::refuse_token(const std::string& why) {
   });
 }
 
-void HttpSession::note_refusal(const std::string& why) {
-  host_.refused_calls.tell(address_, "HTTP from " + caller_.peer + " was refused: " + why);
+void HttpSession::note_refusal(const std::string& why, const std::string& details) {
+  host_.refused_calls.tell(by_address_.name, "HTTP from " + caller_.peer + " was refused: " + why, details);
 }
 
 void HttpSession::answer() {
@@ -246,23 +254,31 @@ void HttpSession::watch_client() {
   socket_.async_wait(Socket::wait_read, [self = shared_from_this(), watch = watch_](ErrorCodeOf error) {
     // What ends the watch of a request that was answered is the next request.
     if (error || self->is_closed_ || watch != self->watch_) return;
-    ErrorCodeOf ignored;
-    if (self->socket_.available(ignored) == 0) self->close();
+    ErrorCodeOf gone;
+    if (self->socket_.available(gone) == 0) return self->close();
+    // Behind a stream comes no other request: what is sent all the same would hide the client's end.
+    if (!self->fetch_ || !self->fetch_->stream) return;
+    std::array<char, kDrainChunk_bytes> dropped{};
+    self->socket_.read_some(asio::buffer(dropped), gone);
+    if (gone) return self->close();
+    self->watch_client();
   });
 }
 
 void HttpSession::end_wait_now() {
   is_ending_ = true;
   if (fetch_ && fetch_->stream) return close();
-  if (fetch_ && fetch_->is_put_off) {
-    return refuse({503, "shutting_down", "the daemon stops; ask again when it is back"});
-  }
+  if (fetch_ && fetch_->is_put_off) return refuse_at_end();
   check_wait(false);
 }
 
 void HttpSession::give_up() {
-  if (waiting_) end_wait(host_.dispatcher.ended(*waiting_));
+  if (waiting_) return end_wait(host_.dispatcher.ended(*waiting_));
+  // What comes back from the worker finds no request then.
+  if (fetch_ && fetch_->is_made) refuse_at_end();
 }
+
+void HttpSession::refuse_at_end() { refuse({503, "shutting_down", "the daemon stops; ask again when it is back"}); }
 
 void HttpSession::check_wait(bool timed_out) {
   if (!waiting_) return;
@@ -314,8 +330,7 @@ void HttpSession::refuse_unread(ErrorCodeOf error) {
   }
   if (error == http::error::body_limit) {
     return refuse(
-        {413, "too_large",
-         "the body has more than " + std::to_string(kMaxBody_bytes) + " bytes; send less at a time"});
+        {413, "too_large", "the body has more than " + std::to_string(kMaxBody_bytes) + " bytes; send less at a time"});
   }
   const bool is_http = error.category() == http::make_error_code(http::error::bad_method).category();
   if (!is_http || error == http::error::end_of_stream || error == http::error::partial_message) return close();

@@ -17,8 +17,8 @@
 #include <boost/beast/http.hpp>
 
 #include "daemon/access/access_rules.hpp"
+#include "daemon/access/refused_calls.hpp"
 #include "daemon/api/dispatcher.hpp"
-#include "daemon/api/refused_calls.hpp"
 #include "daemon/transport/http_gate.hpp"
 #include "daemon/transport/http_resource.hpp"
 #include "daemon/transport/worker.hpp"
@@ -36,9 +36,10 @@ struct HttpSessionHost {
   const HttpGate& gate;
   WrongTokens& wrong_tokens;
   RefusedCalls& refused_calls;
-  Worker& worker;  ///< for calls that may block
-  Worker& logins;  ///< for the token file: nobody waits behind a slow call to be recognised
-  Worker& files;   ///< for what is fetched: no call waits behind a large map
+  RefusedCalls& failed_fetches;  ///< the same limit, for what could not be answered
+  Worker& worker;                ///< for calls that may block
+  Worker& logins;                ///< for the token file: nobody waits behind a slow call to be recognised
+  Worker& files;                 ///< for what is fetched: no call waits behind a large map
   const std::vector<MountedResource>& resources;
   std::function<void(const std::shared_ptr<HttpSession>&)> on_close;
   std::function<bool()> has_room_without_token;  ///< for one more request whose caller nobody vouches for
@@ -59,7 +60,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void resume() { check_wait(false); }
   /// The same at the daemon's end, which answers it in any case, and ends a stream.
   void end_wait_now();
-  /// Answers what waits for the worker too, which does not come back in time.
+  /// Answers what waits for the worker too, which does not come back in time: calls that wait, and what is fetched, if
+  /// nothing of it was sent yet.
   void give_up();
   /// What a connection has at work, which says when it gives way to another one.
   enum class AtWork { kNothing, kLogIn, kAnswer };
@@ -87,6 +89,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     std::unique_ptr<StreamSource> stream{};  ///< in its place
     bool keep_alive = true;                  ///< the connection, after the answer
     bool is_put_off = false;                 ///< until wait_ is over
+    bool is_made = false;                    ///< by the worker: nothing of the answer was sent
     bool owes_ping = false;                  ///< of the stream
   };
   /// The next bytes of a body; nothing where they cannot be had.
@@ -103,15 +106,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /// Finds out who the caller is, then answers.
   void recognise();
   void refuse_token(const std::string& why);
-  /// Tells the log, unless it was just told of one from there.
-  void note_refusal(const std::string& why);
+  /// Tells the log, unless it was just told of one from there. details: for the log alone, below the alarms.
+  void note_refusal(const std::string& why, const std::string& details = {});
   /// Whatever the known caller asks for.
   void answer();
   void take(Handled handled);
   void begin_wait(WaitingRequest waiting);
   void check_wait(bool timed_out);
   void end_wait(std::optional<std::string> reply);
-  /// Closes when the client does, which nobody would see during a wait otherwise; until end_request().
+  /// Closes when the client does, which nobody would see during a wait otherwise; until end_request(). A request behind
+  /// this one stays unread and hides that end; behind a stream, which no request follows, input is dropped.
   void watch_client();
   /// Runs `what`, which may block, on a worker, then the member `then` with its result on the server's thread.
   template <typename Result>
@@ -151,6 +155,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /// 200 with a reply of JSON-RPC, 204 without one.
   void send_reply(std::optional<std::string> reply);
   void refuse(const HttpRefusal& refusal);
+  /// The daemon's: with 503.
+  void refuse_at_end();
   /// Why reading failed, if the client can still be told; else closes.
   void refuse_unread(ErrorCodeOf error);
   void send(Response response);

@@ -24,7 +24,7 @@ namespace http = boost::beast::http;
 namespace {
 
 constexpr std::chrono::seconds kPieceTime{10};        // for the client to read one
-constexpr std::chrono::seconds kStreamPieceTime{60};  // the same of a stream, whose reader may have nothing to do with it
+constexpr std::chrono::seconds kStreamPieceTime{15};  // the same of a stream; as long as tune() waits for its system
 constexpr std::chrono::milliseconds kShortestPutOff{1};
 
 int status_of(ErrorCode code) {
@@ -53,24 +53,33 @@ ResourceAnswer refused(int status, std::string_view error, const std::string& me
   return answer;
 }
 
-ResourceAnswer answer_of(HttpResource& resource, const ResourceRequest& request) {
+/// Tells the log, as often as refusals at most: who fetches may do so all the time. The path and the number are no part
+/// of the error's line, which is one alarm however often it comes.
+void note_failure(RefusedCalls& failures, const std::string& address, const std::string& path, const std::string& why) {
+  const auto count = failures.count_to_tell(address, HostClock::now());
+  if (!count) return;
+  spdlog::error("what is asked for by GET cannot be answered: {}", why);
+  spdlog::info("that was GET {}; {} could not be answered since the last that was told", path, *count);
+}
+
+ResourceAnswer answer_of(HttpResource& resource, const ResourceRequest& request, RefusedCalls& failures) {
   try {
     return resource.get(request);
   } catch (const Error& error) {
-    if (status_of(error.code()) == 500) spdlog::error("GET {}: {}", request.path, error.what());
+    if (status_of(error.code()) == 500) note_failure(failures, request.address, request.path, error.what());
     return refused(status_of(error.code()), error_name(error.code()), error.what());
   } catch (const std::exception& error) {
-    spdlog::error("GET {}: {}", request.path, error.what());
+    note_failure(failures, request.address, request.path, error.what());
     return refused(500, error_name(ErrorCode::kInternal), std::string("internal error: ") + error.what());
   }
 }
 
 /// The next piece; nothing where it cannot be had.
-std::optional<std::string> next_of(BodySource& source) {
+std::optional<std::string> next_of(BodySource& source, const ResourceRequest& request, RefusedCalls& failures) {
   try {
     return source.next();
   } catch (const std::exception& error) {
-    spdlog::error("an answer ends in its middle: {}", error.what());
+    note_failure(failures, request.address, request.path, std::string("it ends in its middle: ") + error.what());
     return std::nullopt;
   }
 }
@@ -86,9 +95,8 @@ const std::string* field_of(const ResourceAnswer& answer, std::string_view name)
 /// That it can be written as it is: no field begins another one.
 bool is_sound(const ResourceAnswer& answer) {
   return answer.status >= 200 && answer.status <= 599 &&
-         std::all_of(answer.fields.begin(), answer.fields.end(), [](const auto& field) {
-           return is_field_name(field.first) && is_field_value(field.second);
-         });
+         std::all_of(answer.fields.begin(), answer.fields.end(),
+                     [](const auto& field) { return is_field_name(field.first) && is_field_value(field.second); });
 }
 
 /// The same without its body: the client has it.
@@ -107,7 +115,7 @@ std::string header_text(const ResourceAnswer& answer, bool keep_alive) {
   for (const auto& [name, value] : answer.fields) response.set(name, value);
   set_common_fields(response);
   response.keep_alive(keep_alive);
-  if (!answer.stream && !has_no_body(answer.status)) {
+  if (!answer.stream && !answer.is_endless && !has_no_body(answer.status)) {
     response.content_length(answer.source ? answer.source_bytes : answer.body.size());
   }
   std::ostringstream text;
@@ -146,6 +154,7 @@ ResourceRequest HttpSession::resource_request() const {
   request.if_range = head_.if_range;
   request.last_event_id = head_.last_event_id;
   request.address = address_;
+  request.has_token = has_token();
   return request;
 }
 
@@ -156,18 +165,21 @@ void HttpSession::fetch() {
                    "this caller may not look; send Authorization: Bearer TOKEN of one who may, or see rpc.allow"});
   }
   using Answer = std::shared_ptr<ResourceAnswer>;
+  fetch_->is_made = true;
   work<Answer>(
       host_.files,
-      [resource = fetch_->resource, request = fetch_->request] {
-        return std::make_shared<ResourceAnswer>(answer_of(*resource, request));
+      [resource = fetch_->resource, request = fetch_->request, &failures = host_.failed_fetches] {
+        return std::make_shared<ResourceAnswer>(answer_of(*resource, request, failures));
       },
       &HttpSession::take_answer);
 }
 
 void HttpSession::take_answer(std::shared_ptr<ResourceAnswer> answer) {
+  if (!fetch_) return;  // given up meanwhile
+  fetch_->is_made = false;
   if (answer->again_after) {
     if (!is_ending_) return put_off(*answer->again_after);
-    return refuse({503, "shutting_down", "the daemon stops; ask again when it is back"});
+    return refuse_at_end();
   }
   send_answer(std::move(*answer));
 }
@@ -188,7 +200,7 @@ void HttpSession::put_off(std::chrono::milliseconds time) {
 
 void HttpSession::send_answer(ResourceAnswer answer) {
   if (!is_sound(answer)) {
-    spdlog::error("GET {}: the answer has a status or a field that cannot be sent", fetch_->request.path);
+    note_failure(host_.failed_fetches, address_, fetch_->request.path, "its status or a field of it is none");
     answer = refused(500, error_name(ErrorCode::kInternal), "internal error: an answer that cannot be sent");
   }
   const std::string* etag = field_of(answer, "ETag");
@@ -227,7 +239,11 @@ void HttpSession::go_on() {
   }
   if (fetch_->left_bytes > 0) {
     return work<Piece>(
-        host_.files, [source = fetch_->source] { return next_of(*source); }, &HttpSession::take_piece);
+        host_.files,
+        [source = fetch_->source, request = fetch_->request, &failures = host_.failed_fetches] {
+          return next_of(*source, request, failures);
+        },
+        &HttpSession::take_piece);
   }
   const bool keep_alive = fetch_->keep_alive;
   end_request();

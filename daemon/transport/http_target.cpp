@@ -105,9 +105,9 @@ std::map<std::string, std::string> read_query(std::string_view text) {
 
 std::variant<HttpTarget, HttpRefusal> read_target(std::string_view target) {
   if (target.size() > kLongestTarget_bytes) {
-    return HttpRefusal{414, "target_too_long",
-                       "what is asked for has more than " + std::to_string(kLongestTarget_bytes) +
-                           " bytes; ask for less at a time"};
+    return HttpRefusal{
+        414, "target_too_long",
+        "what is asked for has more than " + std::to_string(kLongestTarget_bytes) + " bytes; ask for less at a time"};
   }
   try {
     if (target.empty() || target.front() != '/') throw Refused{"does not begin with '/'; ask for a path"};

@@ -57,12 +57,14 @@ struct RpcServer::Impl {
              dispatcher,
              worker,
              logins,
+             lists,
              std::chrono::seconds(c.idle_timeout_s),
              std::chrono::seconds(c.first_request_s),
              [this](const std::shared_ptr<RpcSession>& session) { sessions.erase(session); },
              [this](const Identity& who) { return has_room(who); }},
         worker("fvd-rpc-work"),
-        logins("fvd-rpc-login") {
+        logins("fvd-rpc-login"),
+        lists("fvd-rpc-lists") {
     listen_on(acceptor, config.address, config.port, "/rpc");
     port = acceptor.local_endpoint().port();
     local_socket.emplace(c.socket.empty() ? runtime_dir / "fvd.sock" : c.socket);
@@ -112,10 +114,10 @@ struct RpcServer::Impl {
   int port = 0;
   std::set<std::shared_ptr<RpcSession>> sessions;  // network thread only
   std::uint64_t connections = 0;                   // since the start; network thread only
-  RefusedCalls refused_connections;
   RpcSessionHost host;
   Worker worker;  // after what its tasks refer to
   Worker logins;
+  Worker lists;
   std::jthread thread;  // last
 };
 
@@ -160,7 +162,7 @@ void RpcServer::Impl::admit(RpcSession::Socket socket, Caller caller) {
   // Whoever has no role may get one by a token.
   const bool allowed = caller.who.role > Role::kNone || services.access.has_tokens();
   const bool room = allowed && has_room(caller.who);
-  if (!allowed) refused_connections.tell(caller.who.name, "a connection is refused: " + text_of(caller));
+  if (!allowed) services.refusals.tell(caller.who.name, "a connection is refused: " + text_of(caller));
   const bool may_log_in = services.access.has_tokens() && (room || has_log_in_place());
   const auto session = std::make_shared<RpcSession>(host, std::move(socket), std::move(caller));
   sessions.insert(session);

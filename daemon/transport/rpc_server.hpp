@@ -14,7 +14,8 @@ namespace fvd {
 /// A connection is closed after a line over 64 KiB, one that begins as HTTP or TLS does (nothing behind it is read), or
 /// the third line in a row that is no JSON. So is a connection above max_connections, one that is silent for
 /// idle_timeout_s, and one that does not read its replies. Owns a network thread, which answers requests for which the
-/// machine's snapshot suffices, and a thread for requests that may block: no client can delay another's ping. A client
+/// machine's snapshot suffices, and threads for requests that may block: no client can delay another's ping, and no
+/// list of jobs, values or heights another's start or result. A reply of more than 960 KiB becomes an error. A client
 /// that has closed its sending side still gets the answers to its requests, unless its connection is needed for another
 /// client.
 class RpcServer {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
@@ -17,10 +18,12 @@ namespace {
 
 /// Limit of the replies that a client has not read; beyond it the connection is closed.
 constexpr std::size_t kMaxUnsentBytes = 1U << 20U;
+/// Of one of them, so that others fit beside it.
+constexpr std::size_t kLongestReply_bytes = kMaxUnsentBytes - Dispatcher::kMaxLineBytes;
 /// Limit of consecutive lines that are no JSON: such a client speaks another protocol.
 constexpr int kMaxParseErrorsInARow = 3;
-/// A line waits for its turn after so many looks, unless it is urgent: with a client's many waits and lines, no work by
-/// their product.
+/// A line waits for its turn after so many tries, unless it is urgent, which is tried again for another job alone: with
+/// a client's many waits and lines, no work by their product.
 constexpr int kMostLooks = 4;
 constexpr std::string_view kTerminators("\n\r\0", 3);
 constexpr std::chrono::milliseconds kLongestLineEnd{3000};  // from a text to its end: networks repeat what they lose
@@ -48,7 +51,9 @@ RpcSession::RpcSession(const RpcSessionHost& host, Socket socket, Caller caller)
       caller_(std::move(caller)),
       idle_(host.context),
       wait_(host.context),
-      line_end_(host.context) {}
+      line_end_(host.context) {
+  caller_.longest_reply_bytes = kLongestReply_bytes;
+}
 
 void RpcSession::start(bool must_log_in) {
   must_log_in_ = must_log_in;
@@ -166,7 +171,7 @@ void RpcSession::process() {
       take(std::move(*handled));
     } else {
       work<Handled>(
-          host_.dispatcher.is_log_in(line.text) ? host_.logins : host_.worker,
+          worker_for(line.text),
           [text = line.text, caller = caller_](const Dispatcher& dispatcher) {
             return dispatcher.handle(text, caller);
           },
@@ -185,6 +190,11 @@ void RpcSession::process() {
   close_if_all_is_said();
 }
 
+Worker& RpcSession::worker_for(std::string_view line) const {
+  if (host_.dispatcher.is_log_in(line)) return host_.logins;
+  return host_.dispatcher.is_long(line) ? host_.lists : host_.worker;
+}
+
 void RpcSession::watch_line_end() {
   if (watches_end_ || input_.empty() || half_closed_) return;
   watches_end_ = true;
@@ -201,19 +211,17 @@ void RpcSession::watch_line_end() {
 
 void RpcSession::overtake() {
   const auto behind = waiting_ ? Dispatcher::Behind::kWait : Dispatcher::Behind::kWork;
+  std::optional<std::string> board;
   while (!refused_ && looked_at_ < lines_.size()) {
     const auto line = lines_.begin() + static_cast<std::ptrdiff_t>(looked_at_);
-    // A line of another protocol is refused when its turn comes, and nothing behind it is read.
-    if (begins_foreign_protocol(line->text) || mistake_in(line->text, line->end)) return;
-    if (line->looks == kMostLooks) {
-      ++looked_at_;
-      continue;
+    if (!std::exchange(line->is_read, true)) {
+      line->is_mistaken = begins_foreign_protocol(line->text) || mistake_in(line->text, line->end);
+      if (!line->is_mistaken) line->overtaker = host_.dispatcher.overtaker(line->text);
     }
-    Caller caller = caller_;
-    caller.received = line->received;
-    auto handled = host_.dispatcher.try_overtake(line->text, caller, behind);
+    // A line of another protocol is refused when its turn comes, and nothing behind it is read.
+    if (line->is_mistaken) return;
+    auto handled = answer_early(*line, behind, board);
     if (!handled) {
-      if (!host_.dispatcher.is_urgent(line->text)) ++line->looks;
       ++looked_at_;
       continue;
     }
@@ -221,6 +229,21 @@ void RpcSession::overtake() {
     lines_.erase(line);
     if (handled->reply) send(std::move(*handled->reply));
   }
+}
+
+std::optional<Handled> RpcSession::answer_early(Line& line, Dispatcher::Behind behind,
+                                                std::optional<std::string>& board) const {
+  if (line.overtaker == nullptr || !Dispatcher::may_overtake(*line.overtaker, caller_, behind)) return std::nullopt;
+  if (line.overtaker->about.is_urgent) {
+    if (!board) board = host_.dispatcher.job_on_board();
+    if (line.board == board) return std::nullopt;
+    line.board = board;
+  } else if (line.looks++ >= kMostLooks) {
+    return std::nullopt;
+  }
+  Caller caller = caller_;
+  caller.received = line.received;
+  return host_.dispatcher.try_handle(line.text, caller);
 }
 
 void RpcSession::take(Handled handled) {

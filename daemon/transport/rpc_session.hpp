@@ -29,6 +29,7 @@ struct RpcSessionHost {
   const Dispatcher& dispatcher;
   Worker& worker;
   Worker& logins;  ///< nobody waits behind a slow call to be recognised
+  Worker& lists;   ///< no start and no result waits behind what people look through
   std::chrono::seconds idle_timeout;
   std::chrono::seconds first_request;  ///< a connection without a valid request is closed after it
   std::function<void(const std::shared_ptr<RpcSession>&)> on_close;
@@ -73,7 +74,12 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
     std::string text;
     LineEnd end = LineEnd::kBreak;
     HostTime received;  ///< when its end came, however long it waits then
-    int looks = 0;      ///< so often it was asked in vain whether it may overtake; not of what is urgent
+
+    bool is_read = false;                ///< overtake() has looked into it, and found the next two
+    bool is_mistaken = false;            ///< nothing behind it is executed
+    const Method* overtaker = nullptr;   ///< of a request that may overtake others; null = it waits for its turn
+    int looks = 0;                       ///< so often it was tried in vain; not of what is urgent
+    std::optional<std::string> board{};  ///< of what is urgent: the job on the board when it was tried in vain
   };
 
   /// Restarts the idle timeout; an unfinished line does not restart it, an empty one does.
@@ -91,10 +97,16 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   void work(Worker& worker, std::function<Result(const Dispatcher&)> what, void (RpcSession::*then)(Result));
   /// Handles the whole lines at hand, in order; stops at a request that cannot be answered at once.
   void process();
+  /// That a line is handled by.
+  [[nodiscard]] Worker& worker_for(std::string_view line) const;
   /// A whole text whose end does not come gets a line that says so.
   void watch_line_end();
   /// Answers requests that stand behind an open one and may overtake it.
   void overtake();
+  /// The answer to one of them; nothing if it may not, or cannot yet. board: the job on the board, once it was asked
+  /// for.
+  [[nodiscard]] std::optional<Handled> answer_early(Line& line, Dispatcher::Behind behind,
+                                                    std::optional<std::string>& board) const;
   void take(Handled handled);
   void take_and_go_on(Handled handled);
   void begin_wait(WaitingRequest waiting);

@@ -9,6 +9,12 @@
 
 namespace fvd {
 
+namespace {
+
+constexpr int kUnacknowledged_ms = 15000;  // README.md, THREATS.md and http_resource.hpp tell it
+
+}  // namespace
+
 void tune(int fd) noexcept {
   const auto set = [fd](int level, int option, int value) { ::setsockopt(fd, level, option, &value, sizeof(value)); };
   set(IPPROTO_TCP, TCP_NODELAY, 1);
@@ -16,7 +22,7 @@ void tune(int fd) noexcept {
   set(IPPROTO_TCP, TCP_KEEPIDLE, 10);
   set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
   set(IPPROTO_TCP, TCP_KEEPCNT, 3);
-  set(IPPROTO_TCP, TCP_USER_TIMEOUT, 15000);
+  set(IPPROTO_TCP, TCP_USER_TIMEOUT, kUnacknowledged_ms);
 }
 
 std::string peer_of(int fd) {

@@ -49,6 +49,7 @@ StageStatus stage_status(const AxisPort& port, const AxisSample& sample, std::ve
   status.alarm_code = sample.alarm_code;
   if (sample.alarm) status.alarm_text = port.alarm_text(sample.alarm_code);
   status.position = sample.position;
+  status.sampled = sample.time;
   status.temperatures = std::move(temperatures);
   return status;
 }

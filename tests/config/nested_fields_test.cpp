@@ -159,5 +159,69 @@ TEST(SchemaOfFields, DefinesATypeThatContainsItselfOnce) {
   EXPECT_EQ(schema.at("properties").at("factors").at("additionalProperties").at("maximum"), 10.0);
 }
 
+/// Values that may be null, and where: beside a word, a number, an object, anything.
+struct Reading {
+  bool has_no_value = true;
+  double value_um = 0.0;
+  bool has_no_verdict = false;
+  std::string verdict = "pass";
+  bool has_no_limits = true;
+  double upper_um = 0.0;
+  bool has_no_note = true;
+  std::string note;
+};
+
+void describe(Fields& fields, Reading& reading) {
+  fields.nullable_field("value_um", reading.has_no_value, [&](Fields& in) {
+    in.number("value_um", reading.value_um, {-5.0, 5.0}, "a height");
+  });
+  fields.nullable_field("verdict", reading.has_no_verdict, [&](Fields& in) {
+    in.choice("verdict", reading.verdict, {"pass", "fail"}, "of it");
+  });
+  fields.nullable_field("limits", reading.has_no_limits, [&](Fields& in) {
+    in.group("limits", "of it", [&](Fields& group) { group.number("upper_um", reading.upper_um, {}, "a limit"); });
+  });
+  fields.nullable_field("note", reading.has_no_note, [&](Fields& in) { in.any("note", reading.note, 20, "anything"); });
+  fields.require("value_um");
+}
+
+TEST(ANullableField, IsReadAsNullOrAsItsValue) {
+  Reading none;
+  EXPECT_THAT(read(R"({"value_um": null, "verdict": null, "limits": null, "note": null})", none), IsEmpty());
+  EXPECT_TRUE(none.has_no_value && none.has_no_verdict && none.has_no_limits && none.has_no_note);
+  Reading some;
+  EXPECT_THAT(read(R"({"value_um": 1.5, "verdict": "fail", "limits": {"upper_um": 2}, "note": [1]})", some), IsEmpty());
+  EXPECT_FALSE(some.has_no_value || some.has_no_verdict || some.has_no_limits || some.has_no_note);
+  EXPECT_EQ(some.value_um, 1.5);
+  EXPECT_EQ(some.verdict, "fail");
+  EXPECT_EQ(some.upper_um, 2.0);
+  EXPECT_EQ(some.note, "[1]");
+}
+
+TEST(ANullableField, IsRefusedWhereItIsNeither) {
+  EXPECT_THAT(problems_of<Reading>(R"({"value_um": 6})"), ElementsAre(problem("/value_um", "-5..5, or null")));
+  EXPECT_THAT(problems_of<Reading>(R"({"value_um": "1", "verdict": "good"})"),
+              ElementsAre(problem("/value_um", ", or null"), problem("/verdict", "\"fail\", or null")));
+  EXPECT_THAT(problems_of<Reading>(R"({"value_um": 1, "limits": {"lower_um": 2}})"),
+              ElementsAre(problem("/limits/lower_um", "unknown key")));
+  EXPECT_THAT(problems_of<Reading>("{}"), ElementsAre(problem("/value_um", "is missing")));
+}
+
+TEST(ANullableField, IsWrittenAndDescribedAsBoth) {
+  Reading reading;
+  const auto described = [&reading](Fields& fields) { describe(fields, reading); };
+  EXPECT_EQ(json(fields_to_json(described)),
+            json::parse(R"({"value_um": null, "verdict": "pass", "limits": null, "note": null})"));
+  reading.has_no_value = false;
+  EXPECT_EQ(fields_to_json(described)["value_um"], 0.0);
+
+  const json properties = fields_to_schema(described, "reading")["properties"];
+  EXPECT_EQ(properties["value_um"]["type"], (json{"number", "null"}));
+  EXPECT_EQ(properties["verdict"]["enum"], (json{"pass", "fail", nullptr}));
+  EXPECT_EQ(properties["limits"]["type"], (json{"object", "null"}));
+  EXPECT_EQ(properties["limits"]["default"], nullptr);
+  EXPECT_FALSE(properties["note"].contains("type")) << "anything is null, too";
+}
+
 }  // namespace
 }  // namespace fvd

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>  // before Asio 1.74, which forgets it
+#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <spdlog/spdlog.h>
@@ -35,6 +37,21 @@ bool holds_in_any_case(std::string_view text, std::string_view lower) {
 }
 
 int calls = 0;
+std::atomic<int> fetched = 0;
+
+/// Answers whatever is fetched, after a look at what is asked for.
+class Fetched final : public HttpResource {
+ public:
+  [[nodiscard]] bool needs_view() const override { return false; }
+  [[nodiscard]] ResourceAnswer get(const ResourceRequest& request) override {
+    demand(request.path.starts_with("/") && (request.path + "/").find("/../") == std::string::npos);
+    for (const char c : request.path) demand(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
+    ++fetched;
+    ResourceAnswer answer;
+    answer.body = "fetched";
+    return answer;
+  }
+};
 
 /// One method, which is answered at once and counts.
 MethodTable methods() {
@@ -57,6 +74,9 @@ struct Front {
   const HttpGate gate{{"fvd.example"}};
   WrongTokens wrong_tokens;
   RefusedCalls refused_calls;
+  RefusedCalls failed_fetches;
+  Fetched fetched_resource;
+  const std::vector<MountedResource> resources{{"/", &fetched_resource}};
 };
 
 /// The client's end of a connection whose other end is a session in the same thread.
@@ -69,8 +89,11 @@ class Connection {
               front.gate,
               front.wrong_tokens,
               front.refused_calls,
+              front.failed_fetches,
               worker_,
               worker_,
+              worker_,
+              front.resources,
               [this](const std::shared_ptr<HttpSession>&) { closed_ = true; },
               [] { return true; }} {
     std::array<int, 2> ends{};
@@ -138,6 +161,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const std::string_view stream(reinterpret_cast<const char*>(bytes) + 1, size - 1);
 
   calls = 0;
+  fetched = 0;
   Connection whole(front);
   whole.send(stream);
   const std::string answers = whole.finish();
@@ -148,8 +172,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     demand(holds_in_any_case(stream, "host"));
   }
   const int calls_of_whole = calls;
-  // A token is looked for on a worker, in its own time.
-  if (holds_in_any_case(stream, "authorization")) return 0;
+  if (fetched > 0) demand(holds_in_any_case(stream, "host"));
+  // A token is looked for on a worker, in its own time; so is what is fetched, and what is called behind it.
+  if (holds_in_any_case(stream, "authorization") || holds_in_any_case(stream, "get ") ||
+      holds_in_any_case(stream, "head ")) {
+    return 0;
+  }
   Connection pieces(front);
   for (std::size_t at = 0; at < stream.size(); at += piece) pieces.send(stream.substr(at, piece));
   (void)pieces.finish();

@@ -36,6 +36,7 @@ class Connection {
               dispatcher,
               worker,
               worker,
+              worker,
               std::chrono::minutes(5),
               std::chrono::minutes(5),
               [this](const std::shared_ptr<RpcSession>&) { closed_ = true; },

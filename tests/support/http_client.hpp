@@ -28,9 +28,33 @@ class HttpClient {
            "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n" + more +
            "\r\n" + body;
   }
+  /// A GET as a browser sends it for a page of this address.
+  [[nodiscard]] std::string get_request(const std::string& target, const std::string& more = "",
+                                        const std::string& method = "GET") const {
+    return method + " " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port_) +
+           "\r\nSec-Fetch-Site: same-origin\r\n" + more + "\r\n";
+  }
+  std::optional<HttpReply> get(const std::string& target, const std::string& more = "") {
+    return ask(get_request(target, more));
+  }
+  std::optional<HttpReply> head(const std::string& target, const std::string& more = "") {
+    send(get_request(target, more, "HEAD"));
+    return head_reply();
+  }
   bool send(const std::string& bytes) { return client_.send(bytes); }
   /// Nothing if the server closes, or says nothing in time.
   std::optional<HttpReply> reply(std::chrono::milliseconds within = std::chrono::seconds(15)) {
+    auto reply = head_reply(within);
+    if (!reply) return std::nullopt;
+    const auto length = reply->fields.find("content-length");
+    if (length == reply->fields.end()) return reply;
+    const auto body = body_bytes(static_cast<std::size_t>(std::atoll(length->second.c_str())), within);
+    if (!body) return std::nullopt;
+    reply->body = *body;
+    return reply;
+  }
+  /// Up to the body, which the answer to HEAD has not.
+  std::optional<HttpReply> head_reply(std::chrono::milliseconds within = std::chrono::seconds(15)) {
     HttpReply reply;
     auto line = client_.line(within);
     if (!line || line->rfind("HTTP/1.1 ", 0) != 0) return std::nullopt;
@@ -42,12 +66,15 @@ class HttpClient {
       reply.fields[name] = line->substr(colon + 2, line->size() - colon - 3);
     }
     if (!line) return std::nullopt;
-    const auto length = reply.fields.find("content-length");
-    if (length == reply.fields.end()) return reply;
-    const auto body = client_.bytes(static_cast<std::size_t>(std::atoll(length->second.c_str())), within);
-    if (!body) return std::nullopt;
-    reply.body = *body;
     return reply;
+  }
+  /// More of a body, as LineClient gives it.
+  std::optional<std::string> line(std::chrono::milliseconds within = std::chrono::seconds(15)) {
+    return client_.line(within);
+  }
+  std::optional<std::string> body_bytes(std::size_t count,
+                                        std::chrono::milliseconds within = std::chrono::seconds(15)) {
+    return client_.bytes(count, within);
   }
   std::optional<HttpReply> ask(const std::string& bytes) {
     send(bytes);

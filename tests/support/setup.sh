@@ -6,6 +6,8 @@
 # FVD_FLAGS       flags of the compiler in place of those of the build type RelWithDebInfo (assertions stay on)
 # FVD_TEST_FLAGS  flags of what lies below tests, after those
 # FVD_UNITY       ON: the test sources of one program compile together
+# FVD_WEB         the operator page: ON, OFF or AUTO (default: ON where npm is found, so that a page that does not build
+#                 fails the build; else AUTO)
 
 FVD_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 FVD_BUILD=${FVD_BUILD_DIR:-$FVD_ROOT/build}
@@ -77,6 +79,9 @@ fvd_cmake() {
   [ -z "${FVD_CXX:-}" ] || flags=(-DCMAKE_CXX_COMPILER="$FVD_CXX")
   [ -z "${FVD_FLAGS:-}" ] || flags+=(-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$FVD_FLAGS")
   [ -z "${FVD_TEST_FLAGS:-}" ] || flags+=(-DFVD_TEST_FLAGS="$FVD_TEST_FLAGS")
+  local web=AUTO
+  if command -v npm >/dev/null; then web=ON; fi
+  flags+=(-DFVD_WEB="${FVD_WEB:-$web}")
   flags+=(-DFVD_UNITY="${FVD_UNITY:-OFF}")  # off again for the checks, which look at every source
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
     -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" "${flags[@]}"

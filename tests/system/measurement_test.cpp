@@ -58,6 +58,13 @@ TEST_F(AMicroscope, MeasuresTheChaptersSurface) {
   const json record = json::parse(test::read_text(result_dir(1) / "result.json"));
   EXPECT_EQ(record["provenance"]["simulated"], true);
   EXPECT_LE(record["steps"]["error_max_um"].get<double>(), 0.2);
+  const json listed = ask("job.list", json::object());
+  ASSERT_EQ(listed["jobs"].size(), 1U) << listed.dump();
+  EXPECT_EQ(listed["jobs"][0]["job_id"], ended["job_id"]);
+  EXPECT_EQ(listed["jobs"][0]["ended_utc"], ended["ended_utc"]);
+  const json points = ask("value.list", {{"measurement", "map"}, {"value", "height_median"}})["points"];
+  ASSERT_EQ(points.size(), 1U);
+  EXPECT_NEAR(points[0]["value"].get<double>(), record["values"]["height"]["median_um"].get<double>(), 1e-4);
 }
 
 TEST_F(AMicroscope, MeasuresAsWellWithAControllerThatSpeaksGcs) {

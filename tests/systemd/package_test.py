@@ -124,11 +124,12 @@ class Life:
                  if (path / "fvd.sqlite").exists()]
         assert found, "no database"
         database = sqlite3.connect(found[0] / "fvd.sqlite")
-        for index in ("jobs_with_results", "jobs_with_removed_results"):
+        database.execute("DROP TRIGGER job_values_go_with_their_job")
+        for index in ("jobs_with_results", "jobs_with_removed_results", "jobs_history"):
             database.execute(f"DROP INDEX {index}")
         for column in ("session", "verdict", "reason_codes", "removed_utc"):
             database.execute(f"ALTER TABLE jobs DROP COLUMN {column}")
-        for table in ("audit", "seq_floors", "prepared_recipe"):
+        for table in ("job_values", "audit", "seq_floors", "prepared_recipe"):
             database.execute(f"DROP TABLE {table}")
         database.execute("PRAGMA user_version = 10")
         database.commit()

@@ -3,6 +3,7 @@
 /// Heights along a line across a surface.
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "core/metrology/height_field.hpp"
@@ -32,8 +33,21 @@ struct ProfileLine {
 /// stretched so that whole numbers of them fill line and band), and are bilinear between the four points around them: a
 /// neighbour of any weight that is missing makes the sample a hole. Own definition.
 ///
-/// Throws Error(kBadInput) where the line has under two points, a number is not finite, or line or band leave the
-/// field. context: pure.
+/// Throws Error(kBadInput) where the line has under two points or a number is not finite, Error(kRegionOutside) where
+/// line or band leave the field. context: pure.
 [[nodiscard]] Profile extract_profile(const HeightField& field, const ProfileLine& line);
+
+/// A field whose points are somewhere else, such as in a file: a line needs few of them.
+struct PointField {
+  int width = 0;
+  int height = 0;
+  double pitch_x_um = 1.0;  ///< > 0
+  double pitch_y_um = 1.0;  ///< > 0
+  /// NaN = hole; asked for points of the field alone, some of them several times. What it throws is passed on.
+  std::function<double(int column, int row)> z_um;
+};
+
+/// The same bit for bit.
+[[nodiscard]] Profile extract_profile(const PointField& field, const ProfileLine& line);
 
 }  // namespace fvd::metrology

@@ -19,9 +19,16 @@ struct Place {
   double y_um;
 };
 
-/// Distance between neighbouring points of the field in the direction of a unit vector.
-double pitch_along(const HeightField& field, double unit_x, double unit_y) {
-  return 1.0 / std::hypot(unit_x / field.pitch_x_um, unit_y / field.pitch_y_um);
+struct Grid {
+  int width;
+  int height;
+  double pitch_x_um;
+  double pitch_y_um;
+};
+
+/// Distance between neighbouring points of the grid in the direction of a unit vector.
+double pitch_along(const Grid& grid, double unit_x, double unit_y) {
+  return 1.0 / std::hypot(unit_x / grid.pitch_x_um, unit_y / grid.pitch_y_um);
 }
 
 struct Neighbours {
@@ -36,18 +43,19 @@ Neighbours neighbours(double position_px) {
   return {static_cast<int>(below), position_px - below};
 }
 
-double height_or_hole(const HeightField& field, int column, int row) {
-  if (column < 0 || row < 0 || column >= field.width() || row >= field.height()) return kHole;
-  return field.z_um.at(column, row);
-}
-
-double sample(const HeightField& field, const Place& place) {
-  const Neighbours x = neighbours(place.x_um / field.pitch_x_um - 0.5);
-  const Neighbours y = neighbours(place.y_um / field.pitch_y_um - 0.5);
+/// heights: called with column and row of a point of the grid.
+template <typename Heights>
+double sample(const Grid& grid, const Heights& heights, const Place& place) {
+  const auto height_or_hole = [&](int column, int row) {
+    if (column < 0 || row < 0 || column >= grid.width || row >= grid.height) return kHole;
+    return static_cast<double>(heights(column, row));
+  };
+  const Neighbours x = neighbours(place.x_um / grid.pitch_x_um - 0.5);
+  const Neighbours y = neighbours(place.y_um / grid.pitch_y_um - 0.5);
   const auto along_row = [&](int row) {
-    const double left = height_or_hole(field, x.first, row);
+    const double left = height_or_hole(x.first, row);
     if (x.second_weight == 0.0) return left;
-    return (1.0 - x.second_weight) * left + x.second_weight * height_or_hole(field, x.first + 1, row);
+    return (1.0 - x.second_weight) * left + x.second_weight * height_or_hole(x.first + 1, row);
   };
   const double upper = along_row(y.first);
   if (y.second_weight == 0.0) return upper;
@@ -60,23 +68,22 @@ std::string figures(const Place& place) {
   return text;
 }
 
-void require_inside(const HeightField& field, const Place& place, const char* what) {
-  const Place end{field.width() * field.pitch_x_um, field.height() * field.pitch_y_um};
+void require_inside(const Grid& grid, const Place& place, const char* what) {
+  const Place end{grid.width * grid.pitch_x_um, grid.height * grid.pitch_y_um};
   const double slack = 1e-9 * (end.x_um + end.y_um);
   if (place.x_um >= -slack && place.y_um >= -slack && place.x_um <= end.x_um + slack &&
       place.y_um <= end.y_um + slack) {
     return;
   }
-  throw Error(ErrorCode::kBadInput, std::string("profile: ") + what + " " + figures(place) +
-                                        " is outside the field, which ends at " + figures(end));
+  throw Error(ErrorCode::kRegionOutside, std::string("profile: ") + what + " " + figures(place) +
+                                             " is outside the field, which ends at " + figures(end));
 }
 
 /// The middle of one of count equal pieces of a length.
 double middle_of(int piece, int count, double length) { return (piece + 0.5) * length / count; }
 
-}  // namespace
-
-Profile extract_profile(const HeightField& field, const ProfileLine& line) {
+template <typename Heights>
+Profile extracted(const Grid& field, const Heights& heights, const ProfileLine& line) {
   const double dx = line.to_x_um - line.from_x_um;
   const double dy = line.to_y_um - line.from_y_um;
   const double length = std::hypot(dx, dy);
@@ -110,8 +117,9 @@ Profile extract_profile(const HeightField& field, const ProfileLine& line) {
     int valid = 0;
     for (int j = 0; j < across; ++j) {
       const double offset = across > 1 ? middle_of(j, across, line.band_width_um) - half_band : 0.0;
-      const double z = sample(field, {line.from_x_um + along * unit_x - offset * unit_y,
-                                      line.from_y_um + along * unit_y + offset * unit_x});
+      const double z = sample(
+          field, heights,
+          {line.from_x_um + along * unit_x - offset * unit_y, line.from_y_um + along * unit_y + offset * unit_x});
       if (std::isnan(z)) continue;
       sum += z;
       ++valid;
@@ -120,6 +128,18 @@ Profile extract_profile(const HeightField& field, const ProfileLine& line) {
     profile.z_um.push_back(enough ? sum / valid : kHole);
   }
   return profile;
+}
+
+}  // namespace
+
+Profile extract_profile(const HeightField& field, const ProfileLine& line) {
+  return extracted(
+      {field.width(), field.height(), field.pitch_x_um, field.pitch_y_um},
+      [&field](int column, int row) { return field.z_um.at(column, row); }, line);
+}
+
+Profile extract_profile(const PointField& field, const ProfileLine& line) {
+  return extracted({field.width, field.height, field.pitch_x_um, field.pitch_y_um}, field.z_um, line);
 }
 
 }  // namespace fvd::metrology

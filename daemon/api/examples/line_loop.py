@@ -7,7 +7,7 @@ import sys
 import time
 
 CONNECT_S, REPLY_S, RETRY_S, POLL_S = 3.0, 1.0, 0.5, 0.1
-SEQ_CONFLICT, SEQ_STALE, UNKNOWN_JOB, INTERRUPTED = 1009, 1010, 1007, 1014
+SEQ_CONFLICT, SEQ_STALE, UNKNOWN_JOB, INTERRUPTED, NO_CONTROL = 1009, 1010, 1007, 1014, 1003
 
 
 class Line:
@@ -18,6 +18,7 @@ class Line:
 
     def ask(self, method, expected=(), **params):
         """The result, or an expected error. Without a reply in time: the same request again on a new connection."""
+        is_told = False
         while True:
             self.id += 1
             try:
@@ -37,8 +38,11 @@ class Line:
                 continue
             if "result" in reply:
                 return reply["result"]
-            if reply["error"]["data"]["retry"]:
-                time.sleep(POLL_S)  # 1001 not ready, 1002 busy, 1013 shutting down: it will be back; 1003: somebody has control
+            if reply["error"]["data"]["retry"]:  # 1001 not ready, 1002 busy, 1013 shutting down: it will be back
+                if reply["error"]["code"] == NO_CONTROL and not is_told:
+                    is_told = True  # people have to look where it lasts
+                    print(reply["error"]["message"], file=sys.stderr, flush=True)
+                time.sleep(POLL_S)
             elif reply["error"]["code"] in expected:
                 return reply["error"]
             else:

@@ -16,11 +16,13 @@ void describe_health(Fields& fields) {
   result.any("camera",
              "an object: open, openings since the start (more than one: it was lost); since it was opened: "
              "frames_complete, frames_failed, underruns, ids_skipped, packets_resent, packets_missing");
-  result.any("stage",
-             "an object: open, openings; if it has a line also, since it was opened: requests, retries, unanswered, "
-             "refused, put_off, reconnects, implausible, discarded_bytes, latency_p50_us, latency_p99_us; "
-             "temperatures_c by name where the drive tells them; z_um, where it was at the last look between jobs and "
-             "commands, not its place while one runs, if that is known");
+  result.any(
+      "stage",
+      "an object: open, openings; standstill, of this moment: measured, and its newest sample says so too; if it "
+      "has a line also, since it was opened: requests, retries, unanswered, refused, put_off, reconnects, implausible, "
+      "discarded_bytes, latency_p50_us, latency_p99_us; temperatures_c by name where the drive tells them; z_um, where "
+      "it was at the last look between jobs and "
+      "commands, not its place while one runs, if that is known");
   result.any("disk", "an object: free_bytes, size_bytes of the file system of the results", Presence::kSometimes);
 }
 
@@ -35,8 +37,8 @@ Reply camera_of(const DevicesHealth& health) {
           {"packets_missing", health.frames.packets_missing}};
 }
 
-Reply stage_of(const DevicesHealth& health) {
-  Reply stage{{"open", health.stage.open}, {"openings", health.stage.openings}};
+Reply stage_of(const DevicesHealth& health, bool stands) {
+  Reply stage{{"open", health.stage.open}, {"openings", health.stage.openings}, {"standstill", stands}};
   if (const auto& link = health.link) {
     stage.update({{"requests", link->requests},
                   {"retries", link->retries},
@@ -56,13 +58,15 @@ Reply stage_of(const DevicesHealth& health) {
   return stage;
 }
 
-Reply health_of(const MachineStatus& machine) {
+Reply health_of(const MachineView& view) {
+  const auto snapshot = view.snapshot();
+  const MachineStatus& machine = *snapshot;
   Reply stalled = Reply::array();
   for (const StalledThread& thread : stalled_threads(HostClock::now())) stalled.push_back(thread.name);
   Reply reply{{"ok", stalled.empty() && !machine.error},
               {"stalled_threads", stalled},
               {"camera", camera_of(machine.health)},
-              {"stage", stage_of(machine.health)}};
+              {"stage", stage_of(machine.health, view.stage_stands())}};
   if (machine.disk) {
     reply["disk"] = {{"free_bytes", machine.disk->free_bytes}, {"size_bytes", machine.disk->size_bytes}};
   }
@@ -77,7 +81,7 @@ void add_health_methods(MethodTable& methods, const Services& services) {
                 .role = Role::kView,
                 .params = described<NoParams>(),
                 .result = describe_health},
-      .peek = [&machine = services.machine](const Call&) { return health_of(*machine.snapshot()); }};
+      .peek = [&machine = services.machine](const Call&) { return health_of(machine); }};
 }
 
 }  // namespace fvd

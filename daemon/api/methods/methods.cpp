@@ -27,10 +27,13 @@ MethodTable all_methods(const Services& services) {
   add_recipe_methods(methods, services);
   add_job_methods(methods, services);
   add_result_methods(methods, services);
+  add_profile_methods(methods, services);
   add_camera_methods(methods, services);
   add_stage_methods(methods, services);
   add_objective_methods(methods, services);
   add_study_methods(methods, services);
+  add_history_methods(methods, services);
+  add_alarm_methods(methods, services);
   add_access_methods(methods, services);
   // Last, for it describes all, itself too.
   Method& discover = methods["rpc.discover"];

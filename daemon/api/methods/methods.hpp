@@ -18,9 +18,13 @@ void add_health_methods(MethodTable& methods, const Services& services);
 void add_recipe_methods(MethodTable& methods, const Services& services);
 void add_job_methods(MethodTable& methods, const Services& services);
 void add_result_methods(MethodTable& methods, const Services& services);
+void add_profile_methods(MethodTable& methods, const Services& services);
 void add_camera_methods(MethodTable& methods, const Services& services);
 void add_stage_methods(MethodTable& methods, const Services& services);
 void add_objective_methods(MethodTable& methods, const Services& services);
+/// job.list, value.list.
+void add_history_methods(MethodTable& methods, const Services& services);
+void add_alarm_methods(MethodTable& methods, const Services& services);
 /// session, control, audit.
 void add_access_methods(MethodTable& methods, const Services& services);
 /// verify, calibrate, gauge, study, calibration.

@@ -97,9 +97,10 @@ void describe_stopped(Fields& fields) {
   const ResultFields result(fields);
   result.text("stopped", "what had the stage: job, command, nothing");
   result.boolean("standstill",
-                 "true: measured, and nothing moves the stage. false: not known, the motion is just being ended or the "
-                 "stage is lost: part_release of system.state tells; where it does not follow within seconds look at "
-                 "the axis, and use the emergency stop");
+                 "true: measured, nothing moves the stage, and its newest sample says so too. false: not known, the "
+                 "motion is just being ended, the stage is lost, or somebody else moves it: stage.standstill of "
+                 "system.health tells; where it does not follow within seconds look at the axis, and use the emergency "
+                 "stop");
 }
 
 void describe_moved(Fields& fields) { ResultFields(fields).number("z_um", "where the stage stands now"); }
@@ -119,8 +120,7 @@ void add_stop_and_jog(MethodTable& methods, const Services& services) {
                 .is_audited = true},
       .peek = [services](const Call&) -> std::optional<Answer> {
         const auto stopped = services.jobs.stop_motion();
-        return Reply{{"stopped", stopped_name(stopped)},
-                     {"standstill", services.machine.snapshot()->signals.part_release}};
+        return Reply{{"stopped", stopped_name(stopped)}, {"standstill", services.machine.stage_stands()}};
       }};
   auto errors = kMotionErrors;
   errors.insert(errors.end(), {ErrorCode::kNotReady, ErrorCode::kBusy, ErrorCode::kTimeout, ErrorCode::kAborted,

@@ -7,8 +7,10 @@ import { applyTheme } from "./lib/theme.ts";
 import { link, listen } from "./live/live.ts";
 import { watchControl } from "./rpc/held_control.ts";
 import { resumeSession } from "./rpc/session.ts";
+import { takeTokenFromAddress } from "./rpc/token_in_address.ts";
 import "./style/main.css";
 
+takeTokenFromAddress();
 applyTheme();
 followLinks();
 listen();

@@ -74,12 +74,14 @@ TEST(ThreadTicks, DoesNotStallBetweenALongStepAndAShortOne) {
   ThreadTicks ticks("machine", milliseconds(10));
   std::atomic<HostTime> now{kStart};
   std::atomic<bool> is_over{false};
+  std::atomic<int> looked = 0;
   auto looks = std::async(std::launch::async, [&] {
     std::size_t stalled = 0;
-    while (!is_over) stalled += stalled_threads(now).size();
+    for (; !is_over; ++looked) stalled += stalled_threads(now).size();
     return stalled;
   });
-  for (int i = 0; i < 200'000; ++i) {
+  constexpr int kLooks = 100;  // among many ticks each
+  for (int i = 0; i < 200'000 || looked < kLooks; ++i) {
     ticks.tick(now, milliseconds(1000));
     now = now.load() + milliseconds(900);
     ticks.tick(now);

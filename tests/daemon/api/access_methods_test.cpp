@@ -1,6 +1,7 @@
 /// Logging in, control, stops that wait for nothing, and what is written down of it.
 
 #include <algorithm>
+#include <optional>
 
 #include "daemon/access/token_file.hpp"
 #include "tests/daemon/api/dispatcher_fixture.hpp"
@@ -22,6 +23,13 @@ class AnInstrumentWithSeveralCallers : public ADispatcher {
   }
   int code_of(const Caller& caller, const std::string& line) {
     return answer_to(caller, line).value("/error/code"_json_pointer, 0);
+  }
+
+  /// The answer to a line that stands behind another.
+  std::optional<Handled> overtaken(const std::string& line, const Caller& caller, Dispatcher::Behind behind) {
+    const Method* method = dispatcher_.overtaker(line);
+    if (method == nullptr || !Dispatcher::may_overtake(*method, caller, behind)) return std::nullopt;
+    return dispatcher_.try_handle(line, caller);
   }
 
   const Caller plc_{.connection = 1, .peer = "10.0.0.7:4000", .who = {"address 10.0.0.7", Role::kOperate}};
@@ -68,6 +76,10 @@ TEST_F(AnInstrumentWithSeveralCallers, GivesControlToForceOnlyBetweenJobs) {
 
 TEST_F(AnInstrumentWithSeveralCallers, TellsWhetherStandstillIsKnownAfterAStop) {
   EXPECT_EQ(answer_to(plc_, call("stage.stop"))["result"], (json{{"stopped", "command"}, {"standstill", true}}));
+  service_.unseen_looks = 2;  // it moves since the last look at the devices
+  EXPECT_EQ(answer_to(plc_, call("stage.stop"))["result"]["standstill"], false);
+  EXPECT_EQ(answer_to(page_, call("system.health"))["result"]["stage"]["standstill"], false);
+  EXPECT_EQ(answer_to(page_, call("system.health"))["result"]["stage"]["standstill"], true);
   service_.machine.emplace();  // of a stage that was lost in motion nothing is known
   EXPECT_EQ(answer_to(plc_, call("stage.stop"))["result"]["standstill"], false);
 }
@@ -82,23 +94,22 @@ TEST_F(AnInstrumentWithSeveralCallers, StopsWithoutAWorker) {
   service_.current = JobStatus{};
   service_.current->job_id = "J1";
   for (const std::string& line : {call("stage.stop"), call("job.abort", {{"job_id", "J1"}})}) {
-    const auto handled = dispatcher_.try_overtake(line, plc_, Dispatcher::Behind::kWork);
+    const auto handled = overtaken(line, plc_, Dispatcher::Behind::kWork);
     ASSERT_TRUE(handled) << line;
     EXPECT_TRUE(json::parse(handled->reply.value()).contains("result")) << *handled->reply;
   }
   EXPECT_EQ(service_.stops, 1);
   EXPECT_EQ(service_.aborts, 1);
-  EXPECT_FALSE(dispatcher_.try_overtake(call("job.abort", {{"job_id", "J0"}}), plc_, Dispatcher::Behind::kWork))
+  EXPECT_FALSE(overtaken(call("job.abort", {{"job_id", "J0"}}), plc_, Dispatcher::Behind::kWork))
       << "it waits for its turn";
   for (const std::string& line : {call("system.ping"), start_, std::string("[") + call("stage.stop") + "]",
                                   std::string("{\"method\": 1}"), std::string("nonsense"), std::string("7")}) {
-    EXPECT_FALSE(dispatcher_.try_overtake(line, plc_, Dispatcher::Behind::kWork)) << line;
+    EXPECT_FALSE(overtaken(line, plc_, Dispatcher::Behind::kWork)) << line;
   }
-  EXPECT_TRUE(dispatcher_.try_overtake(call("system.ping"), plc_, Dispatcher::Behind::kWait));
-  EXPECT_FALSE(dispatcher_.try_overtake(start_, plc_, Dispatcher::Behind::kWait));
+  EXPECT_TRUE(overtaken(call("system.ping"), plc_, Dispatcher::Behind::kWait));
+  EXPECT_FALSE(overtaken(start_, plc_, Dispatcher::Behind::kWait));
   EXPECT_EQ(code_of({.who = {"viewer", Role::kView}}, call("stage.stop")), 1004);
-  EXPECT_FALSE(
-      dispatcher_.try_overtake(call("stage.stop"), {.who = {"viewer", Role::kView}}, Dispatcher::Behind::kWork))
+  EXPECT_FALSE(overtaken(call("stage.stop"), {.who = {"viewer", Role::kView}}, Dispatcher::Behind::kWork))
       << "a log-in before it may give it the role";
   const json batch = answer_to(plc_, "[" + call("system.ping") + "," + call("stage.stop") + "]");
   EXPECT_EQ(batch[1]["error"]["code"], -32600) << "nothing is to hold it back, and nothing to do it twice";
@@ -220,6 +231,11 @@ TEST_F(ALogIn, IsRefusedToEverybodyElseAndSaysNothingOfTokens) {
   test::write_text(folder_ / "tokens", "nonsense");
   const auto reply = json::parse(dispatcher.handle(good, nobody_).reply.value());
   EXPECT_EQ(reply["error"]["code"], 1015) << reply;
+  const std::string message = reply["error"]["message"];
+  EXPECT_NE(message.find("log"), std::string::npos) << message;
+  for (const char* detail : {"nonsense", "line 1", "/"}) {
+    EXPECT_EQ(message.find(detail), std::string::npos) << "no stranger's business: " << message;
+  }
 }
 
 }  // namespace

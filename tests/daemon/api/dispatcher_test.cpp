@@ -369,9 +369,9 @@ TEST_F(ADispatcher, DescribesEveryMethod) {
   std::set<std::string> names;
   for (const auto& method : methods) names.insert(method["name"]);
   EXPECT_EQ(names.size(), dispatcher_.methods().size());
-  for (const char* name :
-       {"system.ping", "system.info", "system.state", "stage.accuracy", "recipe.list", "recipe.get", "recipe.prepare",
-        "job.start", "job.status", "job.latest", "job.wait", "job.abort", "result.get", "result.next", "result.ack"}) {
+  for (const char* name : {"system.ping", "system.info", "system.state", "stage.accuracy", "recipe.list", "recipe.get",
+                           "recipe.prepare", "job.start", "job.status", "job.latest", "job.list", "job.wait",
+                           "job.abort", "result.get", "result.next", "result.ack"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }

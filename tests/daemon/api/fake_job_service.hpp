@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "daemon/jobs/alarm_log.hpp"
 #include "daemon/jobs/services.hpp"
 
 namespace fvd {
@@ -118,8 +119,38 @@ class FakeAudit final : public AuditService {
   std::vector<AuditEntry> entries_;
 };
 
+/// Tells what a test puts there, and keeps what it was asked for.
+class FakeHistory final : public HistoryService {
+ public:
+  struct Asked {
+    JobFilter filter;
+    std::int64_t before = 0;
+    int most = 0;
+  };
+  [[nodiscard]] JobPage list(const JobFilter& filter, std::int64_t before, int most) const override {
+    if (before_list) before_list();
+    if (failure) throw Error(*failure);
+    asked = {filter, before, most};
+    return page;
+  }
+  [[nodiscard]] ValueList values(const ValueQuery& query) const override {
+    if (failure) throw Error(*failure);
+    asked_value = query;
+    return {points, searched_all};
+  }
+  JobPage page;
+  std::vector<ValuePoint> points;
+  bool searched_all = true;
+  std::function<void()> before_list;
+  std::optional<Error> failure;
+  mutable std::optional<Asked> asked;
+  mutable std::optional<ValueQuery> asked_value;
+};
+
 class FakeJobService final : public MachineView, public JobService, public ResultService, public TaskService {
  public:
+  FakeJobService() { alarms.note(AlarmLevel::kWarning, "the disk is nearly full", {}); }
+
   FakeRecipes recipes;
   FakeObjectives objectives;
   FakeStudies studies;
@@ -127,10 +158,14 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   std::optional<AccessRules> access;
   ControlLease control{[] { return HostClock::now(); }, [this] { return job_runs; }};
   FakeAudit audit;
+  RefusedCalls refusals;
+  FakeHistory history;
+  AlarmLog alarms;  ///< one that nobody has seen, number 1
   bool job_runs = false;
   [[nodiscard]] Services services() {
     if (!access) access.emplace(access_config);
-    return {*this, *this, *this, *this, recipes, objectives, studies, control, audit, *access};
+    return {*this,   *this, *this,   *this,    recipes, objectives, studies,
+            control, audit, *access, refusals, history, alarms};
   }
 
   Started start(const JobRequest& request) override {
@@ -167,6 +202,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
   }
   JobStatus abort(const JobKey& key) override { return job(key); }
   std::optional<JobStatus> try_abort(const JobKey& key) override {
+    ++abort_tries;
     require_works();
     const std::lock_guard lock(mutex_);
     if (!current || !names(key, *current)) return std::nullopt;
@@ -174,6 +210,7 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return current;
   }
   std::atomic<int> aborts{0};
+  std::atomic<int> abort_tries{0};  ///< of jobs on the board and others
   Stopped stop_motion() override {
     ++stops;
     last_stop = HostClock::now();
@@ -205,8 +242,8 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     return task;
   }
   std::string evaluated_by;
-  [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return history; }
-  std::optional<StepHistorySummary> history;
+  [[nodiscard]] std::optional<StepHistorySummary> stage_history() const override { return stage_steps; }
+  std::optional<StepHistorySummary> stage_steps;
   [[nodiscard]] std::optional<JobStatus> next_unacknowledged() const override {
     require_works();
     const std::lock_guard lock(mutex_);
@@ -235,6 +272,14 @@ class FakeJobService final : public MachineView, public JobService, public Resul
     if (objectives.confirmed) status.objective = objectives.confirmed->objective;
     return std::make_shared<const MachineStatus>(status);
   }
+  [[nodiscard]] bool stage_stands() const override {
+    if (unseen_looks > 0) {
+      --unseen_looks;
+      return false;
+    }
+    return snapshot()->signals.part_release;
+  }
+  mutable std::atomic<int> unseen_looks{0};  ///< so many do not see it stand
   /// Done only when a test runs it.
   std::shared_ptr<DeviceTask> submit(DeviceTask::Work work, TaskMotion motion, HostTime /*asked*/) override {
     motions.push_back(motion);
@@ -270,6 +315,12 @@ class FakeJobService final : public MachineView, public JobService, public Resul
       listeners = listeners_;
     }
     for (const auto& [whose, listener] : listeners) listener();
+  }
+
+  /// What the snapshot tells of its job.
+  void change_current(const std::function<void(JobStatus&)>& how) {
+    const std::lock_guard lock(mutex_);
+    how(current.value());
   }
 
   /// In a test that has start() block.

@@ -100,6 +100,10 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"job.wait", one},
       {"job.abort", one},
       {"job.latest", nothing},
+      {"job.list", nothing},
+      {"value.list", {{"measurement", "step"}, {"value", "height_um"}}},
+      {"alarm.list", nothing},
+      {"alarm.acknowledge", {{"number", 1}}},
       {"result.get", one},
       {"result.next", nothing},
       {"result.evaluate",
@@ -132,7 +136,8 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
       {"calibration.get", nothing},
       {"calibrate.accept", {{"study", "study-0001"}, {"person", "anna"}, {"renew_by", "2027-11-29"}}}};
   for (const Case& call : study_cases()) cases.push_back(call);
-  std::set<std::string> seen{"result.ack", "session.login"};  // access_methods_test has the latter
+  // access_methods_test and profile_methods_test have the last ones.
+  std::set<std::string> seen{"result.ack", "session.login", "result.profile"};
   const auto check = [&](const Case& call) {
     seen.insert(call.method);
     const json result = result_of(call.method, call.params, call.task_result);
@@ -144,7 +149,7 @@ TEST_F(EveryMethod, AnswersAsItIsDescribed) {
   };
   for (const Case& call : cases) check(call);
   service_.change({1}, [](JobStatus& job) { job.state = JobState::kCompleted; });
-  service_.history = StepHistorySummary{};
+  service_.stage_steps = StepHistorySummary{};
   for (const Case& call : {Case{"result.get", one}, Case{"result.get", {{"seq", 1}, {"format", "full"}}},
                            Case{"result.next", nothing}, Case{"stage.accuracy", nothing}, Case{"result.ack", one}}) {
     check(call);
@@ -184,6 +189,18 @@ TEST_F(EveryMethod, FailsWithErrorsThatTheTableExplains) {
         "| 1146 | objective_mismatch |", "| 1147 | study_refused |", "| 1141 | evaluation_invalid |"}) {
     EXPECT_NE(table.find(row), std::string::npos) << row;
   }
+}
+
+/// What the operator page's types are made of: a key that is renamed here breaks the page's build. With
+/// FVD_WRITE_TABLES=1 in the environment the file is written instead of compared.
+TEST_F(EveryMethod, StandsInTheDescriptionThatThePageIsBuiltWith) {
+  const std::filesystem::path file = FVD_SOURCE_DIR "/daemon/web/openrpc.json";
+  nlohmann::ordered_json document = openrpc_document(dispatcher_.methods());
+  document["info"].erase("version");
+  const std::string wanted = document.dump(1) + "\n";
+  if (std::getenv("FVD_WRITE_TABLES") != nullptr) std::ofstream(file) << wanted;
+  EXPECT_TRUE(test::read_text(file) == wanted)
+      << file << " is not what rpc.discover says: run api_test with FVD_WRITE_TABLES=1";
 }
 
 /// With FVD_WRITE_TABLES=1 in the environment the README is written instead of compared.

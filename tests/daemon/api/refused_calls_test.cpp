@@ -1,6 +1,9 @@
-/// Refusals of callers without a role: told, but not each of them.
+/// Refused calls: told, but not each of them.
 
-#include "daemon/api/refused_calls.hpp"
+#include "daemon/access/refused_calls.hpp"
+
+#include <sstream>
+#include <string>
 
 #include "tests/daemon/api/dispatcher_fixture.hpp"
 #include "tests/support/captured_log.hpp"
@@ -8,43 +11,7 @@
 namespace fvd {
 namespace {
 
-using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-TEST(RefusedCalls, AreToldOnceASecondWithTheirNumber) {
-  RefusedCalls refused;
-  const HostTime begin{seconds(1000)};
-  EXPECT_EQ(refused.count_to_tell("a", begin), 1U);
-  for (int i = 1; i < 1000; ++i) EXPECT_FALSE(refused.count_to_tell("a", begin + milliseconds(i)));
-  EXPECT_EQ(refused.count_to_tell("b", begin + milliseconds(999)), 1000U) << "another caller, and what was not told";
-  EXPECT_EQ(refused.count_to_tell("a", begin + seconds(1)), 1U);
-}
-
-TEST(RefusedCalls, AreKnownOfTheLatestCallers) {
-  RefusedCalls refused;
-  HostTime now{seconds(1000)};
-  const auto last = std::to_string(RefusedCalls::kMostCallers);
-  for (std::size_t i = 0; i <= RefusedCalls::kMostCallers; ++i) {
-    EXPECT_TRUE(refused.count_to_tell(std::to_string(i), now += seconds(1)));
-  }
-  EXPECT_FALSE(refused.count_to_tell(last, now));
-  EXPECT_EQ(refused.count_to_tell("0", now), 2U) << "it gave way";
-}
-
-TEST(RefusedCalls, AreToldAFewTimesASecondFromHoweverManyAddresses) {
-  RefusedCalls refused;
-  const HostTime begin{seconds(1000)};
-  std::size_t told = 0;
-  std::uint64_t counted = 0;
-  for (int i = 0; i < 5000; ++i) {
-    const auto count = refused.count_to_tell(std::to_string(i), begin + milliseconds(i));
-    told += count ? 1 : 0;
-    counted += count.value_or(0);
-  }
-  EXPECT_EQ(told, 5 * RefusedCalls::kMostAPause);
-  counted += refused.count_to_tell("0", begin + seconds(10)).value_or(0);
-  EXPECT_EQ(counted, 5001U) << "none is lost";
-}
 
 /// At most one line a second of one caller.
 void expect_few(const test::CapturedLog& log, const std::string& words, HostTime begin) {
@@ -63,6 +30,28 @@ TEST_F(ADispatcher, WarnsOnceASecondOfAStrangersLogInThatHasNoId) {
   expect_few(log, "session.login without an id", begin);
 }
 
+TEST_F(ADispatcher, WarnsOnceASecondOfACallerWithARoleToo) {
+  caller_.who = {"token guest", Role::kView};
+  const test::CapturedLog log;
+  const HostTime begin = HostClock::now();
+  for (int i = 0; i < 200; ++i) EXPECT_EQ(error_of(R"({"jsonrpc":"2.0","id":1,"method":"stage.stop"})"), 1004);
+  expect_few(log, "stage.stop was refused", begin);
+}
+
+TEST(RefusedCalls, AreLimitedOverAllWaysInTogether) {
+  FakeJobService service;
+  const Dispatcher lines{all_methods(service.services()), service.services()};
+  const Dispatcher http{all_methods(service.services()), service.services()};
+  const test::CapturedLog log;
+  const HostTime begin = HostClock::now();
+  for (int i = 0; i < 100; ++i) {
+    const Caller stranger{.who = {"address 10.0.0." + std::to_string(i), Role::kNone}};
+    (void)(i % 2 == 0 ? lines : http).handle(R"({"jsonrpc":"2.0","id":1,"method":"stage.stop"})", stranger);
+  }
+  const auto pauses = 1 + static_cast<std::size_t>((HostClock::now() - begin) / RefusedCalls::kPause);
+  EXPECT_LE(log.lines_with("stage.stop was refused"), RefusedCalls::kMostAPause * pauses);
+}
+
 TEST(RefusedCalls, AreFewLinesWhereTheTokensCannotBeRead) {
   FakeJobService service;
   service.access_config.token_file = "/no/such/folder/tokens";
@@ -77,6 +66,12 @@ TEST(RefusedCalls, AreFewLinesWhereTheTokensCannotBeRead) {
     EXPECT_NE(handled.reply->find("1015"), std::string::npos) << *handled.reply;
   }
   expect_few(log, "session.login was refused", begin);
+  EXPECT_GE(log.lines_with("details: cannot read /no/such/folder/tokens"), 1U) << "the log says why";
+  std::istringstream lines(log.text());
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("/no/such") == std::string::npos) continue;
+    EXPECT_NE(line.find("[info]"), std::string::npos) << "no alarm, which every viewer reads, says it: " << line;
+  }
 }
 
 TEST_F(ADispatcher, WritesNoRowOfStrangersItRefuses) {

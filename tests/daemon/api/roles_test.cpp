@@ -16,7 +16,9 @@ using test::working_params;
 /// The least role of every method, typed a second time: a method that gets another one by mistake is seen here.
 const std::map<std::string, Role>& expected_roles() {
   using enum Role;
-  static const std::map<std::string, Role> kRoles{{"audit.list", kView},
+  static const std::map<std::string, Role> kRoles{{"alarm.acknowledge", kOperate},
+                                                  {"alarm.list", kView},
+                                                  {"audit.list", kView},
                                                   {"calibrate.accept", kAdminister},
                                                   {"calibrate.flatness", kAdminister},
                                                   {"calibrate.lateral", kAdminister},
@@ -36,6 +38,7 @@ const std::map<std::string, Role>& expected_roles() {
                                                   {"gauge.type1", kSetUp},
                                                   {"job.abort", kOperate},
                                                   {"job.latest", kView},
+                                                  {"job.list", kView},
                                                   {"job.start", kOperate},
                                                   {"job.status", kView},
                                                   {"job.wait", kView},
@@ -52,6 +55,7 @@ const std::map<std::string, Role>& expected_roles() {
                                                   {"result.evaluate", kSetUp},
                                                   {"result.get", kView},
                                                   {"result.next", kView},
+                                                  {"result.profile", kView},
                                                   {"rpc.discover", kView},
                                                   {"session.info", kNone},
                                                   {"session.login", kNone},
@@ -67,6 +71,7 @@ const std::map<std::string, Role>& expected_roles() {
                                                   {"system.info", kView},
                                                   {"system.ping", kView},
                                                   {"system.state", kView},
+                                                  {"value.list", kView},
                                                   {"verify.flatness", kSetUp},
                                                   {"verify.hysteresis", kSetUp},
                                                   {"verify.linearity", kSetUp},
@@ -111,6 +116,7 @@ TEST_P(ARole, MayCallWhatItsMethodsSayAndNothingElse) {
     EXPECT_EQ(service_.task, nullptr);
     EXPECT_FALSE(service_.objectives.confirmed);
     EXPECT_FALSE(service_.control.holder());
+    EXPECT_FALSE(service_.alarms.newest().front().acknowledged);
   }
   if (role < Role::kSetUp) {
     EXPECT_TRUE(service_.jogs.empty());

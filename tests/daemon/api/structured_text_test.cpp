@@ -225,6 +225,22 @@ TEST_F(TheStructuredText, GoesOnWhereThePowerWasLost) {
   }
 }
 
+TEST_F(TheStructuredText, TellsPeopleThatSomebodyElseHasControl) {
+  const Caller page{.connection = 2, .who = {"token page", Role::kSetUp}};
+  const auto ask = [&](const std::string& method, const nlohmann::json& params) {
+    const std::string line =
+        nlohmann::json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump();
+    ASSERT_NE(dispatcher_.handle(line, page).reply.value().find("result"), std::string::npos);
+  };
+  ask("control.acquire", {{"owner", "anna"}});
+  put("A");
+  run_until([&] { return plc_.text("fault").find("anna") != std::string::npos; });
+  EXPECT_EQ(service_.starts, 0);
+  ask("control.release", nlohmann::json::object());
+  run_until_started(1);
+  EXPECT_TRUE(plc_.text("fault").empty());
+}
+
 TEST_F(TheStructuredText, TellsPeopleOfAPartThatWasLetGoAndHasNoResult) {
   put("A");
   run_until_started(1);

@@ -19,6 +19,11 @@ inline nlohmann::json working_params(const std::string& method) {
   if (method == "recipe.restore") return {{"id", "c"}, {"version", 1}, {"base_version", 3}, {"author", "a"}};
   if (method == "objective.confirm") return {{"name", "20x"}};
   if (method == "calibrate.accept") return {{"study", "study-0001"}, {"person", "a"}, {"renew_by", "2027-11-29"}};
+  if (method == "alarm.acknowledge") return {{"number", 1}};
+  if (method == "value.list") return {{"measurement", "step"}, {"value", "height_um"}};
+  if (method == "result.profile") {
+    return {{"job_id", "a"}, {"from_um", {{"x", 0}, {"y", 0}}}, {"to_um", {{"x", 9}, {"y", 0}}}};
+  }
   if (method == "verify.noise") return {{"jobs", {"a", "b"}}};
   return nlohmann::json::object();
 }

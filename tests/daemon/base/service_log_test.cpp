@@ -1,6 +1,10 @@
 #include "daemon/base/service_log.hpp"
 
+#include <sstream>
+
 #include <gmock/gmock.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include "core/runtime/guarded_thread.hpp"
 #include "daemon/base/log_scope.hpp"
@@ -66,6 +70,33 @@ TEST_F(AJournal, ThatTakesNothingLosesNothing) {
   ::testing::internal::CaptureStderr();
   log_->error("full");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "<3>full\n");
+}
+
+TEST(ALogLevel, KeepsNothingFromWhatGetsWarningsBesideTheJournal) {
+  const auto before = spdlog::default_logger();
+  std::vector<std::string> journal;
+  auto logger = journal_logger([&journal](const std::vector<std::string>& entry) {
+    journal.push_back(entry.back());
+    return true;
+  });
+  std::ostringstream beside;
+  auto warnings = std::make_shared<spdlog::sinks::ostream_sink_st>(beside);
+  warnings->set_pattern("%v");
+  warnings->set_level(spdlog::level::warn);
+  logger->sinks().push_back(warnings);
+  spdlog::set_default_logger(logger);
+
+  set_log_level(spdlog::level::err);
+  spdlog::info("a");
+  spdlog::warn("b");
+  spdlog::error("c");
+  set_log_level(spdlog::level::debug);
+  spdlog::trace("d");
+  spdlog::debug("e");
+  spdlog::set_default_logger(before);
+
+  EXPECT_EQ(journal, (std::vector<std::string>{"MESSAGE=c", "MESSAGE=e"}));
+  EXPECT_EQ(beside.str(), "b\nc\n");
 }
 
 }  // namespace

@@ -79,16 +79,14 @@ TEST_F(AServiceWatchdog, GivesSignsOfLifeAgainOnceTheThreadGetsOn) {
 }
 
 TEST_F(AServiceWatchdog, EndsNoMeasurementForAThreadThatNobodyWaitsFor) {
-  ThreadTicks reaper("fvd-reaper", milliseconds(500));
-  ThreadTicks follow("fvd-follow", milliseconds(500));
+  ThreadTicks reaper("fvd-reap-camera", milliseconds(500));
   ThreadTicks retention("fvd-retention", milliseconds(500));
-  for (ThreadTicks* ticks : {&reaper, &follow, &retention}) ticks->tick(now_);
+  for (ThreadTicks* ticks : {&reaper, &retention}) ticks->tick(now_);
   now_ += milliseconds(501);
   watchdog_.look(now_);
   EXPECT_EQ(heard(), "WATCHDOG=1");
   const std::string log = logged();
-  EXPECT_THAT(log, HasSubstr("fvd-reaper has not ticked for 501 ms"));
-  EXPECT_THAT(log, HasSubstr("fvd-follow has not ticked for 501 ms"));
+  EXPECT_THAT(log, HasSubstr("fvd-reap-camera has not ticked for 501 ms"));
   EXPECT_THAT(log, HasSubstr("fvd-retention has not ticked for 501 ms"));
   EXPECT_THAT(log, testing::Not(HasSubstr("systemd is told no more")));
   ThreadTicks machine("fvd-machine", milliseconds(500));
@@ -96,6 +94,26 @@ TEST_F(AServiceWatchdog, EndsNoMeasurementForAThreadThatNobodyWaitsFor) {
   watchdog_.look(now_ + milliseconds(501));
   EXPECT_TRUE(hears_nothing()) << "beside them others still count";
   EXPECT_THAT(logged(), HasSubstr("fvd-machine has not ticked"));
+}
+
+TEST_F(AServiceWatchdog, EndsNoMeasurementForALongListOrAFileThatIsFetched) {
+  for (const char* name : {"fvd-http-work", "fvd-http-files", "fvd-rpc-lists"}) {
+    ThreadTicks ticks(name, milliseconds(500));
+    ticks.tick(now_);
+    watchdog_.look(now_ + milliseconds(501));
+    EXPECT_EQ(heard(), "WATCHDOG=1") << name;
+    EXPECT_THAT(logged(), HasSubstr("no measurement waits for it")) << name;
+  }
+}
+
+TEST_F(AServiceWatchdog, CountsThreadsThatAJobMayWaitFor) {
+  for (const char* name : {"fvd-reap-stage", "fvd-follow", "fvd-rpc-work"}) {
+    ThreadTicks ticks(name, milliseconds(500));
+    ticks.tick(now_);
+    watchdog_.look(now_ + milliseconds(501));
+    EXPECT_TRUE(hears_nothing()) << name;
+    EXPECT_THAT(logged(), HasSubstr("systemd is told no more")) << name;
+  }
 }
 
 TEST_F(AServiceWatchdog, LooksThreeTimesInTheTimeThatSystemdAllows) {

@@ -124,6 +124,14 @@ TEST_F(FvdctlByEachWay, StopsAndTellsWhoAskedForWhat) {
   EXPECT_THAT(run(by_http(), {"audit", "--json"}).out, HasSubstr("\"entries\""));
 }
 
+TEST_F(FvdctlByEachWay, AwaitsAFreshLookThatShowsStandstill) {
+  service_.unseen_looks = 3;  // of the stop, and two after it, whatever part_release says
+  const auto stopped = run(by_socket(), {"stop"});
+  EXPECT_EQ(stopped.code, 0) << stopped.err;
+  EXPECT_EQ(service_.unseen_looks, 0);
+  EXPECT_EQ(service_.stops, 1);
+}
+
 TEST_F(FvdctlByEachWay, SaysWhereAStopDidNotBringStandstill) {
   MachineStatus lost;
   lost.state = ScanState::kError;

@@ -75,6 +75,25 @@ TEST_F(BackupCommands, FollowTheFilesOfConfD) {
   EXPECT_EQ(fs::status(tokens).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
+TEST_F(BackupCommands, GoOnWhereARestorationOfConfDWasCutOff) {
+  test::write_text(config_, "{}");
+  fs::create_directories(folder_ / "conf.d");
+  test::write_text(folder_ / "conf.d" / "10-recipes.json", R"({"paths": {"recipe_dir": "recipes"}})");
+  test::write_text(folder_ / "conf.d" / "20-state.json",
+                   R"({"paths": {"state_dir": ")" + (folder_ / "elsewhere").string() + R"("}})");
+  (void)JobStore(folder_ / "elsewhere" / "fvd.sqlite").accept({1, "part", "chapter"});
+  ASSERT_EQ(run_command({"backup", backup_, "--config", config_}).code, ctl::kExitOk);
+  fs::remove_all(folder_ / "elsewhere");
+  fs::remove(folder_ / "conf.d" / "20-state.json");
+  fs::create_directories(folder_ / "conf.d" / ".restored.tmp");
+
+  const auto restored = run_command({"restore", backup_, "--config", config_});
+
+  ASSERT_EQ(restored.code, ctl::kExitOk) << restored.err;
+  EXPECT_TRUE(fs::exists(folder_ / "elsewhere" / "fvd.sqlite")) << "where the whole configuration says";
+  EXPECT_TRUE(fs::exists(folder_ / "conf.d" / "20-state.json"));
+}
+
 TEST_F(BackupCommands, SayWhatIsWrong) {
   EXPECT_EQ(run_command({"backup"}).code, ctl::kExitUsage);
   const auto none = run_command({"backup", backup_, "--config", config_});

@@ -1,5 +1,7 @@
 #include "daemon/devices/device_hub.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <functional>
 #include <future>
 #include <memory>
@@ -8,7 +10,9 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/clock.hpp"
 #include "core/base/error.hpp"
+#include "core/runtime/thread_ticks.hpp"
 #include "gtest/gtest.h"
 #include "sim/fakes/fakes.hpp"
 
@@ -25,6 +29,8 @@ struct Cables {
   bool axis_stops = true;
   bool status_fails = false;
   std::optional<double> seen_um = std::nullopt;  ///< where the axis was seen last, by a driver that samples it
+  bool seen_moving = false;
+  std::chrono::hours seen_later{1};  ///< than now
   std::function<void()> on_axis_closing = nullptr;
 };
 
@@ -53,6 +59,9 @@ class CabledAxis final : public sim::FakeAxis {
     if (!cables_.seen_um) return std::nullopt;
     StageStatus status;
     status.position = Micrometers{*cables_.seen_um};
+    status.enabled = true;
+    status.moving = cables_.seen_moving;
+    status.sampled = HostClock::now() + cables_.seen_later;
     return status;
   }
   void stop() noexcept override { cables_.axis_moves = cables_.axis_moves && !cables_.axis_stops; }
@@ -108,6 +117,52 @@ TEST_F(ADeviceHub, TellsWhereTheAxisWasSeenAsLongAsItIsThere) {
   EXPECT_EQ(hub_.health().position->value, 0.0);
   cables_.axis = false;
   EXPECT_EQ(hub_.health().position, std::nullopt) << "it may be anywhere";
+}
+
+TEST_F(ADeviceHub, SeesTheAxisStandByItsNewestSampleAlone) {
+  EXPECT_FALSE(hub_.seen_standing()) << "there is none";
+  cables_.seen_um = 0.0;
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  EXPECT_TRUE(hub_.seen_standing());
+  cables_.seen_moving = true;
+  EXPECT_FALSE(hub_.seen_standing());
+  EXPECT_TRUE(hub_.at_rest()) << "nobody has looked yet";
+  cables_.seen_moving = false;
+  cables_.seen_um = 50.0;
+  EXPECT_FALSE(hub_.seen_standing()) << "it rested elsewhere";
+  cables_.seen_um = 0.0;
+  cables_.seen_later = std::chrono::hours(-1);
+  EXPECT_FALSE(hub_.seen_standing()) << "that is long ago";
+  cables_.seen_later = std::chrono::hours(1);
+  EXPECT_TRUE(hub_.seen_standing());
+  cables_.axis = false;
+  EXPECT_FALSE(hub_.seen_standing()) << "nobody knows";
+  cables_.axis = true;
+  hub_.drop_all();
+  EXPECT_FALSE(hub_.seen_standing()) << "it is given up";
+}
+
+TEST_F(ADeviceHub, CountsAnAxisThatNobodySamplesAsStanding) {
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  EXPECT_TRUE(hub_.seen_standing());
+}
+
+TEST_F(ADeviceHub, TellsBySlotWhoseClosingHangs) {
+  std::promise<void> closing;
+  std::promise<void> go;
+  cables_.on_axis_closing = [&] {
+    closing.set_value();
+    go.get_future().wait_for(std::chrono::seconds(10));
+  };
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  hub_.drop_all();
+  closing.get_future().wait();
+  const auto stalled = stalled_threads(HostClock::now() + std::chrono::minutes(6));
+  const auto is_stages = [](const StalledThread& thread) { return thread.name == "fvd-reap-stage"; };
+  EXPECT_TRUE(std::any_of(stalled.begin(), stalled.end(), is_stages));
+  go.set_value();
+  ASSERT_EQ(open_after_closing(), std::nullopt);
+  cables_.on_axis_closing = nullptr;
 }
 
 TEST_F(ADeviceHub, TriesAMissingDeviceAgainAndStopsTheAxisMeanwhile) {

@@ -57,7 +57,7 @@ TEST(ASlotDeathTest, AwaitsAtTheEndOfTheProcessWhatTheNextOneWouldAwait) {
   const auto end_of_a_process = [](Predecessor predecessor) {
     {
       DeviceSlot<SlowToClose> slot([] { return std::make_unique<SlowToClose>(); }, ErrorCode::kStageDisconnected,
-                                   predecessor);
+                                   predecessor, "fvd-reap-test");
       if (!slot.ensure()) std::_Exit(1);
       process_ends();
       slot.drop();

@@ -21,7 +21,7 @@ TEST(Reaper, ClosesOnAnotherThreadWhileItsCallerGoesOn) {
   std::promise<void> go;
   std::promise<std::thread::id> closed_on;
   auto closed = closed_on.get_future();
-  Reaper reaper;
+  Reaper reaper("fvd-reap-camera");
   reaper.bury(std::make_unique<Device>([&] {
     go.get_future().wait_for(std::chrono::seconds(10));
     closed_on.set_value(std::this_thread::get_id());
@@ -34,7 +34,7 @@ TEST(Reaper, ClosesOnAnotherThreadWhileItsCallerGoesOn) {
 TEST(Reaper, IsSeenToHangInADeviceThatCannotBeClosed) {
   std::promise<void> begun;
   std::promise<void> go;
-  Reaper reaper;
+  Reaper reaper("fvd-reap-camera");
   reaper.bury(std::make_unique<Device>([&] {
     begun.set_value();
     go.get_future().wait_for(std::chrono::seconds(10));
@@ -43,14 +43,14 @@ TEST(Reaper, IsSeenToHangInADeviceThatCannotBeClosed) {
   EXPECT_TRUE(stalled_threads(HostClock::now() + std::chrono::minutes(4)).empty());
   const auto stalled = stalled_threads(HostClock::now() + std::chrono::minutes(6));
   ASSERT_EQ(stalled.size(), 1U);
-  EXPECT_EQ(stalled.front().name, "fvd-reaper");
+  EXPECT_EQ(stalled.front().name, "fvd-reap-camera");
   go.set_value();
 }
 
 TEST(Reaper, EndsOnlyWhenEveryDeviceIsClosed) {
   std::atomic<int> closed = 0;
   {
-    Reaper reaper;
+    Reaper reaper("fvd-reap-camera");
     for (int i = 0; i < 50; ++i) reaper.bury(std::make_unique<Device>([&closed] { ++closed; }));
     reaper.bury(std::unique_ptr<Device>());
   }

@@ -91,5 +91,22 @@ TEST_F(AControlLease, IsTakenByForceOnlyByWhoAdministersAndNeverWhileAJobRuns) {
   EXPECT_EQ(refusal_of([&] { lease_.require(plc_.name); }), AccessCode::kNoControl);
 }
 
+TEST_F(AControlLease, TellsOfEveryChange) {
+  int told = 0;
+  lease_.on_change([&told] { ++told; });
+  acquire(plc_);
+  EXPECT_EQ(told, 1);
+  acquire(plc_);
+  EXPECT_EQ(told, 2) << "renewed";
+  EXPECT_EQ(refusal_of([&] { acquire(page_); }), AccessCode::kNoControl);
+  lease_.release(page_.name);
+  EXPECT_EQ(told, 2) << "nothing changed";
+  lease_.release(plc_.name);
+  EXPECT_EQ(told, 3);
+  lease_.on_change({});
+  acquire(page_);
+  EXPECT_EQ(told, 3);
+}
+
 }  // namespace
 }  // namespace fvd

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/export/file_calls.hpp"
+#include "daemon/export/preview_hub.hpp"
 #include "gtest/gtest.h"
 #include "sim/fakes/fakes.hpp"
 #include "tests/support/scratch_dir.hpp"
@@ -70,6 +72,35 @@ TEST(Snap, SetsNoCameraUpOnceItIsStopped) {
   ASSERT_TRUE(task.outcome().has_value());
   EXPECT_EQ(task.outcome()->error, ErrorCode::kAborted);
   EXPECT_TRUE(camera.exposures_us.empty());
+}
+
+TEST(AnImageThatSomebodyTakes, IsKeptForWhoLooksOn) {
+  const test::ScratchDir folder;
+  sim::FakeClock clock;
+  SettingsCamera camera(clock, 48, 32);
+  sim::FakeAxis stage(clock);
+  PreviewHub pictures;
+  const auto done = [&](DeviceTask::Work work) {
+    DeviceTask task(std::move(work));
+    task.run({camera, stage, clock, folder.path(), nullptr, &pictures}, {});
+    const DeviceTask::Outcome outcome =
+        task.outcome().value_or(DeviceTask::Outcome{{}, ErrorCode::kInternal, "it did not end"});
+    EXPECT_EQ(outcome.error, std::nullopt) << outcome.message;
+    return nlohmann::json::parse(outcome.json, nullptr, false);
+  };
+
+  const auto preview = done(preview_work({}));
+  const auto first = pictures.newest_picture();
+  (void)done(snap_work({}));
+  const auto second = pictures.newest_picture();
+
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(preview["seq"], 1);
+  EXPECT_EQ(preview["width_px"], 48);
+  EXPECT_EQ(first->seq, 1U);
+  EXPECT_EQ(first->image_width_px, 48);
+  EXPECT_EQ(first->image_height_px, 32);
+  EXPECT_EQ(second->seq, 2U);
 }
 
 class NothingIsUnlinked final : public FileCalls {

@@ -43,6 +43,7 @@ struct Bench {
   std::atomic<int> moves_until_restless{-1};  ///< the axis goes on moving after the move that counts this to 0
   std::atomic<bool> lost_at_rest{false};      ///< the axis is lost when it is looked at after that many moves:
   std::atomic<int> moves_until_rest{-1};
+  std::atomic<bool> seen_moving{false};   ///< by whoever samples the axis
   std::atomic<int> moves_until_lost{-1};  ///< the axis is lost at the move that counts this to 0; < 0 = never
   std::deque<sim::TriggerOutcome> script;
 };
@@ -91,6 +92,13 @@ class BenchAxis final : public sim::FakeAxis {
     moved_ = bench_.moves_until_rest >= 0 && bench_.moves_until_rest-- == 0;
     if (bench_.moves_until_restless >= 0 && bench_.moves_until_restless-- == 0) bench_.axis_moves = true;
     return move;
+  }
+  [[nodiscard]] std::optional<StageStatus> last_seen() const override {
+    if (!bench_.seen_moving) return std::nullopt;
+    StageStatus status;
+    status.state = AxisState::kMoving;
+    status.sampled = HostClock::now();
+    return status;
   }
   void stop() noexcept override {
     ++bench_.stops;

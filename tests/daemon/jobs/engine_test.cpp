@@ -44,6 +44,21 @@ TEST_F(AnEngine, NeverClosesACameraThatIsBeingInterrupted) {
   bench_.watch_interrupt = false;
 }
 
+TEST_F(AnEngine, SeesTheStageMoveWhileACommandKeepsTheMachinesThread) {
+  open();
+  ASSERT_TRUE(await_state(ScanState::kInitialized));
+  Hold hold;
+  const auto task = tasks().submit(hold.work(), TaskMotion::kNone);
+  hold.began.get_future().wait();
+  EXPECT_TRUE(machine().stage_stands());
+  bench_.seen_moving = true;
+  EXPECT_TRUE(signals().part_release) << "nobody has looked yet";
+  EXPECT_FALSE(machine().stage_stands());
+  bench_.seen_moving = false;
+  hold.go.set_value();
+  ASSERT_TRUE(await_answer(*task));
+}
+
 TEST_F(AnEngine, IsExecutingAndHoldsThePartWhileACommandRuns) {
   open();
   ASSERT_TRUE(await_state(ScanState::kInitialized));

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -57,6 +58,30 @@ TEST(MachineBoard, ShowsAJobsEndAndItsLostDeviceAsOneChange) {
   });
   EXPECT_EQ(seen, std::vector<ScanState>{ScanState::kError});
   EXPECT_EQ(board.snapshot()->error, ErrorCode::kCameraDisconnected);
+}
+
+TEST(MachineBoard, KnowsWhichJobCompletedLastWhateverBegins) {
+  JobStatus job;
+  job.job_id = "before";
+  job.state = JobState::kCompleted;
+  MachineBoard board(constants(), job);
+  EXPECT_EQ(board.snapshot()->completed_job, "before");
+  const auto put = [&board](const std::string& id, JobState state) {
+    board.update([&](MachineRecord& machine) {
+      machine.job.emplace();
+      machine.job->job_id = id;
+      machine.job->state = state;
+    });
+    return board.snapshot()->completed_job;
+  };
+  EXPECT_EQ(put("a", JobState::kProcessing), "before");
+  EXPECT_EQ(put("a", JobState::kCompleted), "a");
+  EXPECT_EQ(put("b", JobState::kProcessing), "a");
+  EXPECT_EQ(put("b", JobState::kAborted), "a");
+  EXPECT_EQ(put("c", JobState::kProcessing), "a");
+  EXPECT_EQ(put("c", JobState::kFailed), "a");
+  EXPECT_EQ(board.snapshot()->ended.completed, 1U);
+  EXPECT_EQ(MachineBoard(constants(), std::nullopt).snapshot()->completed_job, "");
 }
 
 TEST(MachineBoard, SaysWhyItRefuses) {

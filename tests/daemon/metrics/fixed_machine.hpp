@@ -13,6 +13,7 @@ class FixedMachine final : public MachineView {
   [[nodiscard]] std::shared_ptr<const MachineStatus> snapshot() const override {
     return std::make_shared<const MachineStatus>(status);
   }
+  [[nodiscard]] bool stage_stands() const override { return status.signals.part_release; }
   void on_change(std::function<void()> /*listener*/, const void* /*whose*/) override {}
 
   MachineStatus status;

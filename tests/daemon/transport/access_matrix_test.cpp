@@ -45,7 +45,8 @@ struct Effects {
         saved(service.recipes.saved.id),
         restored(service.recipes.restored),
         confirmed(service.objectives.confirmed.has_value()),
-        controlled(service.control.holder().has_value()) {}
+        controlled(service.control.holder().has_value()),
+        acknowledged(service.alarms.newest().front().acknowledged) {}
   bool operator==(const Effects&) const = default;
 
   std::size_t motions;
@@ -57,6 +58,7 @@ struct Effects {
   std::int64_t restored;
   bool confirmed;
   bool controlled;
+  bool acknowledged;
 };
 
 class AnAccessMatrix : public ::testing::Test {

@@ -163,7 +163,12 @@ TEST_F(AnHttpServer, SaysThatItsTokensCannotBeRead) {
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 20; ++i) EXPECT_EQ(ask(call("session.info"), bearer()), 503);
   EXPECT_EQ(ask(call("session.info"))["result"]["role"], "view");
+  HttpClient stranger(server_->port());
+  const std::string told = stranger.call(call("session.info"), bearer()).value_or(HttpReply{}).body;
+  EXPECT_THAT(told, HasSubstr("the log"));
+  EXPECT_THAT(told, testing::Not(HasSubstr(folder_.path().string()))) << "no stranger's business";
   server_.reset();
+  EXPECT_GE(log.lines_with((folder_ / "tokens").string()), 1U) << "the log says why";
   const auto seconds = (std::chrono::steady_clock::now() - begin) / std::chrono::seconds(1);
   EXPECT_GE(log.lines_with("nobody can be recognised"), 1U);
   EXPECT_LE(log.lines_with("nobody can be recognised"), 1 + static_cast<std::size_t>(seconds));
@@ -187,6 +192,7 @@ TEST_F(AnHttpServer, RefusesWhatAForeignPageSends) {
 TEST_F(AnHttpServer, RefusesWhatItDoesNotHave) {
   const std::string host = " HTTP/1.1\r\nHost: localhost\r\n\r\n";
   EXPECT_EQ(status_of("GET /" + host), 404);
+  EXPECT_EQ(status_of("POST /" + host), 404);
   EXPECT_EQ(status_of("POST /api/jsonrpc/" + host), 404);
   EXPECT_EQ(status_of("GET /api/jsonrpc" + host), 405);
   EXPECT_EQ(status_of("OPTIONS /api/jsonrpc?x=1" + host), 405);
@@ -198,12 +204,18 @@ TEST_F(AnHttpServer, RefusesWhatItDoesNotHave) {
 
 TEST_F(AnHttpServer, RefusesWhatIsTooLarge) {
   const std::string begin = "POST /api/jsonrpc HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n";
-  EXPECT_EQ(status_of(begin + "Content-Length: 65537\r\n\r\n"), 413);
-  EXPECT_EQ(status_of(begin + "Transfer-Encoding: chunked\r\n\r\n11000\r\n" + std::string(0x11000, ' ')), 413);
+  constexpr std::size_t kMost_bytes = std::size_t{1} << 20U;
+  EXPECT_EQ(status_of(begin + "Content-Length: 1048577\r\n\r\n"), 413);
+  EXPECT_EQ(status_of(begin + "Transfer-Encoding: chunked\r\n\r\n101000\r\n" + std::string(0x101000, ' ')), 413);
   EXPECT_EQ(status_of(begin + "X: " + std::string(17000, 'x') + "\r\n\r\n"), 431);
   HttpClient client(server_->port());
-  const std::string most = call("system.ping") + std::string(65536 - call("system.ping").size(), ' ');
-  EXPECT_EQ(client.call(most).value_or(HttpReply{}).status, 200);
+  const std::string most = call("system.ping") + std::string(kMost_bytes - call("system.ping").size(), ' ');
+  const auto reply = client.call(most);
+  ASSERT_TRUE(reply);
+  EXPECT_TRUE(json::parse(reply->body).contains("result")) << "a document needs room";
+  const json many(std::vector<json>(100'000, json{{"id", 1}}));
+  EXPECT_LT(client.call(many.dump()).value_or(HttpReply{}).body.size(), 1000U)
+      << "what is refused makes no long answer";
 }
 
 TEST_F(AnHttpServer, RefusesWhatIsNoHttp) {

@@ -54,6 +54,7 @@ class CountedMachine final : public MachineView {
     ++looks;
     return service_.snapshot();
   }
+  [[nodiscard]] bool stage_stands() const override { return service_.stage_stands(); }
   void on_change(std::function<void()> listener, const void* whose) override {
     service_.on_change(std::move(listener), whose);
   }
@@ -73,8 +74,8 @@ class AtItsSocket : public testing::Test {
     config.access.loopback_role = Role::kAdminister;
     service_.access.emplace(config.access);
     const Services all = service_.services();
-    const Services counted{machine_,       all.jobs,    all.results, all.tasks, all.recipes,
-                           all.objectives, all.studies, all.control, all.audit, all.access};
+    const Services counted{machine_,    all.jobs,  all.results, all.tasks,    all.recipes, all.objectives, all.studies,
+                           all.control, all.audit, all.access,  all.refusals, all.history, all.alarms};
     server_ = std::make_unique<RpcServer>(config, runtime_.path(), counted);
   }
   /// A job of number 5 that runs.
@@ -285,6 +286,23 @@ TEST_F(AtItsSocket, LooksAtALineAFewTimesHoweverManyWaitsStandBeforeIt) {
   EXPECT_LT(machine_.looks - before, 30 * kMany) << "not by the product of both";
 }
 
+TEST_F(AtItsSocket, TriesAnAbortThatCannotBeAnsweredAFewTimesHoweverManyWaitsStandBeforeIt) {
+  serve();
+  LineClient client(server_->port());
+  start_a_job(client);
+  client.ask(R"({"jsonrpc":"2.0","id":1,"method":"job.start","params":[6,"p"]})");
+  constexpr int kMany = 100;
+  std::string lines;
+  for (int i = 0; i < kMany; ++i) lines += kShortWait;
+  for (int i = 0; i < kMany; ++i) {
+    lines += R"({"jsonrpc":"2.0","id":4,"method":"job.abort","params":{"seq":6}})"
+             "\n";
+  }
+  client.send(lines);
+  for (int i = 0; i < 2 * kMany; ++i) ASSERT_TRUE(client.line().has_value()) << i;
+  EXPECT_LE(service_.abort_tries, 4 * kMany) << "not by the product of both";
+}
+
 TEST_F(AtItsSocket, LooksAtAnAbortHoweverManyWaitsStandBeforeIt) {
   serve();
   LineClient client(server_->port());
@@ -320,7 +338,7 @@ TEST_F(AtItsSocket, ExecutesNothingBehindAMistakeHoweverLongAWaitStandsBeforeIt)
     }
     EXPECT_EQ(service_.stops, 0);
     service_.change({5}, [](JobStatus& job) { job.state = JobState::kCompleted; });
-    service_.current->state = JobState::kCompleted;
+    service_.change_current([](JobStatus& job) { job.state = JobState::kCompleted; });
     service_.change({5}, [](JobStatus& job) { ++job.slices_done; });
     const auto waited = client.line();
     ASSERT_TRUE(waited.has_value());

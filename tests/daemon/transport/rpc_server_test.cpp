@@ -214,6 +214,40 @@ TEST_F(AnRpcServer, AnswersPingsWhileAnotherClientsStartIsOnTheDisk) {
   EXPECT_EQ(json::parse(*ping)["id"], 1) << "and what came behind it then";
 }
 
+TEST_F(AnRpcServer, StartsAndTellsResultsWhileAnotherClientsListIsRead) {
+  std::promise<void> begun;
+  std::promise<void> released;
+  service_.history.before_list = [&] {
+    begun.set_value();
+    released.get_future().wait();
+  };
+  serve(config());
+  LineClient viewer(server_->port());
+  LineClient plc(server_->port());
+  viewer.send(R"({"jsonrpc":"2.0","id":9,"method":"job.list"})"
+              "\n");
+  begun.get_future().wait();
+  for (const char* line : {R"({"jsonrpc":"2.0","id":2,"method":"job.start","params":[5,"p"]})",
+                           R"({"jsonrpc":"2.0","id":3,"method":"job.latest"})"}) {
+    EXPECT_TRUE(json::parse(plc.ask(line)).contains("result")) << line;
+  }
+  released.set_value();
+  const auto listed = viewer.line();
+  ASSERT_TRUE(listed.has_value());
+  EXPECT_EQ(json::parse(*listed)["id"], 9);
+}
+
+TEST_F(AnRpcServer, RefusesAnAnswerThatAConnectionDoesNotTakeAndKeepsTheConnection) {
+  service_.history.points.assign(2000, {"J1", std::string(64, '\x01'), std::string(24, '0'), {}});
+  serve(config());
+  LineClient client(server_->port());
+  const json refused = json::parse(client.ask(
+      R"({"jsonrpc":"2.0","id":4,"method":"value.list","params":{"measurement":"m","value":"v","most":2000}})"));
+  EXPECT_EQ(refused["id"], 4);
+  EXPECT_EQ(refused["error"]["code"], -32602);
+  EXPECT_TRUE(answers(client));
+}
+
 TEST_F(AnRpcServer, AnswersPingsWhileAnotherClientsPictureIsMade) {
   std::promise<void> begun;
   std::promise<void> released;

@@ -3,11 +3,10 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { ordered, timeForPeople } from "../../../daemon/web/src/run/alarm_order.ts";
 import { deviceOf, diskOf } from "../../../daemon/web/src/run/health.ts";
-import { withPart } from "../../../daemon/web/src/run/last_parts.ts";
 import { ownerName } from "../../../daemon/web/src/rpc/owner_name.ts";
 
 test("alarms that nobody saw stand first, the newest of them on top", () => {
-  const alarm = (number: number, acknowledged: boolean) => ({ number, time_utc: "", level: "error" as const, text: "", acknowledged });
+  const alarm = (number: number, acknowledged: boolean) => ({ number, time_utc: "", last_utc: "", level: "error" as const, text: "", count: 1, acknowledged });
   const given = [alarm(1, true), alarm(2, false), alarm(3, true), alarm(4, false)];
   assert.deepEqual(ordered(given).map(({ number }) => number), [4, 2, 3, 1]);
   assert.deepEqual(given.map(({ number }) => number), [1, 2, 3, 4], "what was given stays as it was");
@@ -31,14 +30,6 @@ test("a disk is low below a twentieth or 5 GiB", () => {
   assert.equal(diskOf({ free_bytes: 40 * gib, size_bytes: 1000 * gib })?.isLow, true);
   assert.equal(diskOf({ free_bytes: 1 }), null);
   assert.equal(diskOf({ free_bytes: 1, size_bytes: 0 }), null);
-});
-
-test("a part is once in the list of the last", () => {
-  const part = (job_id: string, verdict: "pass" | null = null) => ({ job_id, part_id: "p", state: "completed", verdict });
-  const two = withPart(withPart([], part("a"), 2), part("b"), 2);
-  assert.deepEqual(two.map(({ job_id }) => job_id), ["b", "a"]);
-  assert.deepEqual(withPart(two, part("a", "pass"), 2), [part("b"), part("a", "pass")]);
-  assert.deepEqual(withPart(two, part("c"), 2).map(({ job_id }) => job_id), ["c", "b"]);
 });
 
 test("an owner's name has only what the daemon takes", () => {

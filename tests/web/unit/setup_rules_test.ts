@@ -52,7 +52,7 @@ test("a place on the scale stays on the scale", () => {
 });
 
 const alarm = (number: number, level: "warning" | "error" | "critical" = "warning") =>
-  ({ number, level, time_utc: "2026-11-30T12:00:00Z", text: "", acknowledged: false });
+  ({ number, level, time_utc: "2026-11-30T12:00:00Z", last_utc: "2026-11-30T12:00:00Z", text: "", count: 1, acknowledged: false });
 
 test("the journal has the newest 200, the newest first", () => {
   const many = Array.from({ length: 250 }, (_, i) => alarm(i + 1));

@@ -1,5 +1,5 @@
 // What of the history is asked for, as it stands in the page's address.
-import type { JobFilter, JobRow } from "../rpc/to_come_history.ts";
+import type { JobFilter } from "../rpc/listed.ts";
 
 export interface Wanted {
   part: string;
@@ -23,29 +23,22 @@ export function addressOf(wanted: Wanted): string {
   return query.size === 0 ? "/jobs" : `/jobs?${query}`;
 }
 
-// What the database seeks. The text is not among it: it is sought in the rows that are shown.
+// The words of job.list; "none" = nothing was judged.
+export const kVerdicts = ["pass", "fail", "uncertain", "invalid", "none"] as const;
+const kLongestText = 64;
+
+const verdictOf = (word: string): (typeof kVerdicts)[number] | undefined => kVerdicts.find((each) => each === word);
+
+// What the database seeks. What an address says that the daemon would refuse is left out, or cut.
 export function filterOf(wanted: Wanted): JobFilter {
+  const verdict = verdictOf(wanted.verdict);
+  const text = wanted.text.trim().slice(0, kLongestText);
   return {
-    ...(wanted.part ? { part_id: wanted.part } : {}),
-    ...(wanted.recipe ? { recipe: wanted.recipe } : {}),
-    ...(wanted.verdict ? { verdict: wanted.verdict } : {}),
+    ...(wanted.part ? { part_id: wanted.part.slice(0, kLongestText) } : {}),
+    ...(wanted.recipe ? { recipe: wanted.recipe.slice(0, kLongestText) } : {}),
+    ...(verdict ? { verdict } : {}),
     ...(isDay(wanted.from) ? { from_utc: `${wanted.from}T00:00:00.000Z` } : {}),
     ...(isDay(wanted.to) ? { to_utc: `${wanted.to}T23:59:59.999Z` } : {}),
+    ...(text ? { text } : {}),
   };
-}
-
-export function hasText(row: JobRow, text: string): boolean {
-  const sought = text.trim().toLowerCase();
-  return sought === "" || [row.job_id, row.part_id, row.recipe, row.client, row.error, row.state].some((each) => each.toLowerCase().includes(sought));
-}
-
-// The same that the database does, for rows that came without it.
-export function fits(row: JobRow, wanted: Wanted): boolean {
-  const filter = filterOf(wanted);
-  return (!filter.part_id || row.part_id.startsWith(filter.part_id))
-    && (!filter.recipe || row.recipe === filter.recipe)
-    && (!filter.verdict || row.verdict === filter.verdict)
-    && (!filter.from_utc || row.ended_utc >= filter.from_utc)
-    && (!filter.to_utc || row.ended_utc <= filter.to_utc)
-    && hasText(row, wanted.text);
 }

@@ -1,14 +1,10 @@
 // What the daemon is doing, as the stream of events tells it. One stream a tab; a lost one is opened again by itself.
 import { createStore } from "../lib/store.ts";
+import type { Alarm } from "../rpc/listed.ts";
 import type { Methods } from "../rpc/methods.ts";
-
-export interface Alarm {
-  number: number;
-  time_utc: string;
-  level: "warning" | "error" | "critical";
-  text: string;
-  acknowledged: boolean;
-}
+import { headers, token } from "../rpc/rpc.ts";
+import { readEvents } from "./event_reader.ts";
+import type { SseEvent } from "./sse.ts";
 
 // A topic is told in full: keys that short replies leave out are there.
 export type Full<M extends keyof Methods> = Required<Omit<Methods[M]["result"], "left_out">>;
@@ -29,6 +25,7 @@ export interface Link {
 
 const kSilence_ms = 40000;  // the daemon pings every 15 s
 const kRetry_ms = 1000;
+const kRefused_ms = 5000;  // who may not look is told so in the daemon's log each time
 
 export const topics = createStore<Topics>({ state: null, job: null, control: null, health: null, alarms: [] });
 export const link = createStore<Link>({ status: "never", since_ms: performance.now() });
@@ -48,64 +45,40 @@ function take(name: keyof Topics, text: string): void {
 
 const kTopics: readonly (keyof Topics)[] = ["state", "job", "control", "health", "alarms"];
 
+function takeEvent({ name, data }: SseEvent): void {
+  if (name === "snapshot") {
+    topics.set(JSON.parse(data) as Topics);
+  } else if (name === "resync") {
+    resyncs.update((count) => count + 1);
+  } else if (name === "result") {
+    const { job_id } = JSON.parse(data) as { job_id: string };
+    results.update(({ count }) => ({ count: count + 1, job_id }));
+  } else if ((kTopics as readonly string[]).includes(name)) {
+    take(name as keyof Topics, data);
+  }
+}
+
 // Begins to listen; call the result to end it.
 export function listen(): () => void {
-  let source: EventSource | null = null;
-  let timer: ReturnType<typeof setTimeout> | undefined;
-  let ended = false;
-
-  const open = (): void => {
-    if (ended) return;
-    source = new EventSource("/api/v1/events");
-    heard();
-    source.onopen = () => heard();
-    source.onerror = () => {
-      setStatus("lost");
-      // A browser gives up for good after an answer that is no stream; we do not.
-      if (source?.readyState === EventSource.CLOSED) again(kRetry_ms);
-    };
-    source.addEventListener("ping", heard);
-    source.addEventListener("snapshot", (event) => {
-      heard();
-      topics.set(JSON.parse(event.data) as Topics);
-      setStatus("open");
-    });
-    source.addEventListener("resync", () => resyncs.update((count) => count + 1));
-    for (const name of kTopics) {
-      source.addEventListener(name, (event) => {
-        heard();
-        take(name, (event as MessageEvent<string>).data);
-      });
-    }
-    source.addEventListener("result", (event) => {
-      heard();
-      const { job_id } = JSON.parse(event.data) as { job_id: string };
-      results.update(({ count }) => ({ count: count + 1, job_id }));
-    });
-  };
-  const again = (wait_ms: number): void => {
-    clearTimeout(timer);
-    source?.close();
-    timer = setTimeout(open, wait_ms);
-  };
-  // A machine that slept, or a cable that was pulled, leaves a stream that says nothing and does not end.
-  const heard = (): void => {
-    clearTimeout(timer);
-    timer = setTimeout(() => {
-      setStatus("lost");
-      again(0);
-    }, kSilence_ms);
-    if (source?.readyState === EventSource.OPEN) setStatus("open");
-  };
+  const reader = readEvents({
+    path: "/api/v1/events",
+    headers,
+    onOpen: () => setStatus("open"),
+    onEvent: takeEvent,
+    onLost: () => setStatus("lost"),
+    silence_ms: kSilence_ms,
+    retry_ms: kRetry_ms,
+    refused_ms: kRefused_ms,
+  });
+  // Somebody else looks on from now on, or nobody.
+  const unwatch = token.watch(() => reader.restart());
   const wake = (): void => {
-    if (document.visibilityState === "visible" && source?.readyState === EventSource.CLOSED) again(0);
+    if (document.visibilityState === "visible") reader.wake();
   };
   document.addEventListener("visibilitychange", wake);
-  open();
   return () => {
-    ended = true;
-    clearTimeout(timer);
+    unwatch();
     document.removeEventListener("visibilitychange", wake);
-    source?.close();
+    reader.end();
   };
 }

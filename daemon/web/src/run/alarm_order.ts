@@ -1,5 +1,5 @@
 // Which alarms stand first: those that nobody acknowledged, the newest first.
-import type { Alarm } from "../live/live.ts";
+import type { Alarm } from "../rpc/listed.ts";
 
 export function ordered(alarms: readonly Alarm[]): Alarm[] {
   return [...alarms].sort((a, b) => Number(a.acknowledged) - Number(b.acknowledged) || b.number - a.number);

@@ -1,5 +1,7 @@
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -107,18 +109,53 @@ TEST(ProfileExtraction, HasHolesInTheOuterHalfPixelOfTheField) {
   EXPECT_TRUE(std::isnan(profile.z_um[20]));
 }
 
+TEST(ProfileExtraction, OfPointsThatAreAskedForIsTheSame) {
+  HeightField field = plane(80, 60, 0.1 + 0.2, 1.0 / 3.0);
+  for (int i = 0; i < 40; ++i) field.z_um.at(7 * i % 80, 11 * i % 60) = kHole;
+  std::set<std::pair<int, int>> asked;
+  PointField points{80, 60, field.pitch_x_um, field.pitch_y_um, {}};
+  points.z_um = [&](int column, int row) {
+    EXPECT_TRUE(column >= 0 && column < 80 && row >= 0 && row < 60);
+    asked.emplace(column, row);
+    return field.z_um.at(column, row);
+  };
+  for (const double band_um : {0.0, 2.5}) {
+    const ProfileLine line{
+        .from_x_um = 20.0, .from_y_um = 3.0, .to_x_um = 4.0, .to_y_um = 11.0, .band_width_um = band_um};
+    asked.clear();
+
+    const Profile of_points = extract_profile(points, line);
+    const Profile of_field = extract_profile(field, line);
+
+    EXPECT_EQ(of_points.pitch_um, of_field.pitch_um);
+    ASSERT_EQ(of_points.z_um.size(), of_field.z_um.size());
+    for (std::size_t i = 0; i < of_field.z_um.size(); ++i) {
+      const bool hole = std::isnan(of_field.z_um[i]);
+      EXPECT_TRUE(hole ? std::isnan(of_points.z_um[i]) : of_points.z_um[i] == of_field.z_um[i]) << i;
+    }
+    EXPECT_LT(asked.size(), band_um > 0.0 ? 700U : 250U) << "what lies beside the line is not needed";
+  }
+}
+
 TEST(ProfileExtraction, RefusesWhatLeavesTheField) {
   const HeightField field = plane(40, 40, 1.0, 1.0);
+  const auto code_of = [&field](const ProfileLine& line) {
+    try {
+      (void)extract_profile(field, line);
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return ErrorCode::kInternal;
+  };
 
-  EXPECT_THROW((void)extract_profile(field, {.from_x_um = -1.0, .from_y_um = 5, .to_x_um = 20, .to_y_um = 5}), Error);
-  EXPECT_THROW((void)extract_profile(field, {.from_x_um = 1.0, .from_y_um = 5, .to_x_um = 20, .to_y_um = 41}), Error);
-  EXPECT_THROW(
-      (void)extract_profile(field, {.from_x_um = 1, .from_y_um = 5, .to_x_um = 20, .to_y_um = 5, .band_width_um = 11}),
-      Error);
+  const ErrorCode outside = ErrorCode::kRegionOutside;
+  EXPECT_EQ(code_of({.from_x_um = -1.0, .from_y_um = 5, .to_x_um = 20, .to_y_um = 5}), outside);
+  EXPECT_EQ(code_of({.from_x_um = 1.0, .from_y_um = 5, .to_x_um = 20, .to_y_um = 41}), outside);
+  EXPECT_EQ(code_of({.from_x_um = 1, .from_y_um = 5, .to_x_um = 20, .to_y_um = 5, .band_width_um = 11}), outside);
   EXPECT_NO_THROW(
       (void)extract_profile(field, {.from_x_um = 1, .from_y_um = 5, .to_x_um = 20, .to_y_um = 5, .band_width_um = 10}));
-  EXPECT_THROW((void)extract_profile(field, {.from_x_um = 1, .from_y_um = 5, .to_x_um = 1.5, .to_y_um = 5}), Error);
-  EXPECT_THROW((void)extract_profile(field, {.from_x_um = kHole, .from_y_um = 5, .to_x_um = 9, .to_y_um = 5}), Error);
+  EXPECT_EQ(code_of({.from_x_um = 1, .from_y_um = 5, .to_x_um = 1.5, .to_y_um = 5}), ErrorCode::kBadInput);
+  EXPECT_EQ(code_of({.from_x_um = kHole, .from_y_um = 5, .to_x_um = 9, .to_y_um = 5}), ErrorCode::kBadInput);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Which jobs are wanted.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { t, tWord } from "../../i18n/i18n.ts";
-import type { Wanted } from "../../history/filter.ts";
+import { type Wanted, kVerdicts } from "../../history/filter.ts";
 import { html } from "../../lib/html.ts";
 import { call } from "../../rpc/rpc.ts";
 
@@ -29,9 +29,9 @@ export function FilterForm({ wanted, onChange }: { wanted: Wanted; onChange: (wa
       <option value="">${t("history.all")}</option>${offered.map((id) => html`<option value=${id}>${id}</option>`)}</select></label>
     <label>${t("history.verdict")} <select value=${wanted.verdict} onChange=${set("verdict", 0)}>
       <option value="">${t("history.all")}</option>
-      ${["pass", "fail", "uncertain", "invalid"].map((each) => html`<option value=${each}>${tWord("verdict", each)}</option>`)}</select></label>
+      ${kVerdicts.map((each) => html`<option value=${each}>${tWord("verdict", each)}</option>`)}</select></label>
     <label>${t("history.from")} <input type="date" value=${wanted.from} onChange=${set("from", 0)}/></label>
     <label>${t("history.to")} <input type="date" value=${wanted.to} onChange=${set("to", 0)}/></label>
-    <label>${t("history.text")} <input type="search" value=${wanted.text} autocomplete="off" onInput=${set("text", kPause_ms)}/></label>
+    <label>${t("history.text")} <input type="search" value=${wanted.text} maxlength="64" autocomplete="off" onInput=${set("text", kPause_ms)}/></label>
   </form>`;
 }

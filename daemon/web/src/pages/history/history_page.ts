@@ -1,14 +1,14 @@
 // What was measured: the list of jobs, one value over time, two jobs beside each other.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { t, useLanguage } from "../../i18n/i18n.ts";
-import { addressOf, filterOf, fits, hasText, wantedOf } from "../../history/filter.ts";
-import { jobPage } from "../../history/job_source.ts";
+import { addressOf, filterOf, wantedOf } from "../../history/filter.ts";
 import { html } from "../../lib/html.ts";
 import { go, place } from "../../lib/router.ts";
 import { useStore } from "../../lib/store.ts";
 import { results } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
-import type { JobRow } from "../../rpc/to_come_history.ts";
+import type { JobRow } from "../../rpc/listed.ts";
+import { call } from "../../rpc/rpc.ts";
 import { Comparison } from "./comparison.ts";
 import { FilterForm } from "./filter_form.ts";
 import { JobTable } from "./job_table.ts";
@@ -23,7 +23,6 @@ function History() {
   const wanted = wantedOf(query);
   const [rows, setRows] = useState<JobRow[]>([]);
   const [next, setNext] = useState("");
-  const [isListed, setListed] = useState(true);
   const [problem, setProblem] = useState("");
   const [busy, setBusy] = useState(true);
   const [chosen, setChosen] = useState<string[]>([]);
@@ -35,11 +34,10 @@ function History() {
     asked.current = mine;
     setBusy(true);
     try {
-      const page = await jobPage({ ...filterOf(wanted), most: kPage, ...(before ? { before } : {}) }, { signal: mine.signal });
+      const page = await call("job.list", { ...filterOf(wanted), most: kPage, ...(before ? { before } : {}) }, { signal: mine.signal });
       if (asked.current !== mine) return;
       setRows((was) => (before ? [...was, ...page.jobs] : page.jobs));
       setNext(page.next);
-      setListed(page.isListed);
       setProblem("");
     } catch (error) {
       if (asked.current !== mine) return;
@@ -56,16 +54,13 @@ function History() {
   }, [count]);
   useEffect(() => () => asked.current?.abort(), []);
 
-  const shown = rows.filter((row) => (isListed ? hasText(row, wanted.text) : fits(row, wanted)));
   const choose = (job_id: string): void =>
     setChosen((was) => (was.includes(job_id) ? was.filter((each) => each !== job_id) : [...was, job_id].slice(-2)));
   return html`<h1>${t("nav.history")}</h1>
     <${FilterForm} wanted=${wanted} onChange=${(to: typeof wanted) => go(addressOf(to), { replace: true })}/>
-    ${!isListed && html`<p class="panel notice">${t("history.no_list")}</p>`}
     ${problem && html`<p role="alert" class="problem">${problem}</p>`}
-    <${JobTable} rows=${shown} chosen=${chosen} onChoose=${choose}/>
-    <p aria-live="polite" class="help">${busy ? t("history.loading") : t(next ? "history.shown_more" : "history.shown", { count: shown.length })}
-      ${wanted.text !== "" && next !== "" && html` ${t("history.text_in_shown", { count: rows.length })}`}</p>
+    <${JobTable} rows=${rows} chosen=${chosen} onChoose=${choose}/>
+    <p aria-live="polite" class="help">${busy ? t("history.loading") : t(next ? "history.shown_more" : "history.shown", { count: rows.length })}</p>
     ${next && html`<p class="buttons"><button type="button" disabled=${busy} onClick=${() => void load(next)}>${t("history.more")}</button></p>`}
     <${RunChart} rows=${rows} recipe=${wanted.recipe}/>`;
 }

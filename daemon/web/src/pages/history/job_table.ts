@@ -4,7 +4,7 @@ import { csvOf } from "../../history/csv.ts";
 import { download } from "../../lib/download.ts";
 import { html } from "../../lib/html.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
-import type { JobRow } from "../../rpc/to_come_history.ts";
+import type { JobRow } from "../../rpc/listed.ts";
 
 const kColumns = ["job_id", "seq", "client", "part_id", "recipe", "state", "verdict", "ended_utc", "error"] as const;
 

@@ -3,13 +3,12 @@ import { useEffect, useState } from "preact/hooks";
 import { number, t } from "../../i18n/i18n.ts";
 import { centreOf, marksOf } from "../../history/control_rules.ts";
 import { csvOf } from "../../history/csv.ts";
-import { valuePoints } from "../../history/job_source.ts";
 import { download } from "../../lib/download.ts";
 import { html } from "../../lib/html.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { digitsOf, unitText, valuesOf } from "../../results/values.ts";
+import type { JobRow, ValuePoint } from "../../rpc/listed.ts";
 import { call } from "../../rpc/rpc.ts";
-import type { JobRow, ValuePoint } from "../../rpc/to_come_history.ts";
 import { RunCurve } from "./run_curve.ts";
 import { RunTable } from "./run_table.ts";
 
@@ -28,7 +27,7 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
   const [chosen, setChosen] = useState("");
   const [most, setMost] = useState(100);
   const [points, setPoints] = useState<ValuePoint[] | null>(null);
-  const [isListed, setListed] = useState(true);
+  const [searchedAll, setSearchedAll] = useState(true);
   const [problem, setProblem] = useState("");
   const newest = rows.find((row) => row.state === "completed" && (!recipe || row.recipe === recipe))?.job_id ?? "";
 
@@ -47,10 +46,10 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
   useEffect(() => {
     if (!choice) return;
     let ended = false;
-    valuePoints({ measurement: choice.measurement, value: choice.name, most, ...(recipe ? { recipe } : {}) }, rows).then((got) => {
+    call("value.list", { measurement: choice.measurement, value: choice.name, most, ...(recipe ? { recipe } : {}) }).then((got) => {
       if (ended) return;
       setPoints(got.points);
-      setListed(got.isListed);
+      setSearchedAll(got.searched_all);
       setProblem("");
     }, (error) => { if (!ended) setProblem(messageOf(error)); });
     return () => { ended = true; };
@@ -64,7 +63,7 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
     if (!choice || !points) return;
     const head = ["job_id", "part_id", "ended_utc", choice.name, "U", "lower", "upper", "verdict", "rule_1", "rule_4"];
     download(`${choice.measurement}_${choice.name}.csv`.replace(/[^A-Za-z0-9_.-]/g, "_"), "text/csv", csvOf(head, points.map((point, i) => [
-      point.job_id, point.part_id, point.ended_utc, point.value, point.u, point.lower, point.upper, point.verdict,
+      point.job_id, point.part_id, point.ended_utc, point.value, point.U, point.lower, point.upper, point.verdict,
       marks[i]?.rule1 ? 1 : 0, marks[i]?.rule4 ? 1 : 0,
     ])));
   };
@@ -79,7 +78,7 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
       <button type="button" disabled=${!points?.length} onClick=${take}>${t("history.csv_chart")}</button>
     </div>
     ${!recipe && html`<p class="help">${t("history.all_recipes")}</p>`}
-    ${!isListed && html`<p class="help">${t("history.no_values")}</p>`}
+    ${!searchedAll && html`<p class="help">${t("history.newest_only", { count: 20000 })}</p>`}
     ${problem && html`<p role="alert" class="problem">${problem}</p>`}
     ${choices.length === 0 && html`<p>${t("history.nothing")}</p>`}
     ${points && points.length > 0 && html`

@@ -7,7 +7,7 @@ import { number, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
 import { theme } from "../../lib/theme.ts";
-import type { ValuePoint } from "../../rpc/to_come_history.ts";
+import type { ValuePoint } from "../../rpc/listed.ts";
 
 interface Props {
   points: readonly ValuePoint[];
@@ -20,7 +20,7 @@ interface Props {
 const kHeight_px = 320;
 
 function extent(points: readonly ValuePoint[], centre: Centre | null): [number, number] {
-  const all = points.flatMap(({ value, u, lower, upper }) => [value === null ? null : value - (u ?? 0), value === null ? null : value + (u ?? 0), lower, upper]);
+  const all = points.flatMap(({ value, U, lower, upper }) => [value === null ? null : value - (U ?? 0), value === null ? null : value + (U ?? 0), lower, upper]);
   if (centre) all.push(centre.mean - 3 * centre.sigma, centre.mean + 3 * centre.sigma);
   const known = all.filter((each): each is number => each !== null && Number.isFinite(each));
   const [low, high] = [Math.min(...known), Math.max(...known)];
@@ -51,13 +51,13 @@ function draw(plot: uPlot, { points, marks, centre }: Props, colour: (name: stri
     }
     ctx.setLineDash([]);
   }
-  points.forEach(({ value, u }, i) => {
+  points.forEach(({ value, U }, i) => {
     if (value === null) return;
     const at = { x: x(i), y: y(value) };
-    if (u !== null) {
+    if (U !== null) {
       ctx.strokeStyle = colour("--accent");
-      line(at.x, y(value - u), at.x, y(value + u));
-      for (const end of [value - u, value + u]) line(at.x - 3 * ratio, y(end), at.x + 3 * ratio, y(end));
+      line(at.x, y(value - U), at.x, y(value + U));
+      for (const end of [value - U, value + U]) line(at.x - 3 * ratio, y(end), at.x + 3 * ratio, y(end));
     }
     ctx.strokeStyle = colour("--bad");
     ctx.lineWidth = 2 * ratio;

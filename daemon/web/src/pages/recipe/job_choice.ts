@@ -12,7 +12,6 @@ export function JobChoice({ newest, recipe }: { newest: Newest; recipe: string }
       ? html`<p>${t("recipe.of_job")} <a href=${`/jobs/${encodeURIComponent(newest.job_id)}`}>${newest.job_id}</a>
           ${newest.recipe && newest.recipe !== recipe && newest.recipe !== tryId(recipe) && html` – <strong>${t("recipe.of_other", { recipe: newest.recipe })}</strong>`}</p>`
       : html`<p>${t("recipe.no_job")}</p>`}
-    ${!newest.isSearched && html`<p class="help">${t("recipe.not_searched")}</p>`}
     ${newest.problem && html`<p role="alert" class="problem">${newest.problem}</p>`}
     <form class="add" onSubmit=${(event: Event) => {
       event.preventDefault();

@@ -1,6 +1,6 @@
-// The profile along a line: the daemon's where it offers one, else taken here from the points at full resolution.
+// The profile along a line: the daemon's, or where lengths are not known one that is taken here from the points at full resolution.
 import { useEffect, useState } from "preact/hooks";
-import { askProfile } from "../../rpc/to_come_result.ts";
+import { call } from "../../rpc/rpc.ts";
 import { kBlock, valueIn } from "../../surface/full_map.ts";
 import type { Tile } from "../../surface/height_tile.ts";
 import { type LineProblem, type Profile, type ProfileLine, type Values, blocksOf, profileOf, samplesOf } from "../../surface/profile_line.ts";
@@ -34,6 +34,12 @@ async function takeHere(map: ResultMap, line: ProfileLine): Promise<Profile | Li
   return profileOf(map.size, samples, heights, sigmas);
 }
 
+async function askDaemon(map: ResultMap, line: ProfileLine, signal: AbortSignal): Promise<Profile> {
+  const params = { job_id: map.full.job, from_um: line.from, to_um: line.to, width_um: line.width_um };
+  const { distance_um, height_um, sigma_um } = await call("result.profile", params, { signal });
+  return { distance_um: distance_um as number[], height_um: height_um as (number | null)[], sigma_um: sigma_um as (number | null)[] };
+}
+
 export function useProfile(map: ResultMap, line: ProfileLine): TakenProfile {
   const [taken, setTaken] = useState<TakenProfile>({ profile: null, line: null, by: "page", problem: null, error: null });
   const key = JSON.stringify(line);
@@ -44,10 +50,7 @@ export function useProfile(map: ResultMap, line: ProfileLine): TakenProfile {
       try {
         const samples = samplesOf(map.size, line);
         if (typeof samples === "string") return { ...none, problem: samples };
-        const reply = map.has_pitch
-          ? await askProfile({ job_id: map.full.job, from_um: line.from, to_um: line.to, width_um: line.width_um }, abort.signal)
-          : null;
-        if (reply) return { ...none, profile: reply, by: "daemon" };
+        if (map.has_pitch) return { ...none, profile: await askDaemon(map, line, abort.signal), by: "daemon" };
         const made = await takeHere(map, line);
         return typeof made === "string" ? { ...none, problem: made } : { ...none, profile: made };
       } catch (error) {

@@ -3,11 +3,12 @@ import { useState } from "preact/hooks";
 import { t, tWord, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
-import { type Alarm, topics } from "../../live/live.ts";
+import { topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
+import type { Alarm } from "../../rpc/listed.ts";
+import { call } from "../../rpc/rpc.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { ordered, timeForPeople } from "../../run/alarm_order.ts";
-import { acknowledgeAlarm } from "./to_come.ts";
 import { whatToDo } from "./what_to_do.ts";
 
 // An alarm of an error carries its code where the daemon tells it.
@@ -19,20 +20,20 @@ const kShapes: Record<Alarm["level"], string> = {
   critical: "M12 1 15 9 23 12 15 15 12 23 9 15 1 12 9 9Z",
 };
 
-function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; mayAcknowledge: boolean; acknowledge: (number: number) => void }) {
+function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; mayAcknowledge: boolean; acknowledge: (alarm: Alarm) => void }) {
   const language = useLanguage();
   const todo = whatToDo(alarm.error_code ?? 0) || tWord("run.alarm_todo", alarm.level);
   return html`<li class=${`alarm alarm-${alarm.level} ${alarm.acknowledged ? "seen" : ""}`}>
     <svg width="24" height="24" viewBox="0 0 24 24" fill="currentColor" aria-hidden="true"><path d=${kShapes[alarm.level] ?? kShapes.error}/></svg>
     <div>
       <p><strong>${tWord("run.alarm_level", alarm.level)}</strong> <time datetime=${alarm.time_utc}>${timeForPeople(alarm.time_utc, language)}</time></p>
-      <p class="alarm-text">${alarm.text}</p>
+      <p class="alarm-text">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</p>
       <p class="help">${todo}</p>
     </div>
     ${alarm.acknowledged
       ? html`<span class="help">${t("run.acknowledged")}</span>`
       : html`<button type="button" disabled=${!mayAcknowledge} title=${mayAcknowledge ? undefined : t("run.why.no_role")}
-          aria-label=${t("run.acknowledge_this", { text: alarm.text })} onClick=${() => acknowledge(alarm.number)}>${t("run.acknowledge")}</button>`}
+          aria-label=${t("run.acknowledge_this", { text: alarm.text })} onClick=${() => acknowledge(alarm)}>${t("run.acknowledge")}</button>`}
   </li>`;
 }
 
@@ -41,9 +42,9 @@ export function AlarmsPanel() {
   const { alarms } = useStore(topics);
   const { role } = useStore(session);
   const [problem, setProblem] = useState("");
-  const acknowledge = (number: number): void => {
+  const acknowledge = ({ number, time_utc }: Alarm): void => {
     setProblem("");
-    acknowledgeAlarm(number).catch((error: unknown) => setProblem(messageOf(error)));
+    call("alarm.acknowledge", { number, time_utc }).catch((error: unknown) => setProblem(messageOf(error)));
   };
   const list = ordered(alarms ?? []);
   const waiting = list.filter(({ acknowledged }) => !acknowledged).length;

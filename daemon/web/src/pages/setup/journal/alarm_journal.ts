@@ -3,10 +3,11 @@ import { useState } from "preact/hooks";
 import { t, tWord, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
-import { type Alarm, topics } from "../../../live/live.ts";
+import { topics } from "../../../live/live.ts";
+import type { Alarm } from "../../../rpc/listed.ts";
+import { call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import { acknowledgeAlarm } from "../to_come.ts";
 import { useCommand } from "../use_command.ts";
 import { clockTime } from "./clock_time.ts";
 import { newest } from "./newest_alarms.ts";
@@ -18,7 +19,7 @@ export function AlarmJournal() {
   useLanguage();
   const { alarms } = useStore(topics);
   const [level, setLevel] = useState<string>("all");
-  const { running, problem, run } = useCommand<void>();
+  const { running, problem, run } = useCommand<unknown>();
   const why = useRefusal({ role: "operate" });
   const shown = newest(alarms, level);
   return html`<section class="panel" aria-labelledby="alarms-title">
@@ -36,10 +37,10 @@ export function AlarmJournal() {
           ${shown.map((alarm) => html`<tr key=${alarm.number}>
             <td class="time">${clockTime(alarm.time_utc)}</td>
             <td class=${`level ${alarm.level}`}><span aria-hidden="true">${kMarks[alarm.level] ?? "△"}</span> ${tWord("setup.level", alarm.level)}</td>
-            <td class="long">${alarm.text}</td>
+            <td class="long">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</td>
             <td>${alarm.acknowledged ? t("setup.journal.acknowledged") : html`<button type="button" disabled=${why !== "" || running} title=${why}
               aria-label=${t("setup.journal.acknowledge_of", { number: alarm.number })}
-              onClick=${() => void run(() => acknowledgeAlarm(alarm.number))}>${t("setup.journal.acknowledge")}</button>`}</td>
+              onClick=${() => void run(() => call("alarm.acknowledge", { number: alarm.number, time_utc: alarm.time_utc }))}>${t("setup.journal.acknowledge")}</button>`}</td>
           </tr>`)}
         </table></div>`}
   </section>`;

@@ -1,5 +1,5 @@
 // Which alarms the journal shows.
-import type { Alarm } from "../../../live/live.ts";
+import type { Alarm } from "../../../rpc/listed.ts";
 
 const kMost = 200;
 

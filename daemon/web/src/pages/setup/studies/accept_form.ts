@@ -5,8 +5,8 @@ import { html } from "../../../lib/html.ts";
 import { call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import type { Study } from "../to_come.ts";
 import { useCommand } from "../use_command.ts";
+import type { Study } from "./study_types.ts";
 
 type Accepted = Awaited<ReturnType<typeof call<"calibrate.accept">>>;
 

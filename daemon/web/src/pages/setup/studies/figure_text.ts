@@ -1,6 +1,6 @@
 // A study's figure as people read it.
-import type { Figure } from "../to_come.ts";
 import { digitsOfUncertain, shownUnit, usefulDigits } from "../units.ts";
+import type { Figure } from "./study_types.ts";
 
 export interface FigureText {
   value: string;

@@ -1,8 +1,9 @@
-// The newest completed jobs, to choose from. Where the daemon has no list of jobs, those that this tab saw.
+// The newest completed jobs, to choose from. Where the list does not come, those that this tab saw.
 import { useEffect, useState } from "preact/hooks";
 import { createStore, useStore } from "../../../lib/store.ts";
 import { results, topics } from "../../../live/live.ts";
-import { type ListedJob, isNotOffered, listJobs } from "../to_come.ts";
+import type { JobRow } from "../../../rpc/listed.ts";
+import { call } from "../../../rpc/rpc.ts";
 
 export interface KnownJob {
   job_id: string;
@@ -22,22 +23,18 @@ topics.watch(() => {
 });
 
 export interface KnownJobs {
-  jobs: KnownJob[];
+  jobs: readonly KnownJob[];
   isListed: boolean;  // false: only those that were seen
 }
 
 export function useKnownJobs(): KnownJobs {
   const own = useStore(seen);
   const { count } = useStore(results);
-  const [listed, setListed] = useState<ListedJob[] | null>(null);
+  const [listed, setListed] = useState<readonly JobRow[] | null>(null);
   useEffect(() => {
     let gone = false;
-    listJobs({ state: "completed", most: kMost }).then(
-      (jobs) => gone || setListed(jobs),
-      (error: unknown) => {
-        // Without a list ids can still be typed; why there is none matters only where the daemon should have one.
-        if (!gone && !isNotOffered(error)) setListed(null);
-      });
+    // Without a list ids can still be typed.
+    call("job.list", { state: "completed", most: kMost }).then(({ jobs }) => gone || setListed(jobs), () => gone || setListed(null));
     return () => void (gone = true);
   }, [count]);
   return listed === null ? { jobs: own, isListed: false } : { jobs: listed, isListed: true };

@@ -5,11 +5,11 @@ import { html } from "../../../lib/html.ts";
 import { messageOf } from "../../../parts/message_of.ts";
 import { call } from "../../../rpc/rpc.ts";
 import { Problem } from "../problem.ts";
-import type { ListedStudy, StudyReply } from "../to_come.ts";
 import { kKinds } from "./kinds.ts";
 import { StudyForm } from "./study_form.ts";
 import { StudyList } from "./study_list.ts";
 import { StudyReport } from "./study_report.ts";
+import type { ListedStudy, StudyReply } from "./study_types.ts";
 
 interface Made {
   studies: ListedStudy[];

@@ -6,13 +6,14 @@ import { messageOf } from "../../../parts/message_of.ts";
 import type { Role } from "../../../rpc/session.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import { type StudyReply, runStudy } from "../to_come.ts";
 import { useCommand } from "../use_command.ts";
 import { describedMethods } from "./described_methods.ts";
 import { proposes } from "./kinds.ts";
 import { useKnownJobs } from "./known_jobs.ts";
+import { runStudy } from "./run_study.ts";
 import { type Field, type Method, fieldsOf } from "./study_fields.ts";
 import { StudyInput } from "./study_input.ts";
+import type { StudyReply } from "./study_types.ts";
 import { type Values, emptyValue, paramsOf } from "./study_values.ts";
 
 interface Props {

@@ -2,7 +2,7 @@
 import { t, tWord, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { clockTime } from "../journal/clock_time.ts";
-import type { ListedStudy } from "../to_come.ts";
+import type { ListedStudy } from "./study_types.ts";
 
 interface Props {
   studies: ListedStudy[];

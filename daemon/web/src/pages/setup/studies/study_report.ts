@@ -2,9 +2,9 @@
 import { number, t, tWord, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { clockTime } from "../journal/clock_time.ts";
-import type { StudyReply } from "../to_come.ts";
 import { AcceptForm } from "./accept_form.ts";
 import { figureText } from "./figure_text.ts";
+import type { StudyReply } from "./study_types.ts";
 
 const textOf = (entry: unknown): string => {
   const { text } = (entry ?? {}) as { text?: unknown };
