@@ -18,7 +18,8 @@ namespace {
 /// They close cameras, remove files and tell people what was stored, for which nothing that measures waits: where they
 /// hang a person must know, and a job that runs is not ended for it. Closing a stage is none of them, for no other is
 /// opened before; nor is the making of files that follow, for a job may wait for their memory.
-constexpr std::array kHarmless{"fvd-reap-camera", "fvd-retention", "fvd-http-work", "fvd-http-files", "fvd-rpc-lists"};
+constexpr std::array kHarmless{"fvd-reap-camera", "fvd-retention", "fvd-http-work",
+                               "fvd-http-files",  "fvd-rpc-lists", "fvd-maps"};
 
 bool is_harmless(const std::string& name) {
   return std::find(kHarmless.begin(), kHarmless.end(), name) != kHarmless.end();

@@ -23,6 +23,7 @@ std::optional<int> whole_number(const std::string& text) {
 std::variant<HeightQuery, std::string> read_height_query(const std::map<std::string, std::string>& query) {
   HeightQuery read;
   for (const auto& [key, text] : query) {
+    if (key == "v") continue;  // browsers keep an answer for ever: another version is another address
     if (key == "kind") {
       const auto kind = map_kind_from_name(text);
       if (!kind) return "kind must be height, sigma, texture or reason";
@@ -31,7 +32,7 @@ std::variant<HeightQuery, std::string> read_height_query(const std::map<std::str
     }
     const auto value = whole_number(text);
     const bool is_size = key == "w" || key == "h" || key == "max";
-    if (!is_size && key != "x" && key != "y") return "the query has a key that is none of kind, x, y, w, h, max";
+    if (!is_size && key != "x" && key != "y") return "the query has a key that is none of kind, x, y, w, h, max, v";
     if (!value || (is_size && *value == 0)) return key + " must be a whole number" + (is_size ? " above 0" : "");
     if (key == "x") read.x = *value;
     if (key == "y") read.y = *value;

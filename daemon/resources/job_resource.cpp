@@ -97,20 +97,11 @@ ResourceAnswer JobResource::get(const ResourceRequest& request) {
   return file(std::string(id), what.substr(kFiles.size()), request);
 }
 
-std::optional<StoredJob> JobResource::owner_of_maps(const std::string& id) {
-  try {
-    return map_owner(results_, id);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::kResultRemoved) maps_.forget(id);
-    throw;
-  }
-}
-
 ResourceAnswer JobResource::height(const std::string& id, const ResourceRequest& request) {
   const auto read = read_height_query(request.query);
   if (const auto* wrong = std::get_if<std::string>(&read)) return refused({400, "bad_query", *wrong});
   const auto& query = std::get<HeightQuery>(read);
-  const auto owner = owner_of_maps(id);
+  const auto owner = map_owner(results_, id, maps_);
   if (!owner) return no_result();
   const auto map = maps_.of(owner->status.job_id, owner->result_dir)->find(query.kind);
   if (!map) {

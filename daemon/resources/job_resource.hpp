@@ -2,7 +2,6 @@
 
 /// Maps and files of stored results: /api/v1/jobs/ID/height and /api/v1/jobs/ID/files/NAME.
 
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,7 +25,6 @@ class JobResource final : public HttpResource {
   [[nodiscard]] ResourceAnswer get(const ResourceRequest& request) override;
 
  private:
-  [[nodiscard]] std::optional<StoredJob> owner_of_maps(const std::string& id);
   [[nodiscard]] ResourceAnswer height(const std::string& id, const ResourceRequest& request);
   [[nodiscard]] ResourceAnswer file(const std::string& id, std::string_view name, const ResourceRequest& request) const;
 

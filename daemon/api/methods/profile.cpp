@@ -85,7 +85,7 @@ metrology::ProfileLine line_of(const ProfileParams& params) {
 }
 
 Reply profile_of(const ResultService& results, MapCache& maps, const ProfileParams& params) {
-  const std::optional<StoredJob> job = map_owner(results, params.job_id);
+  const std::optional<StoredJob> job = map_owner(results, params.job_id, maps);
   if (!job) {
     throw Error(ErrorCode::kBadInput,
                 "job " + quoted(params.job_id) + " has no result: job.status tells how it ended, or that it runs");

@@ -12,11 +12,12 @@ import sys
 from rig import Client, Rig, recipe, resident_kib, wait_for
 
 BLOCK = 50  # jobs between two lines of progress
-KEEP_GIB = 1  # the least that can be configured: results of 2,000 jobs take twice as much
+KEEP_GIB = 1  # the least that can be configured: results of 2,000 jobs take four times as much
 # Retention looks once a minute, and the database is not counted by it.
 SLACK_GIB = 0.25
 PART = recipe(slices=5)
-PART["acquire"]["camera"].update(width_px=256, height_px=192)
+# Retention has begun, and its memory is there, before slopes are told.
+PART["acquire"]["camera"].update(width_px=384, height_px=288)
 PART["keep"] = {"slices": True}
 
 

@@ -97,7 +97,7 @@ TEST_F(AServiceWatchdog, EndsNoMeasurementForAThreadThatNobodyWaitsFor) {
 }
 
 TEST_F(AServiceWatchdog, EndsNoMeasurementForALongListOrAFileThatIsFetched) {
-  for (const char* name : {"fvd-http-work", "fvd-http-files", "fvd-rpc-lists"}) {
+  for (const char* name : {"fvd-http-work", "fvd-http-files", "fvd-rpc-lists", "fvd-maps"}) {
     ThreadTicks ticks(name, milliseconds(500));
     ticks.tick(now_);
     watchdog_.look(now_ + milliseconds(501));

@@ -210,6 +210,17 @@ TEST_F(JobHeights, AnswerHeadLikeGet) {
   EXPECT_EQ(head.source ? head.source_bytes : head.body.size(), got.body.size());
 }
 
+TEST_F(JobHeights, AreTheSameWhateverVersionTheAddressNames) {
+  store("J7", test::rough(16, 16, 0.3));
+  const ResourceAnswer plain = resource_.get(request_of(kHeightPath));
+  for (const char* version : {"1", "", "-1", "two"}) {
+    const ResourceAnswer answer = resource_.get(request_of(kHeightPath, {{"v", version}}));
+    EXPECT_EQ(answer.status, 200) << version;
+    EXPECT_EQ(answer.fields, plain.fields);
+    EXPECT_EQ(answer.body, plain.body);
+  }
+}
+
 TEST_F(JobHeights, AreRefusedWhereTheQueryIsWrong) {
   store("J7", test::rough(16, 16, 0.3));
   for (const Query& query : {Query{{"kind", "heights"}},

@@ -1,4 +1,4 @@
-/// Jobs and values in lists: order, parts, filters, ends that are not stored yet, and how a long list is read.
+/// Jobs and values in lists: order, parts, filters, ends that are not stored yet.
 
 #include "daemon/store/job_history.hpp"
 
@@ -16,91 +16,16 @@
 #include "daemon/store/migrations.hpp"
 #include "tests/daemon/store/broken_disk.hpp"
 #include "tests/daemon/store/held_disk.hpp"
+#include "tests/daemon/store/job_history_fixture.hpp"
 #include "tests/support/expect_error.hpp"
 #include "tests/support/scratch_dir.hpp"
 
 namespace fvd {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::Each;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 using ::testing::SizeIs;
-
-StoredValue height_of(double value_um) {
-  return {"step", "height_um", value_um, 0.01, 0.02, 49.0, std::nullopt, "pass"};
-}
-
-/// A hundred thousand jobs, of which every hundredth has another recipe, and every tenth failed.
-constexpr const char* kManyJobs =
-    "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 100000) "
-    "INSERT INTO jobs (job_id, seq, part_id, recipe, state, error, verdict, ended_utc) "
-    "SELECT 'job-' || i, i, 'P-' || (i % 1000), CASE WHEN i % 100 = 0 THEN 'rare' ELSE 'often' END, "
-    "CASE WHEN i % 10 = 3 THEN 'failed' ELSE 'completed' END, CASE WHEN i % 10 = 3 THEN 'camera_frames_lost' ELSE '' "
-    "END, "
-    "CASE WHEN i % 10 = 3 THEN '' ELSE 'pass' END, strftime('%Y-%m-%dT%H:%M:%fZ', 1700000000 + 60 * i, 'unixepoch') "
-    "FROM n";
-constexpr const char* kTheirValues =
-    "INSERT INTO job_values (number, measurement, name, value, verdict) SELECT number, 'step', 'height_um', number, '' "
-    "FROM jobs";
-
-class AJobHistory : public ::testing::Test {
- protected:
-  JobStatus accept(std::int64_t seq, const std::string& part = "part", const std::string& recipe = "chapter",
-                   const std::string& client = "plc") {
-    return store_->accept({seq, part, recipe, client});
-  }
-  void finish(JobStatus job, const std::string& verdict = "pass", const std::string& ended_utc = "",
-              const std::vector<StoredValue>& values = {}) {
-    job.state = JobState::kCompleted;
-    job.verdict = verdict;
-    job.ended_utc = ended_utc;
-    store_->finish(job, "dir", "{}", false, values);
-  }
-  [[nodiscard]] std::vector<std::int64_t> numbers(const JobFilter& filter, int most = 100) const {
-    std::vector<std::int64_t> numbers;
-    for (const JobStatus& job : store_->history().page(filter, 0, most).jobs) numbers.push_back(job.request.seq);
-    return numbers;
-  }
-  /// All that fit, part by part.
-  [[nodiscard]] std::vector<std::int64_t> all_numbers(const JobFilter& filter) const {
-    std::vector<std::int64_t> numbers;
-    JobPage page;
-    do {
-      page = store_->history().page(filter, page.next, 500);
-      for (const JobStatus& job : page.jobs) numbers.push_back(job.request.seq);
-    } while (page.next != 0);
-    return numbers;
-  }
-  [[nodiscard]] std::vector<ValuePoint> heights(const std::string& recipe = "", int most = 100) const {
-    return store_->history().values({"step", "height_um", recipe, most}).points;
-  }
-  void fill(std::initializer_list<const char*> statements) {
-    store_.reset();
-    {
-      Database database(file_);
-      for (const char* sql : statements) database.execute(sql);
-    }
-    store_ = std::make_unique<JobStore>(file_);
-  }
-  /// All lines of the plan of a statement of the newest version.
-  [[nodiscard]] std::string plan_of(const char* sql) {
-    store_.reset();
-    const Database database(file_);
-    const std::string explained = std::string("EXPLAIN QUERY PLAN ") + sql;
-    Statement rows(database, explained.c_str());
-    std::string plan;
-    while (rows.step()) plan += rows.text(3) + "\n";
-    return plan;
-  }
-
-  test::ScratchDir folder_;
-  std::filesystem::path file_ = folder_ / "fvd.sqlite";
-  std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(file_);
-};
 
 TEST_F(AJobHistory, HasNothingAtFirst) {
   const JobPage page = store_->history().page({}, 0, 50);
@@ -357,64 +282,6 @@ TEST_F(AJobHistory, KeepsNobodyWaitingAndWaitsForNoCommit) {
   disk.let_go();
   commit.join();
   read.wait();
-}
-
-TEST_F(AJobHistory, FindsItsWayThroughAHundredThousandJobs) {
-  fill({kManyJobs, kTheirValues});
-
-  EXPECT_THAT(numbers({}, 3), ElementsAre(100000, 99999, 99998));
-  EXPECT_THAT(numbers({.recipe = "rare"}, 2), ElementsAre(100000, 99900));
-  EXPECT_THAT(numbers({.text = "frames_lost"}, 2), ElementsAre(99993, 99983));
-  EXPECT_THAT(numbers({.part_id = "P-999", .recipe = "often"}, 2), ElementsAre(99999, 98999));
-  EXPECT_THAT(all_numbers({.text = "nowhere"}), IsEmpty());
-  EXPECT_THAT(all_numbers({.from_utc = "2023-11-14T22:13:00.000Z", .to_utc = "2023-11-14T22:16:00.000Z"}),
-              ElementsAre(2, 1));
-  EXPECT_THAT(all_numbers({.state = JobState::kFailed}), SizeIs(10000));
-}
-
-TEST_F(AJobHistory, LooksAtTwentyThousandJobsAtATimeAndSaysSo) {
-  fill({kManyJobs, kTheirValues});
-  std::int64_t before = 0;
-  int parts = 0;
-  do {
-    const JobPage page = store_->history().page({.text = "nowhere"}, before, 3);
-    EXPECT_THAT(page.jobs, IsEmpty());
-    before = page.next;
-    ++parts;
-  } while (before != 0 && parts < 10);
-  EXPECT_EQ(parts, 5) << "the last of them says that it is";
-
-  const JobPage last_of_it = store_->history().page({.recipe = "rare"}, 80101, 1);
-  ASSERT_THAT(last_of_it.jobs, SizeIs(1));
-  EXPECT_EQ(last_of_it.jobs[0].request.seq, 80100);
-  EXPECT_THAT(all_numbers({.recipe = "rare"}), SizeIs(1000)) << "none twice, none left out";
-
-  const ValueList rare = store_->history().values({"step", "height_um", "rare", 2000});
-  ASSERT_THAT(rare.points, SizeIs(200));
-  EXPECT_EQ(rare.points.front().value.value, 80100.0);
-  EXPECT_EQ(rare.points.back().value.value, 100000.0);
-  EXPECT_FALSE(rare.searched_all);
-  EXPECT_TRUE(store_->history().values({"step", "height_um", "rare", 200}).searched_all) << "as many as were asked for";
-  EXPECT_FALSE(store_->history().values({"step", "width_um", "", 2}).searched_all);
-  fill({"DELETE FROM jobs WHERE number % 5 <> 0"});
-  EXPECT_EQ(store_->history().page({.text = "nowhere"}, 0, 3).next, 0) << "numbers that are gone are no jobs";
-  const ValueList all = store_->history().values({"step", "height_um", "rare", 2000});
-  EXPECT_THAT(all.points, SizeIs(1000));
-  EXPECT_TRUE(all.searched_all);
-}
-
-TEST_F(AJobHistory, IsReadFromItsIndexAloneInTheOrderInWhichItIsTold) {
-  fill({kManyJobs, "ANALYZE"});
-  const std::string page = plan_of(JobHistory::page_sql());
-  EXPECT_THAT(page, HasSubstr("COVERING INDEX jobs_history (number>? AND number<?)"));
-  EXPECT_THAT(page, Not(HasSubstr("TEMP B-TREE"))) << "the first part does not wait for the last";
-  EXPECT_THAT(page, Not(HasSubstr("PRIMARY KEY")));
-}
-
-TEST_F(AJobHistory, ReadsAValueOfEachJobInOneLook) {
-  const std::string plan = plan_of(JobHistory::values_sql());
-  EXPECT_THAT(plan, AllOf(HasSubstr("jobs USING COVERING INDEX jobs_history"), Not(HasSubstr("TEMP B-TREE"))));
-  EXPECT_THAT(plan, HasSubstr("SEARCH job_values USING PRIMARY KEY (number=? AND measurement=? AND name=?)"));
 }
 
 TEST(AFileOfVersion12, HasItsJobsInTheListAndNoValues) {

@@ -1,5 +1,7 @@
 #include "daemon/views/map_cache.hpp"
 
+#include <chrono>
+
 #include "tests/daemon/views/made_maps.hpp"
 
 namespace fvd {
@@ -46,6 +48,24 @@ TEST(MapCache, ForgetsAResultThatIsGone) {
   EXPECT_EQ(cache.of("A", "/r/A"), maps);
   cache.forget("A");
   EXPECT_EQ(cache.size(), 0U);
+}
+
+TEST(MapCache, LetsGoOfWhatNobodyLooksAt) {
+  MapCache cache;
+  const HostTime begin = HostClock::now();
+  const auto first = cache.of("A", "/r/A", begin);
+  (void)cache.of("B", "/r/B", begin);
+  (void)cache.of("A", "/r/A", begin + std::chrono::seconds(30));
+
+  cache.drop_unused(begin + MapCache::kLongestUnused);
+  EXPECT_EQ(cache.size(), 2U);
+  cache.drop_unused(begin + MapCache::kLongestUnused + std::chrono::milliseconds(1));
+  EXPECT_EQ(cache.size(), 1U);
+  EXPECT_EQ(cache.of("A", "/r/A", begin + std::chrono::seconds(89)), first) << "it was looked at since";
+  cache.drop_unused(begin + std::chrono::seconds(150));
+  EXPECT_EQ(cache.size(), 0U);
+  EXPECT_EQ(first->folder(), "/r/A") << "who had it has it still";
+  cache.drop_unused(begin + std::chrono::hours(1));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import "./browser_stand_in.ts";
 
-const { parseTile } = await import("../../../daemon/web/src/surface/height_tile.ts");
+const { parseTile, tileAddress } = await import("../../../daemon/web/src/surface/height_tile.ts");
 
 function reply(words: number[], values: number[], magic = "FVDH"): ArrayBuffer {
   const bytes = new ArrayBuffer(32 + 4 * values.length);
@@ -12,6 +12,11 @@ function reply(words: number[], values: number[], magic = "FVDH"): ArrayBuffer {
   values.forEach((value, i) => view.setFloat32(32 + 4 * i, value, true));
   return bytes;
 }
+
+test("an address has the window, and the version of what browsers keep for ever", () => {
+  assert.equal(tileAddress("J 7/x", "sigma", null, 512), "/api/v1/jobs/J%207%2Fx/height?kind=sigma&max=512&v=1");
+  assert.equal(tileAddress("J7", "height", { x: 1, y: 2, w: 3, h: 4 }, 64), "/api/v1/jobs/J7/height?kind=height&max=64&v=1&x=1&y=2&w=3&h=4");
+});
 
 test("one plane serves as mean, lowest and highest", () => {
   const tile = parseTile(reply([1, 2, 1, 1, 1, 7, 5], [1.5, NaN]), "height", { x: 3, y: 4 });

@@ -59,6 +59,32 @@ test("what the daemon would refuse of an address is left out, or cut", () => {
   assert.equal(filterOf({ ...none, part: "p".repeat(65) }).part_id?.length, 64);
 });
 
+test("texts are cut by their bytes, between characters", () => {
+  const none = wantedOf(new URLSearchParams());
+  const bytes = (text = ""): number => new TextEncoder().encode(text).length;
+  for (const character of ["ä", "€", "🔬"]) {
+    for (let before = 0; before < 4; before += 1) {
+      const typed = "x".repeat(before) + character.repeat(64);
+      const filter = filterOf({ ...none, part: typed, recipe: typed, text: typed });
+      for (const kept of [filter.part_id, filter.recipe, filter.text]) {
+        assert.ok(bytes(kept) <= 64 && bytes(kept) > 64 - bytes(character), `${kept}`);
+        assert.ok(typed.startsWith(kept ?? "-") && kept?.endsWith(character), `${kept}`);
+      }
+    }
+  }
+  assert.equal(filterOf({ ...none, text: "ä".repeat(32) }).text, "ä".repeat(32), "what fits is left alone");
+});
+
+test("days that the calendar has not are left out", () => {
+  const none = wantedOf(new URLSearchParams());
+  for (const day of ["2026-02-29", "2026-02-30", "2026-04-31", "2026-13-01", "2026-00-10", "2026-11-00", "2026-11-32", "2026-1-1", "", "x"]) {
+    assert.deepEqual(filterOf({ ...none, from: day, to: day }), {}, day);
+  }
+  assert.deepEqual(filterOf({ ...none, from: "2028-02-29", to: "2026-12-31" }), {
+    from_utc: "2028-02-29T00:00:00.000Z", to_utc: "2026-12-31T23:59:59.999Z",
+  });
+});
+
 test("values of a result in the recipe's order, with what is missing", () => {
   const values = valuesOf({
     evaluation: {

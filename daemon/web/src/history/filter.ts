@@ -11,7 +11,12 @@ export interface Wanted {
 }
 
 const kNames = ["part", "recipe", "verdict", "from", "to", "text"] as const;
-const isDay = (text: string): boolean => /^\d{4}-\d\d-\d\d$/.test(text);
+
+// One that the calendar has: some browsers take 30 February for 2 March.
+function isDay(text: string): boolean {
+  const day = new Date(`${text}T00:00:00.000Z`);
+  return /^\d{4}-\d\d-\d\d$/.test(text) && !Number.isNaN(day.getTime()) && day.toISOString().startsWith(text);
+}
 
 export function wantedOf(query: URLSearchParams): Wanted {
   const get = (name: (typeof kNames)[number]): string => query.get(name) ?? "";
@@ -25,17 +30,30 @@ export function addressOf(wanted: Wanted): string {
 
 // The words of job.list; "none" = nothing was judged.
 export const kVerdicts = ["pass", "fail", "uncertain", "invalid", "none"] as const;
-const kLongestText = 64;
+const kLongestText_bytes = 64;  // as the daemon counts them: UTF-8
+const kBytes = new TextEncoder();
+
+// As many whole characters from the beginning as fit.
+function cut(text: string): string {
+  let bytes = 0;
+  let kept = "";
+  for (const character of text) {
+    bytes += kBytes.encode(character).length;
+    if (bytes > kLongestText_bytes) break;
+    kept += character;
+  }
+  return kept;
+}
 
 const verdictOf = (word: string): (typeof kVerdicts)[number] | undefined => kVerdicts.find((each) => each === word);
 
 // What the database seeks. What an address says that the daemon would refuse is left out, or cut.
 export function filterOf(wanted: Wanted): JobFilter {
   const verdict = verdictOf(wanted.verdict);
-  const text = wanted.text.trim().slice(0, kLongestText);
+  const text = cut(wanted.text.trim());
   return {
-    ...(wanted.part ? { part_id: wanted.part.slice(0, kLongestText) } : {}),
-    ...(wanted.recipe ? { recipe: wanted.recipe.slice(0, kLongestText) } : {}),
+    ...(wanted.part ? { part_id: cut(wanted.part) } : {}),
+    ...(wanted.recipe ? { recipe: cut(wanted.recipe) } : {}),
     ...(verdict ? { verdict } : {}),
     ...(isDay(wanted.from) ? { from_utc: `${wanted.from}T00:00:00.000Z` } : {}),
     ...(isDay(wanted.to) ? { to_utc: `${wanted.to}T23:59:59.999Z` } : {}),

@@ -25,6 +25,8 @@ export interface Tile {
 }
 
 const kHeaderBytes = 32;
+// The daemon ignores it. Browsers keep a tile for ever: where its bytes or their meaning change, this changes with them.
+const kAddressVersion = "1";
 const kMagic = 0x48445646;  // "FVDH", read as a little-endian number
 
 // Throws where the bytes are not what the header promises: half a map must not look like a whole one.
@@ -51,13 +53,17 @@ export function parseTile(bytes: ArrayBuffer, kind: Kind, at: { x: number; y: nu
   };
 }
 
+export function tileAddress(job: string, kind: Kind, window: Window | null, most: number): string {
+  const query = new URLSearchParams({ kind, max: String(most), v: kAddressVersion });
+  if (window) for (const key of ["x", "y", "w", "h"] as const) query.set(key, String(window[key]));
+  return `/api/v1/jobs/${encodeURIComponent(job)}/height?${query}`;
+}
+
 // most: no side of the reply is longer.
 export async function fetchTile(job: string, kind: Kind, window: Window | null, most: number, signal?: AbortSignal): Promise<Tile> {
-  const query = new URLSearchParams({ kind, max: String(most) });
-  if (window) for (const key of ["x", "y", "w", "h"] as const) query.set(key, String(window[key]));
   let response: Response;
   try {
-    response = await fetch(`/api/v1/jobs/${encodeURIComponent(job)}/height?${query}`, { headers: headers(), ...(signal ? { signal } : {}) });
+    response = await fetch(tileAddress(job, kind, window, most), { headers: headers(), ...(signal ? { signal } : {}) });
   } catch (error) {
     if (signal?.aborted) throw error;
     throw new RpcError(kOffline, "offline", String(error));
