@@ -7,29 +7,15 @@ The last line is one JSON object.
 """
 
 import json
-import sqlite3
 import subprocess
 import sys
 import threading
 import time
 
-from rig import Client, Rig, recipe, wait_for
+from many_jobs import copy_jobs
+from rig import Client, Rig, late_slices, recipe, wait_for
 
 SYNC_MS = 500
-
-
-def fill(file, results):
-    """As if the one result that is there had been made so often and never acknowledged."""
-    with sqlite3.connect(file) as database:
-        database.execute("PRAGMA synchronous=OFF")
-        columns = [row[1] for row in database.execute("PRAGMA table_info(jobs)")]
-        values = {"number": "i", "job_id": "'bench-' || i", "seq": "i", "acknowledged": "0",
-                  "result_dir": "result_dir || '-' || i"}
-        chosen = ", ".join(values.get(column, column) for column in columns)
-        database.execute(f"WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < {results}) "
-                         f"INSERT INTO jobs ({', '.join(columns)}) SELECT {chosen} FROM n, jobs WHERE jobs.seq = 1")
-        database.commit()
-        database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
 
 
 class Acknowledger(threading.Thread):
@@ -89,12 +75,6 @@ def complete(client, rig, seq):
         sys.exit(f"a job is {ended['state']}, {ended['error_message']}: see {rig.folder}")
 
 
-def late_in(result):
-    frames, slices = result["frames"], result["slices"]
-    return (sum(frames[key] for key in ("incomplete", "missing", "stale", "underrun"))
-            + slices["planned"] - slices["measured"] + slices["retaken"])
-
-
 def main():
     build = sys.argv[1]
     standards = (15, 100_000, 2000, 400, 2)
@@ -106,7 +86,7 @@ def main():
         client.ask("job.start", seq=1, part_id="part", recipe="part")
         complete(client, rig, 1)
         rig.stop()
-        fill(rig.state / "fvd.sqlite", results)
+        copy_jobs(rig.state / "fvd.sqlite", results, {"acknowledged": "0"})
         rig.environment = [f"LD_PRELOAD={rig.build / 'tests/bench/libbench_slow_sync.so'}", f"FVD_SLOW_SYNC_MS={SYNC_MS}"]
         client = rig.start()
         waiting = client.ask("system.state")["results_waiting"]
@@ -121,7 +101,7 @@ def main():
                     sys.exit(f"the scan ended before the {seconds} s of polls: give it more slices than {slices}")
                 complete(client, rig, seq)
                 result = client.ask("result.get", seq=seq, format="full")
-                late += late_in(result)
+                late += late_slices(result)
                 print(f"poll: {figures[-1]}, scan {result['times']['scan_ms']:.0f} ms")
         rig.stop()
     print(f"poll: {acknowledger.done} acknowledgements meanwhile, the longest {acknowledger.longest_ms:.0f} ms")

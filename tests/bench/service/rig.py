@@ -56,6 +56,18 @@ def wait_for(condition, within_s=START_TIMEOUT_S, period_s=0.005, what="a condit
     sys.exit(f"{what}: not within {within_s} s")
 
 
+def late_slices(result):
+    """Of a result in full: frames that did not come in time, slices that lack or were taken again."""
+    frames, slices = result["frames"], result["slices"]
+    return (sum(frames[key] for key in ("incomplete", "missing", "stale", "underrun"))
+            + slices["planned"] - slices["measured"] + slices["retaken"])
+
+
+def resident_kib(pid):
+    with open(f"/proc/{pid}/status", encoding="ascii") as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
+
+
 class Answer(Exception):
     """An error that fvd answered; `code` as documented."""
 
@@ -138,9 +150,9 @@ class Camera:
 
 
 class Rig:
-    """A folder with fvd-sim and, once started, fvd. `keep`: the folder stays."""
+    """A folder with fvd-sim and, once started, fvd. `simulation`: more words for fvd-sim run."""
 
-    def __init__(self, build, recipes=None, folder=None):
+    def __init__(self, build, recipes=None, folder=None, simulation=()):
         self.build = pathlib.Path(build).resolve()
         self.own_folder = folder is None
         self.folder = pathlib.Path(folder or tempfile.mkdtemp(prefix="fvd-service-"))
@@ -157,7 +169,8 @@ class Rig:
         try:
             self.simulator = self.run(
                 [self.build / "sim/fvd-sim", "run", "--camera-address", "auto", "--stage-port", "0",
-                 "--ready-file", self.folder / "sim.json", "--motion-log", self.memory / "motion.txt"], "sim.log")
+                 "--ready-file", self.folder / "sim.json", "--motion-log", self.memory / "motion.txt", *simulation],
+                "sim.log")
             self.plant = self.await_file(self.folder / "sim.json", self.simulator)
         except BaseException:  # also Ctrl-C: nothing may be left
             if self.simulator:

@@ -9,7 +9,7 @@ import json
 import os
 import sys
 
-from rig import Client, Rig, recipe, wait_for
+from rig import Client, Rig, recipe, resident_kib, wait_for
 
 BLOCK = 50  # jobs between two lines of progress
 KEEP_GIB = 1  # the least that can be configured: results of 2,000 jobs take four times as much
@@ -19,11 +19,6 @@ PART = recipe(slices=5)
 # Retention has begun, and its memory is there, before slopes are told.
 PART["acquire"]["camera"].update(width_px=384, height_px=288)
 PART["keep"] = {"slices": True}
-
-
-def kib(pid):
-    with open(f"/proc/{pid}/status", encoding="ascii") as status:
-        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
 
 
 def descriptors(pid):
@@ -74,7 +69,7 @@ def main():
         pid = rig.daemon.pid
         for seq in range(1, jobs + 1):
             measure(rig, seq)
-            memory.append((seq, kib(pid)))
+            memory.append((seq, resident_kib(pid)))
             files.append(descriptors(pid))
             if seq % BLOCK == 0 or seq == jobs:
                 sizes.append(gib(rig.state))

@@ -15,3 +15,7 @@ export const axeSource = readFileSync(require.resolve("axe-core/axe.min.js"), "u
 
 export const texts = Object.fromEntries(
   ["en", "de"].map((language) => [language, JSON.parse(readFileSync(join(web, `src/i18n/${language}.json`), "utf8"))]));
+
+// How many texts one of the languages lacks.
+const lacking = (of, beside) => Object.keys(of).filter((key) => !(key in beside)).length;
+export const untranslated = lacking(texts.en, texts.de) + lacking(texts.de, texts.en);

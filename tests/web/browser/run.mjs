@@ -3,10 +3,11 @@
 // node tests/web/browser/run.mjs [--only STATE] [--quick] [--no-walk] [--no-jog] [--no-keys]
 // --quick walks in German and light only.
 // FVD_BUILD: a build with fvd, fvdctl and fvd-sim (default build); FVD_CHROMIUM: the browser (default /usr/bin/chromium).
-import { chromium, texts } from "./paths.mjs";
 import { firstView } from "./first_view.mjs";
 import { jogEnds } from "./jog_ends.mjs";
 import { keyboardJob } from "./keyboard_job.mjs";
+import { openBrowser } from "./launch.mjs";
+import { untranslated } from "./paths.mjs";
 import { scan, startStation } from "./station.mjs";
 import { newFigures } from "./tab.mjs";
 import { walk } from "./walk.mjs";
@@ -15,8 +16,6 @@ const has = (option) => process.argv.includes(option);
 const at = process.argv.indexOf("--only");
 const only = at < 0 ? "" : process.argv[at + 1] ?? "";
 
-const lacking = (of, beside) => Object.keys(of).filter((key) => !(key in beside)).length;
-
 // What must hold; what was not looked at is not judged.
 const kBounds = {
   console_errors: 0, csp_violations: 0, third_party_requests: 0, moves_without_press: 0, states_failed: 0,
@@ -24,11 +23,11 @@ const kBounds = {
 };
 
 const recipe = "groove";
-const figures = { ...newFigures(), untranslated: lacking(texts.en, texts.de) + lacking(texts.de, texts.en) };
+const figures = { ...newFigures(), untranslated };
 const station = await startStation();
 let browser;
 try {
-  browser = await chromium.launch({ executablePath: process.env.FVD_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"], timeout: 120000 });
+  browser = await openBrowser();
   const jobs = await scan(station.call, { recipe, parts: 2 });
   await station.call("verify.noise", { jobs });
   Object.assign(figures, await firstView(browser, station, figures));

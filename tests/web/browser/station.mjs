@@ -3,7 +3,7 @@
 // FVD_PAGE_URL with FVD_PAGE_TOKEN (of the role "administer") and FVD_PAGE_OPERATOR (of the role "operate") names a
 // station that runs already: it is used and left running.
 import { execFileSync, spawn } from "node:child_process";
-import { createWriteStream, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, createWriteStream, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -29,7 +29,7 @@ const readJson = (path) => {
 
 function run(program, args, log) {
   const child = spawn(program, args, { stdio: ["ignore", "pipe", "pipe"] });
-  const out = createWriteStream(log);
+  const out = createWriteStream(log, { flags: "a" });
   child.stdout.pipe(out);
   child.stderr.pipe(out);
   child.ended = new Promise((tell) => child.on("exit", tell));
@@ -45,9 +45,9 @@ async function started(child, name, log, condition) {
   });
 }
 
-async function ended(child) {
+async function ended(child, signal = "SIGTERM") {
   if (!child) return;
-  child.kill("SIGTERM");
+  child.kill(signal);
   const late = setTimeout(() => child.kill("SIGKILL"), 20000);
   await child.ended;
   clearTimeout(late);
@@ -68,7 +68,13 @@ export function caller(url, token) {
   };
 }
 
-export async function startStation({ world = "groove_50", plant = "chapter" } = {}) {
+// world, plant: names in sim/worlds and sim/plants. settings: of the configuration, by "group.key". recipes: documents by
+// id, beside the shipped ones. A station of its own also has
+//   state      the folder of results and database
+//   motions    file of the stage's commands and motions (fvd-sim --motion-log), in memory
+//   fvd()      the daemon's process
+//   restart({ signal, between })  ends the daemon, awaits between(state) without one, starts it at the same address
+export async function startStation({ world = "groove_50", plant = "chapter", settings = {}, recipes = {} } = {}) {
   if (process.env.FVD_PAGE_URL) {
     const { FVD_PAGE_URL: url, FVD_PAGE_TOKEN: token, FVD_PAGE_OPERATOR: operator = token } = process.env;
     if (!token) throw new Error("FVD_PAGE_URL needs FVD_PAGE_TOKEN: a token of the role administer");
@@ -79,31 +85,43 @@ export async function startStation({ world = "groove_50", plant = "chapter" } = 
     if (!existsSync(program)) throw new Error(`there is no ${program}: set FVD_BUILD to a build of fvd, fvdctl and fvd-sim`);
   }
   const folder = mkdtempSync(join(tmpdir(), "fvd-page-"));
+  const memory = mkdtempSync("/dev/shm/fvd-page-");
   const at = (name) => join(folder, name);
-  const tokens = ["administer", "operate"].map((role) =>
-    execFileSync(programs.ctl, ["token", "new", `page-${role}`, role], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] }).trim().split("\n"));
-  writeFileSync(at("tokens"), tokens.map(([, line]) => `${line}\n`).join(""), { mode: 0o600 });
-
+  const motions = join(memory, "motion.txt");
   let sim;
   let fvd;
   const stop = async () => {
     await ended(fvd);  // fvd first: it says goodbye to camera and stage while they are there
     await ended(sim);
-    rmSync(folder, { recursive: true, force: true });
+    for (const each of [folder, memory]) rmSync(each, { recursive: true, force: true });
   };
   try {
+    const tokens = ["administer", "operate"].map((role) =>
+      execFileSync(programs.ctl, ["token", "new", `page-${role}`, role], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] }).trim().split("\n"));
+    writeFileSync(at("tokens"), tokens.map(([, line]) => `${line}\n`).join(""), { mode: 0o600 });
+    cpSync(join(root, "config/recipes"), at("recipes"), { recursive: true });
+    for (const [id, document] of Object.entries(recipes)) writeFileSync(at(`recipes/${id}.json`), JSON.stringify(document));
+
     sim = run(programs.sim, ["run", "--world", join(root, `sim/worlds/${world}.json`), "--plant", join(root, `sim/plants/${plant}.json`),
-      "--camera-address", "auto", "--stage-port", "0", "--ready-file", at("sim.json")], at("sim.log"));
+      "--camera-address", "auto", "--stage-port", "0", "--ready-file", at("sim.json"), "--motion-log", motions], at("sim.log"));
     const { camera_address, stage_port } = await started(sim, "fvd-sim", at("sim.log"), () => readJson(at("sim.json")));
     const port = await freePort();
-    const settings = { "camera.address": camera_address, "stage.port": stage_port, "rpc.port": 0, "http.port": port,
-      "rpc.token_file": at("tokens"), "paths.state_dir": at("state"), "paths.runtime_dir": at("run") };
-    fvd = run(programs.fvd, ["--config", join(root, "config/fvd-sim.json"),
-      ...Object.entries(settings).flatMap(([key, value]) => ["--set", `${key}=${value}`])], at("fvd.log"));
     const url = `http://127.0.0.1:${port}`;
     const call = caller(url, tokens[0][0]);
-    await started(fvd, "fvd", at("fvd.log"), () => call("system.state").then(({ ready }) => ready, () => false));
-    return { url, token: tokens[0][0], operator: tokens[1][0], call, stop };
+    const all = { "camera.address": camera_address, "stage.port": stage_port, "rpc.port": 0, "http.port": port,
+      "rpc.token_file": at("tokens"), "paths.state_dir": at("state"), "paths.runtime_dir": at("run"), "paths.recipe_dir": at("recipes"), ...settings };
+    const startDaemon = async () => {
+      fvd = run(programs.fvd, ["--config", join(root, "config/fvd-sim.json"),
+        ...Object.entries(all).flatMap(([key, value]) => ["--set", `${key}=${value}`])], at("fvd.log"));
+      await started(fvd, "fvd", at("fvd.log"), () => call("system.state").then(({ ready }) => ready, () => false));
+    };
+    const restart = async ({ signal, between } = {}) => {
+      await ended(fvd, signal);
+      await between?.(at("state"));
+      await startDaemon();
+    };
+    await startDaemon();
+    return { url, token: tokens[0][0], operator: tokens[1][0], call, stop, state: at("state"), motions, fvd: () => fvd, restart };
   } catch (error) {
     await stop();
     throw error;

@@ -32,6 +32,12 @@ interface Props {
 const kGrip = 22;  // CSS pixels around a profile's end that hold it: a target of 44
 const kZoomStep = 1.25;
 
+// From the inside of the border, where the map begins.
+function placeIn(element: HTMLElement, { clientX, clientY }: MouseEvent): Place {
+  const { left, top } = element.getBoundingClientRect();
+  return { x: clientX - left - element.clientLeft, y: clientY - top - element.clientTop };
+}
+
 type Held = { what: "from" | "to" } | { what: "map"; x: number; y: number; view: View };
 
 export function MapStage(props: Props) {
@@ -52,8 +58,7 @@ export function MapStage(props: Props) {
     const turn = (event: WheelEvent): void => {
       if (!event.ctrlKey && document.activeElement !== element) return;
       event.preventDefault();
-      const box = element.getBoundingClientRect();
-      const at = { x: event.clientX - box.left, y: event.clientY - box.top };
+      const at = placeIn(element, event);
       setView(zoomAt(view, canvas, at, Math.exp(-Math.max(-100, Math.min(100, event.deltaY)) * 0.0025), size));
     };
     element.addEventListener("wheel", turn, { passive: false });
@@ -62,10 +67,7 @@ export function MapStage(props: Props) {
 
   if (width === 0) return html`<div ref=${holder} class="map-stage"></div>`;
 
-  const place = (event: PointerEvent): Place => {
-    const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
-    return { x: event.clientX - box.left, y: event.clientY - box.top };
-  };
+  const place = (event: PointerEvent): Place => placeIn(event.currentTarget as HTMLElement, event);
   const inside = (at: Place): Place => ({
     x: Math.max(0, Math.min(size.width * size.pitch_x, at.x)),
     y: Math.max(0, Math.min(size.height * size.pitch_y, at.y)),

@@ -1,0 +1,13 @@
+// All pages in all states, light and dark, English and German: rules of accessibility, overflow, small targets, texts.
+import { untranslated } from "../../web/browser/paths.mjs";
+import { scan } from "../../web/browser/station.mjs";
+import { walk } from "../../web/browser/walk.mjs";
+import { phase } from "./phase.mjs";
+
+const recipe = "groove";
+
+await phase(async ({ browser, station, figures }) => {
+  const jobs = await scan(station.call, { recipe, parts: 2 });
+  await station.call("verify.noise", { jobs });
+  return { untranslated, ...await walk(browser, station, figures, { jobs, recipe }) };
+});
