@@ -104,7 +104,7 @@ def with_holes(http, job_id, rows, lines):
 
 def by_program(rig, folder, lines):
     measurements = {
-        f"line{i}": {"kind": "profile", "from_um": start, "to_um": end, "band_width_um": width_um, "sections": 1,
+        f"l{i}": {"kind": "profile", "from_um": start, "to_um": end, "band_width_um": width_um, "sections": 1,
                      "nesting_um": math.dist(start, end), "min_valid_fraction": 0.0,
                      "parameters": ["Pa", "Pq", "Pt", "Psk", "Pku"]}
         for i, (start, end, width_um, _) in enumerate(lines)}
@@ -133,7 +133,7 @@ def main():
         http.close()
     worst = 0.0
     for i, (start, end, _, told) in enumerate(chosen):
-        own, made = parameters_of(told["height_um"]), measured[f"line{i}"]
+        own, made = parameters_of(told["height_um"]), measured[f"l{i}"]
         for name in PARAMETERS:
             value = made["values"][name].get("value")
             if value is None:
