@@ -110,7 +110,7 @@ class EmbedPage(unittest.TestCase):
         self.assertTrue(text.startswith(self.source + ":"))
         for name in ("src/app.ts", "index.html", "build.mjs", "package-lock.json", "/src/run"):
             self.assertIn(name, text)
-        for name in ("node_modules", "methods.ts", "README"):
+        for name in ("node_modules", "/methods.ts", "README"):
             self.assertNotIn(name, text)
 
 
