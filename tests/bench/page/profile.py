@@ -105,8 +105,8 @@ def with_holes(http, job_id, rows, lines):
 def by_program(rig, folder, lines):
     measurements = {
         f"l{i}": {"kind": "profile", "from_um": start, "to_um": end, "band_width_um": width_um, "sections": 1,
-                     "nesting_um": math.dist(start, end), "min_valid_fraction": 0.0,
-                     "parameters": ["Pa", "Pq", "Pt", "Psk", "Pku"]}
+                  "nesting_um": math.dist(start, end), "min_valid_fraction": 0.0,
+                  "parameters": ["Pa", "Pq", "Pt", "Psk", "Pku"]}
         for i, (start, end, width_um, _) in enumerate(lines)}
     recipe = json.loads((rig.folder / "recipes/part.json").read_text()) | {"evaluation": {"measurements": measurements}}
     (rig.folder / "lines.json").write_text(json.dumps(recipe))

@@ -8,7 +8,7 @@ import { phase } from "./phase.mjs";
 import { generator } from "./random.mjs";
 
 const kSize = { width: 1280, height: 960 };
-const kSlack_px = 0.8;  // a pixel of the screen may show the points of either side
+const kSlack_px = 0.7;  // a pixel of the screen may show the points of either side
 const kViews = [
   { name: "whole", points: 80, press: [] },
   { name: "smaller", points: 40, press: ["result.zoom_out"] },
@@ -56,7 +56,8 @@ await phase(async ({ browser, station, figures }) => {
     const place = await mapPlace(page, line);
     const box = await page.locator(".map-canvas").boundingBox();
     for (let done = 0; done < points;) {
-      const at = { x: box.x + 2 + pick() * (box.width - 4), y: box.y + 2 + pick() * (box.height - 4) };
+      // Whole: a browser tells a mouse's place in whole pixels, rounded down.
+      const at = { x: Math.ceil(box.x + 2 + pick() * (box.width - 4)), y: Math.ceil(box.y + 2 + pick() * (box.height - 4)) };
       const there = place.toMap(at);
       const margin = 2 * place.um_per_px;
       if (there.x < margin || there.y < margin || there.x > width * pitch_x - margin || there.y > height * pitch_y - margin) continue;
