@@ -31,7 +31,7 @@ run_sanitized() {
   local build=${FVD_SANITIZED_BUILD_DIR:-$FVD_ROOT/build-sanitized} begun=$SECONDS log
   # By clang, which is faster than g++ here and whose warnings are errors in it; line numbers only, and no optimisation of
   # what runs once: half the time.
-  (FVD_BUILD=$build FVD_CXX=clang++-14 FVD_SANITIZE=address,undefined FVD_UNITY=ON FVD_UNITY_LIBRARIES=ON FVD_FLAGS="-O1 -g1" FVD_TEST_FLAGS=-O0 fvd_build unit_and_sim_tests)
+  (FVD_BUILD=$build FVD_CXX=clang++-14 FVD_SANITIZE=address,undefined FVD_UNITY=ON FVD_UNITY_LIBRARIES=ON FVD_FLAGS="-O1 -g1" FVD_SERVICE_FLAGS=-O0 FVD_TEST_FLAGS=-O0 fvd_build unit_and_sim_tests)
   fvd_say "sanitized: built in $((SECONDS - begun)) s"
   begun=$SECONDS
   log=$build/sanitized.log

@@ -5,6 +5,7 @@
 # FVD_CXX         compiler in place of the system's
 # FVD_FLAGS       flags of the compiler in place of those of the build type RelWithDebInfo (assertions stay on)
 # FVD_TEST_FLAGS  flags of what lies below tests, after those
+# FVD_SERVICE_FLAGS  flags of what lies below config and daemon, after those
 # FVD_UNITY       ON: the test sources of one program compile together
 # FVD_UNITY_LIBRARIES  ON: the sources of a library compile in few groups
 # FVD_WEB         the operator page: ON, OFF or AUTO (default: ON where npm is found, so that a page that does not build
@@ -84,6 +85,7 @@ fvd_cmake() {
   if command -v npm >/dev/null; then web=ON; fi
   flags+=(-DFVD_WEB="${FVD_WEB:-$web}")
   flags+=(-DFVD_UNITY="${FVD_UNITY:-OFF}")  # off again for the checks, which look at every source
+  [ -z "${FVD_SERVICE_FLAGS:-}" ] || flags+=(-DFVD_SERVICE_FLAGS="$FVD_SERVICE_FLAGS")
   flags+=(-DFVD_UNITY_LIBRARIES="${FVD_UNITY_LIBRARIES:-OFF}")
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DFVD_WERROR=ON -DFVD_SANITIZE="${FVD_SANITIZE:-}" \
     -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" "${flags[@]}"
