@@ -21,7 +21,7 @@ constexpr double kLogDigits = 1e6;    ///< step_log.csv has so many parts of a u
 constexpr double kWidthDigits = 1e4;  ///< result.json likewise
 
 /// A slice that the focus curves have.
-struct Slice {
+struct StoredSlice {
   double z_um = 0.0;
   double sd_um = 0.0;
   int position_samples = 0;
@@ -30,10 +30,10 @@ struct Slice {
 double rounded(double value, double parts) { return std::round(value * parts) / parts; }
 
 /// The samples of the curves: slices, or bins of them, of which the last may be incomplete.
-std::vector<CurveSample> samples_of(const std::vector<Slice>& slices, int bin_slices,
+std::vector<CurveSample> samples_of(const std::vector<StoredSlice>& slices, int bin_slices,
                                     std::optional<double> resolution_um) {
   const bool positions_known =
-      std::any_of(slices.begin(), slices.end(), [](const Slice& slice) { return slice.position_samples > 0; });
+      std::any_of(slices.begin(), slices.end(), [](const StoredSlice& slice) { return slice.position_samples > 0; });
   if (!positions_known || !resolution_um) return {};
   std::vector<CurveSample> samples;
   const auto bin = static_cast<std::size_t>(std::max(bin_slices, 1));
@@ -67,12 +67,12 @@ class StepLogReader {
     header_ = cells_of(line);
   }
 
-  [[nodiscard]] std::vector<Slice> slices() {
+  [[nodiscard]] std::vector<StoredSlice> slices() {
     const std::size_t measured = column("measured");
     const std::size_t z = column("measured_um");
     const std::size_t sd = column("measured_sd_um");
     const std::size_t samples = column("position_samples");
-    std::vector<Slice> slices;
+    std::vector<StoredSlice> slices;
     for (std::string line; std::getline(file_, line);) {
       ++row_;
       const std::vector<std::string> cells = cells_of(line);
@@ -122,7 +122,7 @@ Surface evaluated_surface(const ResultData& data) {
 }
 
 EvaluationContext evaluation_context(const ResultData& data) {
-  std::vector<Slice> slices;
+  std::vector<StoredSlice> slices;
   for (const StepRecord& step : data.steps) {
     if (!step.measured) continue;
     slices.push_back(

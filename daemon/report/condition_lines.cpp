@@ -124,7 +124,7 @@ std::string texture_text(const EvaluatedMeasurement& made) {
   return text;
 }
 
-std::string measurement_text(const EvaluatedMeasurement& made) {
+std::string made_how_text(const EvaluatedMeasurement& made) {
   std::string text = made.kind + (made.method.empty() ? "" : " " + made.method) + " on " + made.surface;
   if (!made.region.empty()) text += ", region " + made.region;
   text += "; " + std::to_string(made.points) + " points, " + percent_text(made.valid_fraction) + " valid";
@@ -171,7 +171,7 @@ std::vector<ConditionLine> condition_lines(const Result& result) {
   if (result.evaluation) {
     for (const std::string& name : result.evaluation->order) {
       const auto found = result.evaluation->measurements.find(name);
-      if (found != result.evaluation->measurements.end()) lines.push_back({name, measurement_text(found->second)});
+      if (found != result.evaluation->measurements.end()) lines.push_back({name, made_how_text(found->second)});
     }
     for (const auto& [name, steps] : result.evaluation->surfaces) {
       lines.push_back({"Surface " + name, steps_text(steps)});
