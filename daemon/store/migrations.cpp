@@ -18,7 +18,7 @@ namespace fvd {
 
 namespace {
 
-std::int64_t scalar(const Database& database, const char* sql) {
+std::int64_t first_number(const Database& database, const char* sql) {
   Statement query(database, sql);
   return query.step() ? query.integer(0) : 0;
 }
@@ -277,9 +277,10 @@ void require_own_file(const Database& database, int version) {
                                           std::to_string(newest_schema_version()) +
                                           ": install the newer fvd that wrote it, or move the file away to start anew");
   }
-  const bool is_new = scalar(database, "SELECT count(*) FROM sqlite_schema") == 0;
+  const bool is_new = first_number(database, "SELECT count(*) FROM sqlite_schema") == 0;
   const bool has_our_tables =
-      scalar(database, "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('starts', 'jobs')") == 2;
+      first_number(database,
+                   "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('starts', 'jobs')") == 2;
   if (version == 0 ? !is_new : version < 0 || !has_our_tables) {
     throw Error(ErrorCode::kDatabase, "database " + database.file().string() +
                                           " was made by another program: move it away, or name another state_dir");
@@ -293,7 +294,8 @@ bool is_copied(const Database& database, const std::filesystem::path& copy) {
   try {
     const char* const epoch = "SELECT epoch FROM starts";
     const Database earlier(copy);
-    return schema_version(earlier) == schema_version(database) && scalar(earlier, epoch) == scalar(database, epoch);
+    return schema_version(earlier) == schema_version(database) &&
+           first_number(earlier, epoch) == first_number(database, epoch);
   } catch (const Error&) {
     return false;  // it is made anew
   }
@@ -333,7 +335,7 @@ std::span<const MigrationStep> migration_steps() { return kSteps; }
 
 int newest_schema_version() { return static_cast<int>(kSteps.size()); }
 
-int schema_version(const Database& database) { return static_cast<int>(scalar(database, "PRAGMA user_version")); }
+int schema_version(const Database& database) { return static_cast<int>(first_number(database, "PRAGMA user_version")); }
 
 void migrate(Database& database, int version) {
   const int found = schema_version(database);

@@ -108,15 +108,15 @@ std::optional<float> height_m(std::string_view cell, const Unit& unit) {
   return error == std::errc() ? exact : height_of(*value);
 }
 
-struct Shape {
+struct TextShape {
   std::int64_t width = 0;
   std::int64_t height = 0;
   char separator = ' ';
   Header header;
 };
 
-Shape shape_of(const FileBytes& file) {
-  Shape shape;
+TextShape shape_of(const FileBytes& file) {
+  TextShape shape;
   for_each_line(
       file, [&](std::size_t number, std::string_view text) { add_header_line(file, number, text, shape.header); },
       [&](std::size_t number, std::string_view text) {
@@ -148,7 +148,7 @@ Unit unit_of(const FileBytes& file, const Header& header) {
 
 Surface read_surface_csv(const std::filesystem::path& path, const SurfaceReadOptions& options) {
   const FileBytes file(path);
-  const Shape shape = shape_of(file);
+  const TextShape shape = shape_of(file);
   if (shape.height == 0) refuse(path, "file", "it has no row of numbers");
   const GridSize size = grid_size(path, "rows", shape.width, shape.height);
   const Unit unit = unit_of(file, shape.header);

@@ -136,7 +136,7 @@ void HttpSession::serve_get() {
   if (mounted == nullptr) return refuse({404, "not_found", "there is nothing here; calls go to POST /api/jsonrpc"});
   deadline_.cancel();
   since_ = HostClock::now();
-  fetch_.emplace();
+  fetch_ = Fetch{};
   fetch_->resource = mounted->resource;
   fetch_->request = resource_request();
   fetch_->request.path = std::move(wanted.path);
