@@ -13,11 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Thrown out of the parser's callback; never leaves this file.
-struct Refused {
-  std::string message;
-};
-
 /// nlohmann counts the bytes read, the offending one included.
 std::string position(std::string_view text, std::size_t bytes_read) {
   const auto before = text.substr(0, std::min(bytes_read > 0 ? bytes_read - 1 : 0, text.size()));
@@ -27,25 +22,49 @@ std::string position(std::string_view text, std::size_t bytes_read) {
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-/// Follows the parser and refuses what it would let pass.
-class Watch {
+/// Follows the parser and stops at what json::parse() would let pass. Not its callback: with one, json::parse() looks
+/// at every earlier member of an array after each object in it, minutes for a message of 1 MiB.
+class Watch : public nlohmann::json_sax<json> {
  public:
-  bool operator()(int /*depth*/, json::parse_event_t event, const json& parsed) {
-    using Event = json::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) {
-      keys_.emplace_back();
-      if (keys_.size() > kMaxJsonDepth) {
-        throw Refused{"nested deeper than " + std::to_string(kMaxJsonDepth) + " levels"};
-      }
-    } else if (event == Event::object_end || event == Event::array_end) {
-      keys_.pop_back();
-    } else if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second) {
-      throw Refused{"the key '" + parsed.get<std::string>() + "' stands twice in one object"};
-    }
-    return true;
+  /// Why it stopped; empty where it did not, or where the text is no JSON.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
+
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+  bool string(string_t& /*value*/) override { return true; }
+  bool binary(binary_t& /*value*/) override { return true; }
+  bool start_object(std::size_t /*elements*/) override { return start(); }
+  bool end_object() override { return end(); }
+  bool start_array(std::size_t /*elements*/) override { return start(); }
+  bool end_array() override { return end(); }
+  bool parse_error(std::size_t /*position*/, const std::string& /*last_token*/,
+                   const nlohmann::detail::exception& /*error*/) override {
+    return false;
+  }
+
+  bool key(string_t& key) override {
+    if (keys_.back().insert(key).second) return true;
+    refusal_ = "the key '" + key + "' stands twice in one object";
+    return false;
   }
 
  private:
+  bool start() {
+    keys_.emplace_back();
+    if (keys_.size() <= kMaxJsonDepth) return true;
+    refusal_ = "nested deeper than " + std::to_string(kMaxJsonDepth) + " levels";
+    return false;
+  }
+
+  bool end() {
+    keys_.pop_back();
+    return true;
+  }
+
+  std::string refusal_;
   std::vector<std::set<std::string>> keys_;
 };
 
@@ -59,15 +78,19 @@ std::string reason_of(const json::parse_error& error) {
 }  // namespace
 
 std::optional<json> parse_strict_json(std::string_view text, Problems& problems, JsonComments comments) {
+  const bool comments_allowed = comments == JsonComments::kAllowed;
   Watch watch;
+  json::sax_parse(text.begin(), text.end(), &watch, json::input_format_t::json, true, comments_allowed);
+  if (!watch.refusal().empty()) {
+    problems.push_back({"", watch.refusal()});
+    return std::nullopt;
+  }
   try {
-    return json::parse(text.begin(), text.end(), std::ref(watch), true, comments == JsonComments::kAllowed);
+    return json::parse(text.begin(), text.end(), nullptr, true, comments_allowed);
   } catch (const json::parse_error& error) {
     problems.push_back({"", "no valid JSON at " + position(text, error.byte) + ": " + reason_of(error)});
   } catch (const json::exception& error) {
     problems.push_back({"", std::string("no valid JSON: ") + error.what()});
-  } catch (const Refused& refused) {
-    problems.push_back({"", refused.message});
   }
   return std::nullopt;
 }
