@@ -107,7 +107,7 @@ class Camera {
   [[nodiscard]] virtual std::string last_refusal() const { return {}; }
 
   /// To be called every half second or so while nothing else is asked of the camera: notices that it is gone;
-  /// connected() tells. Blocks a tenth of a second at most.
+  /// connected() tells; keeps the camera's clock known. Blocks a tenth of a second at most.
   virtual void look_after() {}
 
   [[nodiscard]] virtual bool connected() const noexcept = 0;

@@ -227,6 +227,7 @@ class AravisCamera final : public Camera {
   void look_after() override {
     try {
       presence_.look_after();
+      if (connected()) renew_clock_if_due();  // so that the next scan need not, while its first motion waits
     } catch (const Error& error) {
       spdlog::warn("{}", error.what());
     }

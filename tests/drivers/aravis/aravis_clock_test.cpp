@@ -74,6 +74,17 @@ TEST_F(AnAravisCamera, RefusesAFrameOfTheFutureByName) {
   EXPECT_EQ(camera->last_refusal(), "");
 }
 
+TEST_F(AnAravisCamera, MeasuresItsClockWhileNothingIsAskedOfIt) {
+  serve();
+  const auto camera = open(1500, std::chrono::milliseconds(1));
+  camera->configure(settings());
+  // More commands than its heartbeats are in the time.
+  fault({.fault = CameraFault::kClockStep, .on = sim::CameraEvent::kCommand, .after = 100});
+  const HostTime deadline = HostClock::now() + std::chrono::seconds(20);
+  while (server_->faults().unconsumed() > 0 && HostClock::now() < deadline) camera->look_after();
+  EXPECT_EQ(server_->faults().unconsumed(), 0U);
+}
+
 TEST(ACameraClock, StaysWithinAMonthOfItsLatestPair) {
   CameraClock clock(std::chrono::seconds(5));
   const HostTime now = HostClock::now();
