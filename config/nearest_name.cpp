@@ -8,6 +8,9 @@ namespace fvd {
 
 namespace {
 
+/// A longer name is no slip of the pen, and to compare a mebibyte with each known name takes long.
+constexpr std::size_t kLongestSlip_bytes = 128;
+
 /// Levenshtein distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -27,11 +30,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
-  const auto nearest = std::min_element(known.begin(), known.end(), [name](const auto& a, const auto& b) {
-    return edit_distance(name, a) < edit_distance(name, b);
-  });
-  if (nearest == known.end() || edit_distance(name, *nearest) > 1 + name.size() / 3) return "";
-  return "; did you mean '" + *nearest + "'?";
+  if (name.size() > kLongestSlip_bytes) return "";
+  const std::string* nearest = nullptr;
+  std::size_t fewer_than = 2 + name.size() / 3;
+  for (const std::string& one : known) {
+    const std::size_t distance = edit_distance(name, one);
+    if (distance >= fewer_than) continue;
+    fewer_than = distance;
+    nearest = &one;
+  }
+  return nearest == nullptr ? "" : "; did you mean '" + *nearest + "'?";
 }
 
 }  // namespace fvd

@@ -10,6 +10,7 @@
 #include "daemon/transport/http_fields.hpp"
 #include "daemon/transport/http_message.hpp"
 #include "daemon/transport/http_routes.hpp"
+#include "daemon/transport/reading_time.hpp"
 #include "daemon/transport/tcp_options.hpp"
 
 namespace fvd {
@@ -26,7 +27,6 @@ constexpr std::size_t kMaxBody_bytes = std::size_t{1} << 20U;
 constexpr std::size_t kReadChunk_bytes = std::size_t{64} << 10U;
 constexpr std::chrono::seconds kHeaderTime{10};
 constexpr std::chrono::seconds kBodyTime{10};
-constexpr std::chrono::seconds kAnswerTime{10};     // for the client to read
 constexpr std::chrono::seconds kKeepAliveTime{60};  // between two requests
 constexpr std::chrono::seconds kDrainTime{1};
 constexpr std::size_t kDrainChunk_bytes = 4096;
@@ -355,7 +355,7 @@ void HttpSession::send(Response response) {
   if (is_head()) response.body().clear();  // the length stays
   end_request();
   response_ = std::move(response);
-  expire_after(kAnswerTime);
+  expire_after(reading_time(response_.body().size()));
   http::async_write(socket_, response_, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
     if (self->is_closed_) return;
     if (error || self->timed_out_) return self->close();

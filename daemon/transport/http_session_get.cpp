@@ -15,6 +15,7 @@
 #include "daemon/transport/http_routes.hpp"
 #include "daemon/transport/http_session.hpp"
 #include "daemon/transport/http_target.hpp"
+#include "daemon/transport/reading_time.hpp"
 
 namespace fvd {
 
@@ -23,8 +24,7 @@ namespace http = boost::beast::http;
 
 namespace {
 
-constexpr std::chrono::seconds kPieceTime{10};        // for the client to read one
-constexpr std::chrono::seconds kStreamPieceTime{15};  // the same of a stream; as long as tune() waits for its system
+constexpr std::chrono::seconds kStreamPieceTime{15};  // to read a piece; as long as tune() waits for its system
 constexpr std::chrono::milliseconds kShortestPutOff{1};
 
 int status_of(ErrorCode code) {
@@ -221,7 +221,7 @@ void HttpSession::send_piece(std::string head, std::string bytes) {
   head_text_ = std::move(head);
   piece_ = std::move(bytes);
   is_sending_ = true;
-  expire_after(fetch_->stream ? kStreamPieceTime : kPieceTime);
+  expire_after(fetch_->stream ? kStreamPieceTime : reading_time(piece_.size()));
   const std::array<asio::const_buffer, 2> both{asio::buffer(head_text_), asio::buffer(piece_)};
   asio::async_write(socket_, both, [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
     if (self->is_closed_) return;

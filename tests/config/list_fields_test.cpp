@@ -57,6 +57,22 @@ TEST(AListOfFreeTexts, RefusesRepeatedEmptyAndOtherValues) {
   }
 }
 
+TEST(AListOfFreeTexts, MayBeAsLongAsAMessage) {
+  constexpr int kMany = 150'000;
+  json words = json::array();
+  for (int i = 0; i < kMany; ++i) words.push_back(std::to_string(i));
+  Line line;
+  EXPECT_THAT(read(json{{"regions", words}}.dump(), line), IsEmpty());
+  ASSERT_EQ(line.regions.size(), static_cast<std::size_t>(kMany));
+  EXPECT_EQ(line.regions.front(), "0");
+  EXPECT_EQ(line.regions.back(), "149999");
+  words.push_back("0");
+  Line refused;
+  EXPECT_THAT(read(json{{"regions", words}}.dump(), refused),
+              ElementsAre(problem("/regions", "a list without repetitions of texts")));
+  EXPECT_THAT(refused.regions, IsEmpty());
+}
+
 TEST(SchemaOfLists, TellsNumbersAndTextsOfTheirElements) {
   Line line;
 

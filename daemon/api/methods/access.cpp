@@ -171,7 +171,8 @@ void add_access_methods(MethodTable& methods, const Services& services) {
                 .role = Role::kView,
                 .params = described<ListParams>(),
                 .result = describe_audit,
-                .errors = {ErrorCode::kDatabase}},
+                .errors = {ErrorCode::kDatabase},
+                .is_long = true},  // it waits for rows that are being written, too
       .run = with<ListParams>(
           [&audit = services.audit](const Call&, const ListParams& params) { return list(audit, params); })};
 }

@@ -67,7 +67,7 @@ TEST_F(ADispatcher, KeepsToWhatACallersConnectionTakes) {
 
 TEST_F(ADispatcher, KnowsWhichLinesReadMuchForPeople) {
   const auto call = [](const std::string& method) { return json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}}; };
-  for (const char* method : {"job.list", "value.list", "result.profile"}) {
+  for (const char* method : {"job.list", "value.list", "result.profile", "audit.list"}) {
     EXPECT_TRUE(dispatcher_.is_long(call(method).dump())) << method;
     EXPECT_TRUE(dispatcher_.is_long(json::array({call("job.latest"), call(method)}).dump())) << method;
   }
