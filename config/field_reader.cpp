@@ -5,7 +5,10 @@
 #include <cmath>
 #include <iomanip>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <string>
+#include <string_view>
 
 #include "config/nearest_name.hpp"
 #include "config/relation.hpp"
