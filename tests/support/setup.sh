@@ -69,6 +69,17 @@ fvd_install_javascript() {
   rm -f "$log"
 }
 
+# nginx for the test of the reverse proxy, unpacked and not installed: the package would serve on port 80 of this machine.
+fvd_unpack_nginx() {
+  local folder=$FVD_BUILD/nginx
+  if command -v nginx >/dev/null || [ -x /usr/sbin/nginx ] || [ -x "$folder/usr/sbin/nginx" ]; then return; fi
+  mkdir -p "$folder"
+  if ! (cd "$folder" && apt-get download nginx && dpkg-deb -x nginx_*.deb .) >"$folder/log" 2>&1; then
+    tail -n 5 "$folder/log" >&2
+    fvd_say "apt-get could not fetch nginx; the test that needs it skips"
+  fi
+}
+
 # Configures in FVD_BUILD; everything is compiled through ccache where that is installed and works.
 fvd_cmake() {
   local launcher=

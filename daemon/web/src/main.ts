@@ -6,7 +6,7 @@ import { followLinks } from "./lib/router.ts";
 import { applyTheme } from "./lib/theme.ts";
 import { link, listen } from "./live/live.ts";
 import { watchControl } from "./rpc/held_control.ts";
-import { resumeSession } from "./rpc/session.ts";
+import { lookWhoIAm, watchRefusals } from "./rpc/session.ts";
 import { takeTokenFromAddress } from "./rpc/token_in_address.ts";
 import "./style/main.css";
 
@@ -15,8 +15,9 @@ applyTheme();
 followLinks();
 listen();
 watchControl();
+watchRefusals();
 // Again after every reconnection: the daemon may have another file of tokens.
-const know = (): void => void resumeSession().catch(() => undefined);
+const know = (): void => void lookWhoIAm().catch(() => undefined);
 let was = link.get().status;
 link.watch(() => {
   const { status } = link.get();

@@ -47,3 +47,19 @@ export async function smallTargets(page, name) {
   if (found.length > 0) console.error(`small targets in ${name}:\n  ${found.slice(0, 8).join("\n  ")}`);
   return found.length;
 }
+
+// What a printed result must have, and must not: how much of it is wrong.
+export async function onPaper(page, name) {
+  const wrong = await page.evaluate(() => {
+    const isSeen = (selector) => [...document.querySelectorAll(selector)].some((element) => element.checkVisibility() && element.getBoundingClientRect().height > 0);
+    const needed = [".result-head h1", ".result-head .verdict", ".map-canvas", ".colour-bar, .hole-legend", ".profile-plot canvas", ".print-only .measurements .details-row", ".print-only .conditions"];
+    const gone = ["header.top", ".buttons", ".controls", ".downloads", ".screen-only"];
+    const { backgroundColor, color } = getComputedStyle(document.body);
+    return [
+      ...needed.filter((each) => !isSeen(each)).map((each) => `${each} is missing`), ...gone.filter(isSeen).map((each) => `${each} is there`),
+      ...(backgroundColor === "rgb(255, 255, 255)" && color === "rgb(0, 0, 0)" ? [] : [`${color} on ${backgroundColor}`]),
+    ];
+  });
+  if (wrong.length > 0) console.error(`on paper, ${name}:\n  ${wrong.join("\n  ")}`);
+  return wrong.length;
+}

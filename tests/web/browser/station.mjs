@@ -128,12 +128,12 @@ export async function startStation({ world = "groove_50", plant = "chapter", set
   }
 }
 
-// Scans parts, so that the pages have something to show; the ids of the jobs.
-export async function scan(call, { recipe = "groove", parts = 1 } = {}) {
+// Scans parts, so that the pages have something to show; the ids of the jobs. part_id: of each; absent = a number.
+export async function scan(call, { recipe = "groove", parts = 1, part_id } = {}) {
   const ids = [];
   for (let i = 0; i < parts; ++i) {
     const { newest_seq } = await call("job.latest", { client: "harness" });
-    const { job_id } = await call("job.start", { client: "harness", seq: newest_seq + 1, part_id: `part-${newest_seq + 1}`, recipe });
+    const { job_id } = await call("job.start", { client: "harness", seq: newest_seq + 1, part_id: part_id ?? `part-${newest_seq + 1}`, recipe });
     await until(`job ${job_id}`, async () => (await call("job.status", { job_id })).done, 120000);
     ids.push(job_id);
   }

@@ -9,10 +9,12 @@ const kPatience_ms = 120000;  // on a busy machine; nothing is judged by it
 
 const kMoves = new Set(["job.start", "stage.move", "stage.home", "stage.jog", "stage.autofocus"]);
 
-// options: language, theme, token, viewport; mayMove: a test that moves the stage on purpose; mayFail: one that cuts the line
+// options: language, theme, token, viewport; scale: pixels of the screen a CSS pixel; clock_ms: this browser's clock is wrong by
+// so much; mayMove: a test that moves the stage on purpose; mayFail: one that cuts the line
 export async function openTab(browser, station, figures, { language = "en", theme = "light", token = station.token,
-  viewport = { width: 1280, height: 1024 }, mayMove = false, mayFail = false } = {}) {
-  const context = await browser.newContext({ viewport, colorScheme: theme, locale: language === "de" ? "de-DE" : "en-GB" });
+  viewport = { width: 1280, height: 1024 }, scale = 1, clock_ms = 0, mayMove = false, mayFail = false } = {}) {
+  const context = await browser.newContext({ viewport, deviceScaleFactor: scale, colorScheme: theme, locale: language === "de" ? "de-DE" : "en-GB" });
+  if (clock_ms !== 0) await context.addInitScript(setClock, clock_ms);
   const tell = (what, text) => console.error(`${what}: ${text}`);
   await context.exposeBinding("tellBreach", (_, text) => {
     ++figures.csp_violations;
@@ -47,6 +49,20 @@ export async function openTab(browser, station, figures, { language = "en", them
     }
   });
   return { context, page, close: () => context.close() };
+}
+
+// In the page: whoever asks for the time without saying which gets a wrong one.
+function setClock(ahead_ms) {
+  const { now } = Date;
+  globalThis.Date = class extends Date {
+    constructor(...given) {
+      if (given.length > 0) super(...given);
+      else super(now() + ahead_ms);
+    }
+    static now() {
+      return now() + ahead_ms;
+    }
+  };
 }
 
 export function methodOf(request) {

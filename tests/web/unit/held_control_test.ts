@@ -2,7 +2,12 @@ import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import "./browser_stand_in.ts";
 
-const { giveControlBack, isHeldHere, renewalFault, takeControl } = await import("../../../daemon/web/src/rpc/held_control.ts");
+const kListeners = new Map<string, () => void>();
+Object.assign(globalThis, { addEventListener: (name: string, call: () => void) => kListeners.set(name, call), removeEventListener: (name: string) => kListeners.delete(name) });
+const { watchControl, giveControlBack, isHeldHere, renewalFault, takeControl } = await import("../../../daemon/web/src/rpc/held_control.ts");
+
+const { session } = await import("../../../daemon/web/src/rpc/session.ts");
+session.set({ who: "anna", role: "operate" });
 
 const kRenew_ms = 20000;
 let asked: string[] = [];
@@ -66,4 +71,35 @@ test("a renewal that fails for another reason is told and tried again", async ()
   await later();
   assert.equal(renewalFault.get(), null);
   assert.equal(asked.length, 3);
+});
+
+test("a page that leaves gives control back, and does not renew it where the browser brings it back", async () => {
+  const unwatch = watchControl();
+  await takeControl(false);
+  kListeners.get("pagehide")?.();
+  assert.equal(isHeldHere.get(), false);
+  await later();
+  await later();
+  assert.deepEqual(asked, ["control.acquire", "control.release"]);
+  unwatch();
+});
+
+test("control that ran out in a sleep is not taken again without a press; a shorter one does not matter", async () => {
+  const now = Date.now;
+  const unwatch = watchControl();
+  try {
+    await takeControl(false);
+    Date.now = () => now() + 30000;
+    await later();
+    assert.equal(isHeldHere.get(), true);
+    Date.now = () => now() + 200000;
+    await later();
+    assert.equal(isHeldHere.get(), false);
+    asked = [];
+    await later();
+    assert.deepEqual(asked, []);
+  } finally {
+    Date.now = now;
+    unwatch();
+  }
 });

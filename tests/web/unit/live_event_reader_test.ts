@@ -115,6 +115,28 @@ test("a refusal is no stream, and says how long to wait", async () => {
   assert.equal(count("open"), 0);
 });
 
+test("a refusal is told with its status, before the stream counts as lost", async () => {
+  refusals = [new Response("{}", { status: 401 })];
+  read({ onRefused: (status) => heard.push(`refused ${status}`) });
+  await until(() => count("lost") === 1);
+  assert.deepEqual(heard, ["refused 401", "lost"]);
+});
+
+test("who asks anew at a refusal is not made to wait for it", async () => {
+  refusals = [new Response("{}", { status: 401 })];
+  token = "wrong";
+  read({
+    onRefused: () => {
+      token = null;
+      reader?.restart();
+    },
+  });
+  await until(() => count("open") === 1);
+  assert.equal(asked.length, 2);
+  assert.equal(asked[1]?.headers["Authorization"], undefined);
+  assert.equal(count("lost"), 0);
+});
+
 test("another token begins another stream", async () => {
   read();
   asked[0]?.send("id: 17-1\nevent: state\ndata: 1\n\n");

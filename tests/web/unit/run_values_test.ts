@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { limitBar } from "../../../daemon/web/src/run/limit_bar.ts";
 import { decimals, unitForPeople } from "../../../daemon/web/src/run/value_digits.ts";
-import { mainHoleReason, rowsOf, verdictOf } from "../../../daemon/web/src/run/value_rows.ts";
+import { forPeople, mainHoleReason, rowsOf, verdictOf } from "../../../daemon/web/src/run/value_rows.ts";
 
 const near = (value: number | null | undefined, wanted: number): void =>
   assert.ok(typeof value === "number" && Math.abs(value - wanted) < 1e-9, `${value} is not ${wanted}`);
@@ -113,4 +113,26 @@ test("the reason that most holes have", () => {
   assert.equal(mainHoleReason({ values: { hole_points: { saturated: 3, low_prominence: 70, edge_band: 0 } } }), "low_prominence");
   assert.equal(mainHoleReason({ values: { hole_points: { saturated: 0 } } }), "");
   assert.equal(mainHoleReason(null), "");
+});
+
+test("a measurement that is invalid as a whole is a row of its own, with its reason", () => {
+  const rows = rowsOf({ evaluation: { measurements: { land: { kind: "areal", reason: "too few points", values: {} }, edge: { main_value: "radius_um", verdict: "invalid", reason: "no edge", values: {} } } } });
+  assert.deepEqual(rows.map(({ measurement, name, value, verdict, reason }) => [measurement, name, value, verdict, reason]),
+    [["edge", "radius", null, "invalid", "no edge"], ["land", "", null, null, "too few points"]]);
+});
+
+test("a figure of the map that has a verdict stands among the values, others only where nothing was measured", () => {
+  const measurements = { height_max: { value: 3, unit: "um" }, valid_fraction: { value: 0.07, unit: "1", limits: { lower: 0.9, upper: null }, verdict: "fail" } };
+  const rows = rowsOf({ ...evaluated, measurements });
+  assert.deepEqual(rows.filter(({ measurement }) => measurement === "").map(({ name, value, lower, upper, verdict }) => [name, value, lower, upper, verdict]), [["valid_fraction", 0.07, 0.9, null, "fail"]]);
+  assert.equal(rowsOf({ measurements }).length, 2);
+});
+
+test("shares of the map are told in percent, with their limits", () => {
+  const [row] = rowsOf({ measurements: { valid_fraction: { value: 0.07, unit: "1", limits: { lower: 0.9, upper: null }, verdict: "fail" } } });
+  assert.ok(row);
+  const { value, U, lower, upper, unit } = forPeople(row);
+  assert.deepEqual([value, U, lower, upper, unit], [7, null, 90, null, "%"]);
+  const step = { ...row, measurement: "edge", name: "K" };
+  assert.deepEqual(forPeople(step), step, "a ratio that was measured is none");
 });

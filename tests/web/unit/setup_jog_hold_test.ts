@@ -6,6 +6,7 @@ import { type Direction, JogHold } from "../../../daemon/web/src/pages/setup/mot
 // A line and a clock of the test's own: nothing here waits.
 class Line {
   now_ms = 0;
+  slept_ms = 0;  // in which timers stood still
   sent: { at_ms: number; direction: Direction }[] = [];
   ends: unknown[] = [];
   answers: { resolve: () => void; reject: (error: unknown) => void }[] = [];
@@ -29,6 +30,7 @@ class Line {
       return this.#last;
     },
     clearTimer: (timer) => this.#timers.delete(timer as number),
+    now_ms: () => this.now_ms + this.slept_ms,
   });
 
   get pending(): number {
@@ -140,5 +142,31 @@ test("the other direction ends the first", async () => {
   line.hold.begin("down");
   await line.pass(150);
   assert.deepEqual(line.sent.map(({ direction }) => direction), ["up", "down", "down"]);
+  assert.equal(line.ends.length, 1);
+});
+
+test("a sleep with a held button ends the jog: nobody knows where the hand is", async () => {
+  const line = new Line();
+  line.hold.begin("up");
+  await line.pass(250);
+  line.slept_ms = 60000;
+  await line.pass(1000);
+  assert.deepEqual(line.sent.map(({ at_ms }) => at_ms), [0, 100, 200]);
+  assert.deepEqual(line.ends, [undefined]);
+  assert.equal(line.hold.direction, null);
+  line.hold.begin("up");
+  await line.pass(150);
+  assert.equal(line.sent.length, 5, "the next press is one again");
+});
+
+test("an answer that took a second is followed by no repeat", async () => {
+  const line = new Line();
+  line.answersAtOnce = false;
+  line.hold.begin("up");
+  await line.pass(50);
+  line.slept_ms = 1200;
+  line.answers[0]?.resolve();
+  await line.pass(200);
+  assert.equal(line.sent.length, 1);
   assert.equal(line.ends.length, 1);
 });

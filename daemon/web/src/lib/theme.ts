@@ -19,3 +19,7 @@ export function applyTheme(): void {
   if (wanted === "auto") delete document.documentElement.dataset["theme"];
   else document.documentElement.dataset["theme"] = wanted;
 }
+
+// What is drawn with colours of its own, as plots are, stays so on paper: it says for which ground it was made.
+export const ground = (): "dark" | "light" =>
+  theme.get() === "dark" || (theme.get() === "auto" && matchMedia("(prefers-color-scheme: dark)").matches) ? "dark" : "light";

@@ -15,6 +15,7 @@ export interface EventReaderOptions {
   headers: () => Record<string, string>;  // of each request
   onOpen: () => void;
   onEvent: (event: SseEvent) => void;
+  onRefused?: (status: number) => void;  // instead of a stream; onLost follows
   onLost: () => void;  // at each end and each attempt that failed
   silence_ms: number;  // a stream that says nothing for so long is lost
   retry_ms: number;    // until the stream says another time
@@ -63,7 +64,10 @@ export function readEvents(options: EventReaderOptions): EventReader {
       signal: mine.signal,
     });
     if (attempt !== mine) return 0;
-    if (!response.ok) return refusalTime(response, options.refused_ms);
+    if (!response.ok) {
+      options.onRefused?.(response.status);
+      return refusalTime(response, options.refused_ms);
+    }
     if (!response.body || !response.headers.get("Content-Type")?.startsWith("text/event-stream")) return options.refused_ms;
     const reader = response.body.getReader();
     const decoder = new TextDecoder();

@@ -1,8 +1,9 @@
 // What the daemon is doing, as the stream of events tells it. One stream a tab; a lost one is opened again by itself.
 import { createStore } from "../lib/store.ts";
+import { onWake } from "../lib/wake.ts";
 import type { Alarm } from "../rpc/listed.ts";
 import type { Methods } from "../rpc/methods.ts";
-import { headers, token } from "../rpc/rpc.ts";
+import { headers, refuseToken, token } from "../rpc/rpc.ts";
 import { readEvents } from "./event_reader.ts";
 import type { SseEvent } from "./sse.ts";
 
@@ -60,9 +61,16 @@ function takeEvent({ name, data }: SseEvent): void {
 
 // Begins to listen; call the result to end it.
 export function listen(): () => void {
+  let given: string | null = null;
   const reader = readEvents({
     path: "/api/v1/events",
-    headers,
+    headers: () => {
+      given = token.get();
+      return headers();
+    },
+    onRefused: (status) => {
+      if (status === 401) refuseToken(given);
+    },
     onOpen: () => setStatus("open"),
     onEvent: takeEvent,
     onLost: () => setStatus("lost"),
@@ -76,9 +84,24 @@ export function listen(): () => void {
     if (document.visibilityState === "visible") reader.wake();
   };
   document.addEventListener("visibilitychange", wake);
+  addEventListener("online", wake);
+  // What was told before a sleep may be hours old, and the stream dead: it is said so until there is another one.
+  const anew = (): void => {
+    setStatus("lost");
+    reader.restart();
+  };
+  const unsleep = onWake(anew);
+  // Back from the browser's memory of pages, where streams do not live on.
+  const show = (event: PageTransitionEvent): void => {
+    if (event.persisted) anew();
+  };
+  addEventListener("pageshow", show);
   return () => {
     unwatch();
+    unsleep();
     document.removeEventListener("visibilitychange", wake);
+    removeEventListener("online", wake);
+    removeEventListener("pageshow", show);
     reader.end();
   };
 }

@@ -13,18 +13,23 @@ export function SessionButton() {
   const has = useStore(token) !== null;
   const dialog = useRef<HTMLDialogElement>(null);
   const [problem, setProblem] = useState("");
+  const [isAsking, setAsking] = useState(false);
 
   const submit = async (event: SubmitEvent): Promise<void> => {
     event.preventDefault();
     const input = (event.target as HTMLFormElement).elements.namedItem("token") as HTMLInputElement;
+    if (isAsking) return;
+    setAsking(true);
+    setProblem("");
     try {
       await logIn(input.value.trim());
       input.value = "";
-      setProblem("");
       dialog.current?.close();
     } catch (error) {
       setProblem(error instanceof RpcError && error.code === 401 ? t("session.wrong") : messageOf(error));
       input.focus();
+    } finally {
+      setAsking(false);
     }
   };
 
@@ -44,8 +49,9 @@ export function SessionButton() {
         </label>
         <p id="token-help" class="help">${t("session.token_help")}</p>
         ${problem && html`<p role="alert" class="problem">${problem}</p>`}
+        <p role="status">${isAsking && t("session.asking")}</p>
         <p class="buttons">
-          <button type="submit" class="main">${t("session.log_in")}</button>
+          <button type="submit" class="main" aria-disabled=${isAsking}>${t("session.log_in")}</button>
           <button type="button" onClick=${() => dialog.current?.close()}>${t("cancel")}</button>
         </p>
       </form>

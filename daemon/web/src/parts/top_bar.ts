@@ -5,6 +5,7 @@ import { place } from "../lib/router.ts";
 import { useStore } from "../lib/store.ts";
 import { type Theme, setTheme, theme } from "../lib/theme.ts";
 import { link, topics } from "../live/live.ts";
+import { tokenWasRefused } from "../rpc/rpc.ts";
 import { SessionButton } from "./session_button.ts";
 
 const kPages = [
@@ -22,6 +23,7 @@ export function TopBar() {
   const { status } = useStore(link);
   const { state } = useStore(topics);
   const colours = useStore(theme);
+  const isRefused = useStore(tokenWasRefused);
   return html`<header class="top">
     <a class="skip" href="#main" onClick=${(event: Event) => {
       event.preventDefault();
@@ -29,6 +31,7 @@ export function TopBar() {
     }}>${t("skip")}</a>
     ${state?.simulated && html`<p class="ribbon">${t("simulated")}</p>`}
     ${status !== "open" && html`<p class="link" role="alert">${t(status === "lost" ? "link.lost" : "link.never")}</p>`}
+    ${isRefused && html`<p class="refused" role="alert">${t("session.refused")}</p>`}
     <div class="bar">
       <nav aria-label=${t("nav.label")}>
         ${kPages.map(([page, key]) => html`<a href=${page} aria-current=${isAt(path, page) ? "page" : undefined}>${t(key)}</a>`)}

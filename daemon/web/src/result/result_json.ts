@@ -83,16 +83,25 @@ export interface Measurement {
   verdict?: Verdict;
 }
 
+// A figure of the whole map.
+export interface MapFigure {
+  value: number | null;
+  unit: string;
+  limits?: { lower: number | null; upper: number | null };
+  verdict?: Verdict;
+}
+
 export interface ResultFile {
   name: string;
-  state?: string;
+  state?: string;  // absent of a folder
+  files?: number;  // in a folder
   size_bytes?: number;
   reason?: string;
 }
 
 export interface ResultJson {
   job: { job_id: string; seq: number; part_id: string; recipe: string };
-  objective?: unknown;
+  objective?: string | null;
   temperature?: { celsius?: number; source?: string; age_s?: number } | null;
   calibration?: unknown;
   verdict: Verdict | null;
@@ -105,6 +114,7 @@ export interface ResultJson {
     order?: string[];
     measurements?: Record<string, Measurement>;
   };
+  measurements?: Record<string, MapFigure>;
   warnings?: Notice[];
   values?: {
     height?: { min_um?: number | null; max_um?: number | null; mean_um?: number | null; median_um?: number | null } | null;
@@ -142,3 +152,16 @@ export function measurementsOf(result: ResultJson): [string, Measurement][] {
 
 // Whose folder holds the map: an evaluation of a stored surface has none of its own.
 export const mapOwner = (result: ResultJson): string => result.source?.job_id ?? result.job.job_id;
+
+// Figures of the map that have a verdict of their own, as values of a measurement; shares in percent.
+export function judgedFigures(result: ResultJson): [string, EvaluatedValue][] {
+  return Object.entries(result.measurements ?? {}).flatMap(([name, { value, unit, limits, verdict }]): [string, EvaluatedValue][] => {
+    if (verdict === undefined) return [];
+    const isShare = unit === "1";
+    const told = (key: "value" | "lower" | "upper", figure: number | null | undefined): Partial<Record<typeof key, number>> =>
+      (typeof figure === "number" ? { [key]: isShare ? Number((100 * figure).toPrecision(12)) : figure } : {});
+    return [[name, {
+      unit: isShare ? "percent" : unit, verdict, ...told("value", value), limits: { ...told("lower", limits?.lower), ...told("upper", limits?.upper) },
+    }]];
+  });
+}

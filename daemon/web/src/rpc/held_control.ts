@@ -1,5 +1,6 @@
 // Control that this tab has taken: renewed on whatever page, until it is given back, taken away, or the tab closes.
 import { createStore } from "../lib/store.ts";
+import { onWake } from "../lib/wake.ts";
 import { type Topics, topics } from "../live/live.ts";
 import { ownerName } from "./owner_name.ts";
 import { RpcError, call } from "./rpc.ts";
@@ -55,9 +56,15 @@ export function watchControl(): () => void {
     if (isHeldHere.get() && control !== null && control.owner !== "" && control.who !== session.get().who) letGo();
   };
   const leave = (): void => {
-    if (isHeldHere.get()) void call("control.release", {}, { keepalive: true }).catch(() => undefined);
+    if (!isHeldHere.get()) return;
+    letGo();  // a browser may bring the page back as it was
+    void call("control.release", {}, { keepalive: true }).catch(() => undefined);
   };
-  const ends = [topics.watch(look), session.watch(look)];
+  // Control that ran out in sleep is not taken again without a press.
+  const woken = (slept_ms: number): void => {
+    if (slept_ms > 1000 * kLease_s) letGo();
+  };
+  const ends = [topics.watch(look), session.watch(look), onWake(woken)];
   addEventListener("pagehide", leave);
   return () => {
     for (const end of ends) end();

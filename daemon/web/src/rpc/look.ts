@@ -1,6 +1,6 @@
 // Calls that only look, put together: those of one moment go as one request.
 import type { Methods } from "./methods.ts";
-import { RpcError, call, headers, kOffline } from "./rpc.ts";
+import { RpcError, ask, call, kOffline } from "./rpc.ts";
 
 const kMost = 16;  // of a batch, by the daemon's rules
 
@@ -40,9 +40,9 @@ function flush(): void {
 async function together(wanted: readonly Wanted[]): Promise<void> {
   try {
     const body = wanted.map(({ method, params }, id) => ({ jsonrpc: "2.0", id, method, params }));
-    const response = await fetch("/api/jsonrpc", {
+    const response = await ask("/api/jsonrpc", {
       method: "POST",
-      headers: { "Content-Type": "application/json", ...headers() },
+      headers: { "Content-Type": "application/json" },
       body: JSON.stringify(body),
       cache: "no-store",
     }).catch((error: unknown) => {

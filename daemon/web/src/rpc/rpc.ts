@@ -21,10 +21,21 @@ const kTokenKey = "fvd.token";
 // The token belongs to this tab, and is forgotten with it.
 export const token = createStore<string | null>(sessionStorage.getItem(kTokenKey));
 
+// The token that this tab had is nobody's, or nobody's any more; until another one is given, or nobody wants one.
+export const tokenWasRefused = createStore(false);
+
 export function setToken(text: string | null): void {
   if (text === null) sessionStorage.removeItem(kTokenKey);
   else sessionStorage.setItem(kTokenKey, text);
+  tokenWasRefused.set(false);
   token.set(text);
+}
+
+// Each further call with it would be refused too, and later each time.
+export function refuseToken(given: string | null): void {
+  if (given === null || given !== token.get()) return;
+  setToken(null);
+  tokenWasRefused.set(true);
 }
 
 let lastId = 0;
@@ -39,6 +50,14 @@ export function headers(): Record<string, string> {
   return given === null ? {} : { Authorization: `Bearer ${given}` };
 }
 
+// A request of this tab, or of whom `init` says; the tab's own token is forgotten where it is refused.
+export async function ask(path: string, init: Omit<RequestInit, "headers"> & { headers?: Record<string, string> }): Promise<Response> {
+  const given = token.get();
+  const response = await fetch(path, { ...init, headers: { ...headers(), ...init.headers } });
+  if (response.status === 401 && init.headers?.["Authorization"] === undefined) refuseToken(given);
+  return response;
+}
+
 export async function call<M extends keyof Methods>(
   method: M,
   params: Methods[M]["params"],
@@ -47,11 +66,10 @@ export async function call<M extends keyof Methods>(
   const id = ++lastId;
   let response: Response;
   try {
-    response = await fetch("/api/jsonrpc", {
+    response = await ask("/api/jsonrpc", {
       method: "POST",
       headers: {
         "Content-Type": "application/json",
-        ...headers(),
         ...(options.token === undefined ? {} : { Authorization: `Bearer ${options.token}` }),
       },
       body: JSON.stringify({ jsonrpc: "2.0", id, method, params }),

@@ -1,6 +1,6 @@
 // As whom this tab calls.
 import { createStore } from "../lib/store.ts";
-import { call, setToken, token } from "./rpc.ts";
+import { call, setToken, tokenWasRefused } from "./rpc.ts";
 
 export type Role = "none" | "view" | "operate" | "set_up" | "administer";
 
@@ -27,12 +27,8 @@ export async function logOut(): Promise<void> {
   await lookWhoIAm();
 }
 
-// A token that was withdrawn meanwhile makes every call fail: then the tab looks on as one without.
-export async function resumeSession(): Promise<void> {
-  try {
-    await lookWhoIAm();
-  } catch (error) {
-    if (token.get() === null || (error as { code?: number }).code !== 401) throw error;
-    await logOut();
-  }
-}
+// A token that was withdrawn meanwhile is forgotten with the first call that it is refused for: then the tab looks on as
+// one without. Call the result to end it.
+export const watchRefusals = (): (() => void) => tokenWasRefused.watch(() => {
+  if (tokenWasRefused.get()) void lookWhoIAm().catch(() => undefined);  // asked again after the next reconnection
+});

@@ -1,6 +1,6 @@
 // The live picture: one request at a time, each for a picture newer than the last.
 import { createStore } from "../lib/store.ts";
-import { headers } from "../rpc/rpc.ts";
+import { ask } from "../rpc/rpc.ts";
 
 export interface Picture {
   seq: number;
@@ -21,6 +21,7 @@ export const pictured = createStore<{ z_um: number; at_ms: number } | null>(null
 const kAfterNone_ms = 500;
 const kAfterMissing_ms = 30000;
 const kAfterFault_ms = 1000;
+const kPatience_ms = 20000;  // a connection that died in sleep or with a cable answers nothing, for minutes
 
 const headerNumber = (response: Response, name: string): number => {
   const text = response.headers.get(name);
@@ -50,7 +51,7 @@ export function watchPreview(show: (picture: Picture) => void, tell: (status: Pr
   let after = 0;
 
   const once = async (): Promise<number> => {
-    const response = await fetch(`/api/v1/preview.jpg?after=${after}`, { headers: headers(), cache: "no-store", signal: abort.signal });
+    const response = await ask(`/api/v1/preview.jpg?after=${after}`, { cache: "no-store", signal: AbortSignal.any([abort.signal, AbortSignal.timeout(kPatience_ms)]) });
     if (response.status === 200) {
       const picture = await pictureOf(response);
       if (abort.signal.aborted) return 0;

@@ -57,12 +57,25 @@ export function rowsOf(result: unknown): ValueRow[] {
     const main = textOf(measurement["main_value"]);
     const keys = Object.keys(values).sort((a, b) => Number(b === main) - Number(a === main));
     for (const key of keys) rows.push(row(name, key, keysOf(values[key]), measurement));
+    // Invalid as a whole, and nothing of it has limits: then it has no values, and what it lacks must not go unseen.
+    const invalid = row(name, main, { verdict: measurement["verdict"] }, measurement);
+    if (keys.length === 0 && (invalid.reason !== "" || invalid.verdict !== null)) rows.push(invalid);
   }
-  if (rows.length === 0) {
-    // A recipe without evaluation has figures of the map alone.
-    for (const [name, about] of Object.entries(keysOf(keysOf(result)["measurements"]))) rows.push(row("", name, keysOf(about), {}));
+  // Figures of the map: all of them where the recipe has no evaluation, else those that have a verdict of their own.
+  const isAlone = rows.length === 0;
+  for (const [name, about] of Object.entries(keysOf(keysOf(result)["measurements"]))) {
+    const figure = row("", name, keysOf(about), {});
+    if (isAlone || figure.verdict !== null) rows.push(figure);
   }
   return [...rows.filter(({ verdict }) => verdict !== null), ...rows.filter(({ verdict }) => verdict === null)];
+}
+
+// Shares of the map are told in percent, with their limits.
+export function forPeople(row: ValueRow): ValueRow {
+  if (row.measurement !== "" || row.unit !== "1") return row;
+  // 7 % is not 7.000000000000001 %.
+  const percent = (share: number | null): number | null => (share === null ? null : Number((100 * share).toPrecision(12)));
+  return { ...row, value: percent(row.value), U: percent(row.U), lower: percent(row.lower), upper: percent(row.upper), unit: "%" };
 }
 
 // Why most points of a map without heights are holes: the name of the reason, empty = not told.

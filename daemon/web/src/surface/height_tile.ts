@@ -1,5 +1,5 @@
 // A piece of a job's map as the daemon sends it: a header of 32 bytes, then planes of float32, row by row from the top.
-import { RpcError, headers, kOffline } from "../rpc/rpc.ts";
+import { RpcError, ask, kOffline } from "../rpc/rpc.ts";
 
 export type Kind = "height" | "sigma" | "texture" | "reason";
 
@@ -63,7 +63,7 @@ export function tileAddress(job: string, kind: Kind, window: Window | null, most
 export async function fetchTile(job: string, kind: Kind, window: Window | null, most: number, signal?: AbortSignal): Promise<Tile> {
   let response: Response;
   try {
-    response = await fetch(tileAddress(job, kind, window, most), { headers: headers(), ...(signal ? { signal } : {}) });
+    response = await ask(tileAddress(job, kind, window, most), signal ? { signal } : {});
   } catch (error) {
     if (signal?.aborted) throw error;
     throw new RpcError(kOffline, "offline", String(error));

@@ -8,6 +8,7 @@ import { messageOf } from "../../parts/message_of.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
 import { isObject, type JsonObject } from "../../recipe/schema.ts";
 import { call } from "../../rpc/rpc.ts";
+import { percentDigits } from "../../result/value_text.ts";
 import { valuesOf } from "../../results/values.ts";
 import type { Range } from "../../surface/colours.ts";
 import { percentileRange } from "../../surface/colour_range.ts";
@@ -40,7 +41,7 @@ const middle = (values: Float32Array): Range | null => percentileRange(values, 0
 
 function Maps({ sides }: { sides: readonly Side[] }) {
   const ranges = sides.map(({ map }) => middle(map.values)).filter((range) => range !== null);
-  const range = ranges.length === 0 ? { low: 0, high: 1 } : { low: Math.min(...ranges.map(({ low }) => low)), high: Math.max(...ranges.map(({ high }) => high)) };
+  const range = ranges.length === 0 ? null : { low: Math.min(...ranges.map(({ low }) => low)), high: Math.max(...ranges.map(({ high }) => high)) };
   return html`<div class="side-by-side">${sides.map(({ job_id, result, map, picture }, i) => {
     const valid = map.values.reduce((count, value) => count + (Number.isNaN(value) ? 0 : 1), 0);
     const verdict = result["verdict"];
@@ -49,7 +50,7 @@ function Maps({ sides }: { sides: readonly Side[] }) {
       <h2>${i === 0 ? "A" : "B"}: <a href=${`/jobs/${encodeURIComponent(job_id)}`}>${job_id}</a></h2>
       <p><bdi>${isObject(job) ? String(job["part_id"] ?? "") : ""}</bdi> · ${isObject(job) ? String(job["recipe"] ?? "") : ""} · <${VerdictLabel} verdict=${typeof verdict === "string" ? verdict : null}/></p>
       <${MapPicture} values=${picture.mean} width=${picture.width} height=${picture.height} range=${range} digits=${2}
-        label=${t("history.map_label", { width: map.width, height: map.height, valid: Math.round((1000 * valid) / map.values.length) / 10 })}/>
+        label=${valid === 0 ? t("map.no_point") : t("history.map_label", { width: map.width, height: map.height, valid: percentDigits(valid / map.values.length) })}/>
     </section>`;
   })}</div>`;
 }

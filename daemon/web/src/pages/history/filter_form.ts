@@ -24,7 +24,7 @@ export function FilterForm({ wanted, onChange }: { wanted: Wanted; onChange: (wa
   // A recipe that is gone may still be sought.
   const offered = wanted.recipe && !recipes.includes(wanted.recipe) ? [...recipes, wanted.recipe] : recipes;
   return html`<form class="panel filter" onSubmit=${(event: Event) => event.preventDefault()} aria-label=${t("history.filter")}>
-    <label>${t("history.part")} <input value=${wanted.part} maxlength="64" autocomplete="off" onInput=${set("part", kPause_ms)}/></label>
+    <label>${t("history.part")} <input value=${wanted.part} maxlength="64" dir="auto" autocomplete="off" onInput=${set("part", kPause_ms)}/></label>
     <label>${t("history.recipe")} <select value=${wanted.recipe} onChange=${set("recipe", 0)}>
       <option value="">${t("history.all")}</option>${offered.map((id) => html`<option value=${id}>${id}</option>`)}</select></label>
     <label>${t("history.verdict")} <select value=${wanted.verdict} onChange=${set("verdict", 0)}>
@@ -32,6 +32,6 @@ export function FilterForm({ wanted, onChange }: { wanted: Wanted; onChange: (wa
       ${kVerdicts.map((each) => html`<option value=${each}>${tWord("verdict", each)}</option>`)}</select></label>
     <label>${t("history.from")} <input type="date" value=${wanted.from} onChange=${set("from", 0)}/></label>
     <label>${t("history.to")} <input type="date" value=${wanted.to} onChange=${set("to", 0)}/></label>
-    <label>${t("history.text")} <input type="search" value=${wanted.text} maxlength="64" autocomplete="off" onInput=${set("text", kPause_ms)}/></label>
+    <label>${t("history.text")} <input type="search" value=${wanted.text} maxlength="64" dir="auto" autocomplete="off" onInput=${set("text", kPause_ms)}/></label>
   </form>`;
 }

@@ -6,7 +6,7 @@ import type { Centre, Mark } from "../../history/control_rules.ts";
 import { number, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
-import { theme } from "../../lib/theme.ts";
+import { ground, theme } from "../../lib/theme.ts";
 import type { ValuePoint } from "../../rpc/listed.ts";
 
 interface Props {
@@ -82,6 +82,7 @@ export function RunCurve(props: Props) {
   useEffect(() => {
     const at = holder.current;
     if (!at) return;
+    at.dataset["ground"] = ground();
     const style = getComputedStyle(document.documentElement);
     const colour = (name: string): string => style.getPropertyValue(name).trim();
     const { points, unit } = props;
@@ -113,5 +114,5 @@ export function RunCurve(props: Props) {
       plot.destroy();
     };
   }, [props.points, props.unit, language, colours]);
-  return html`<div ref=${holder} class="curve" role="img" aria-label=${props.label}></div>`;
+  return html`<div ref=${holder} class="curve plot-of" role="img" aria-label=${props.label}></div>`;
 }

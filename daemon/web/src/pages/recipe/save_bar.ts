@@ -52,8 +52,8 @@ export function SaveBar({ editor, base, isChanged, onSaved, onDiscard }: {
     setBusy(false);
   };
   return html`<div class="save-bar panel">
-    <label>${t("recipe.author")} <input value=${name} maxlength="64" autocomplete="name" onInput=${(event: Event) => setAuthor((event.target as HTMLInputElement).value)}/></label>
-    <label>${t("recipe.comment")} <input value=${comment} maxlength="200" onInput=${(event: Event) => setComment((event.target as HTMLInputElement).value)}/></label>
+    <label>${t("recipe.author")} <input value=${name} maxlength="64" dir="auto" autocomplete="name" onInput=${(event: Event) => setAuthor((event.target as HTMLInputElement).value)}/></label>
+    <label>${t("recipe.comment")} <input value=${comment} maxlength="200" dir="auto" onInput=${(event: Event) => setComment((event.target as HTMLInputElement).value)}/></label>
     <button type="button" class="main" disabled=${busy || why !== ""} aria-describedby="save-why" onClick=${() => void save(base_version)}>${t("recipe.save")}</button>
     <button type="button" disabled=${!isChanged} onClick=${onDiscard}>${t("recipe.discard")}</button>
     <span id="save-why" class="help">${why || t("recipe.from_version", { version: base_version })}</span>

@@ -44,7 +44,7 @@ export function VersionList({ id, version, isChanged, onRestored }: { id: string
     <div class="scroll"><table>
       <thead><tr><th class="number">${t("recipe.version")}</th><th>${t("recipe.saved_at")}</th><th>${t("recipe.author")}</th><th>${t("recipe.comment")}</th><th></th></tr></thead>
       <tbody>${rows.map((each) => html`<tr key=${each.version}>
-        <td class="number">${each.version}</td><td>${each.saved}</td><td>${each.author}</td><td>${each.comment}</td>
+        <td class="number">${each.version}</td><td>${each.saved}</td><td class="long" dir="auto">${each.author}</td><td class="long" dir="auto">${each.comment}</td>
         <td>${each.version === version ? html`<strong>${t("recipe.in_force")}</strong>`
           : asked === each.version ? html`<span class="buttons">
               <button type="button" onClick=${() => void restore(each.version)}>${isChanged ? t("recipe.restore_lose") : t("recipe.restore_sure")}</button>

@@ -6,11 +6,10 @@ import type { ResultJson } from "../../result/result_json.ts";
 export function Conditions({ result }: { result: ResultJson }) {
   const { focus, frames, slices, provenance, evaluation, temperature, objective } = result;
   const unknown = t("result.unknown");
-  const objective_name = objective && typeof objective === "object" ? String((objective as Record<string, unknown>)["name"] ?? (objective as Record<string, unknown>)["objective"] ?? unknown) : unknown;
   const rows: [string, string][] = [
     [t("result.cond.recipe"), result.job.recipe],
     [t("result.cond.created"), provenance?.created ?? unknown],
-    [t("result.cond.objective"), objective_name],
+    [t("result.cond.objective"), objective || unknown],
     [t("result.cond.temperature"), temperature?.celsius === undefined ? unknown : `${number(temperature.celsius, 1)} °C`],
     [t("result.cond.calibration"), tWord("result.calibration", evaluation?.calibration ?? (result.calibration ? "in_force" : "none"))],
     [t("result.cond.rule"), evaluation?.rule ? `${tWord("result.rule", evaluation.rule)}${evaluation.probability === undefined ? "" : `, p = ${number(evaluation.probability)}`}` : "–"],

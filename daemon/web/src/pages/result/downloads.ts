@@ -16,7 +16,7 @@ const rank = ({ name }: ResultFile): number => (kFirst.includes(name) ? kFirst.i
 export function Downloads({ result }: { result: ResultJson }) {
   const { job_id } = result.job;
   const files = [...(result.files ?? [])].sort((a, b) => rank(a) - rank(b));
-  const isThere = (name: string): boolean => files.some((file) => file.name === name && (file.state ?? "written") === "written");
+  const isThere = (name: string): boolean => files.some((file) => file.name === name && file.files === undefined && (file.state ?? "written") === "written");
   const missing = kFirst.filter((name) => !isThere(name));
   const address = (name: string): string => `/api/v1/jobs/${encodeURIComponent(job_id)}/files/${encodeURIComponent(name)}`;
   const about = (name: string): string => {
@@ -24,13 +24,17 @@ export function Downloads({ result }: { result: ResultJson }) {
     const text = tWord("result.file", plain.replaceAll(".", "_"));
     return text === plain.replaceAll(".", "_") ? "" : text;
   };
+  // A folder has no state and no bytes to give: it stays on the daemon's disk.
+  const size = ({ files, size_bytes, state = "written", reason }: ResultFile): string =>
+    files !== undefined ? t("result.folder", { n: number(files) })
+    : state === "written" ? sizeText(size_bytes) : `${tWord("result.file_state", state)}${reason ? `: ${reason}` : ""}`;
   return html`<section class="panel downloads" aria-labelledby="downloads-title">
     <h2 id="downloads-title">${t("result.downloads")}</h2>
-    <ul>${files.map(({ name, state = "written", size_bytes, reason }) => html`<li>
-      ${state === "written"
-        ? html`<a class="button" href=${address(name)} download=${name}>${name}</a>`
-        : html`<span class="button is-missing">${name}</span>`}
-      <span class="help">${about(name)} ${state === "written" ? sizeText(size_bytes) : `${tWord("result.file_state", state)}${reason ? `: ${reason}` : ""}`}</span></li>`)}
+    <ul>${files.map((file) => html`<li>
+      ${isThere(file.name)
+        ? html`<a class="button" href=${address(file.name)} download=${file.name}>${file.name}</a>`
+        : html`<span class="button is-missing">${file.name}</span>`}
+      <span class="help">${about(file.name)} ${size(file)}</span></li>`)}
       ${!files.some(({ name }) => name === "result.json") && html`<li><a class="button" href=${address("result.json")} download="result.json">result.json</a>
         <span class="help">${t("result.file.result_json")}</span></li>`}
     </ul>

@@ -56,8 +56,8 @@ export function ProfileFigures({ profile, unit, cursors, kind, fit, onCursors, o
         </select></label>
     </div>
     <dl class="readout" aria-live="polite">
-      ${figure("z 1", z(a), a?.z === null ? "" : "µm")}
-      ${figure("z 2", z(b), b?.z === null ? "" : "µm")}
+      ${figure("z 1", z(a), typeof a?.z === "number" ? "µm" : "")}
+      ${figure("z 2", z(b), typeof b?.z === "number" ? "µm" : "")}
       ${figure("dx", told ? number(told.dx, 3) : "–", unit)}
       ${figure("dz", told ? number(told.dz, 3) : "–", "µm")}
       ${figure(t("result.cursor.angle"), told ? number(told.angle_deg, 3) : "–", "°")}

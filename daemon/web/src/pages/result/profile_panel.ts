@@ -1,6 +1,6 @@
 // The profile tool: a line across the map, its curve, what cursors and fits tell of it.
 import { useEffect, useMemo, useState } from "preact/hooks";
-import { t, tWord } from "../../i18n/i18n.ts";
+import { number, t, tWord } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { sPoints } from "../../result/fitted_geometry.ts";
@@ -24,6 +24,7 @@ interface Props {
   onMarks: (marks: Place[]) => void;  // places of the cursors on the map
 }
 
+const told = ({ x, y }: Place): string => `${number(x, 1)}; ${number(y, 1)}`;
 const lengthOf = ({ from, to }: ProfileLine): number => Math.hypot(to.x - from.x, to.y - from.y);
 
 export function ProfilePanel({ result, map, line, measurement, onLine, onMarks }: Props) {
@@ -56,8 +57,10 @@ export function ProfilePanel({ result, map, line, measurement, onLine, onMarks }
   return html`<section class="panel profile-panel" aria-labelledby="profile-title">
     <h2 id="profile-title">${t("result.profile.title")}</h2>
     <${ProfileEnds} map=${map} line=${line} onLine=${onLine}/>
+    <p class="print-only">${t("result.section", { from: told(line.from), to: told(line.to), width: number(line.width_um, 1) }).replaceAll("µm", map.unit)}</p>
     ${problem && html`<p class="problem" role="status">${tWord("result.profile.problem", problem)}</p>`}
     ${Boolean(error) && html`<p class="problem" role="alert">${messageOf(error)}</p>`}
+    ${profile && profile.height_um.every((z) => z === null) && html`<p role="status">${t("result.profile.all_holes")}</p>`}
     ${profile && html`
       <${ProfilePlot} profile=${profile} unit=${map.unit} cursors=${shown} fit=${fit} section=${measurement?.cross_section ?? null}
         s_points=${measurement ? sPoints(measurement) : []} onCursors=${setCursors}/>

@@ -6,7 +6,7 @@ import "uplot/dist/uPlot.min.css";
 import { number, t, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
-import { theme } from "../../lib/theme.ts";
+import { ground, theme } from "../../lib/theme.ts";
 import type { CrossSection } from "../../result/result_json.ts";
 import { type CircleFit, type LineFit, fittedAt } from "../../surface/profile_fits.ts";
 import type { Profile } from "../../surface/profile_line.ts";
@@ -57,6 +57,7 @@ export function ProfilePlot(props: Props) {
   useEffect(() => {
     const element = holder.current;
     if (!element || width < 50) return;
+    element.dataset["ground"] = ground();
     const text = colourOf(element, "--text");
     const accent = colourOf(element, "--accent");
     const focus = colourOf(element, "--focus");
@@ -161,5 +162,5 @@ export function ProfilePlot(props: Props) {
   }, [profile, width, language, colours, section, fit, unit]);
 
   useEffect(() => plot.current?.redraw(false), [cursors.first, cursors.second]);
-  return html`<div ref=${holder} class="profile-plot" role="img" aria-label=${t("result.profile.plot", { points: profile.distance_um.length })}></div>`;
+  return html`<div ref=${holder} class="profile-plot plot-of" role="img" aria-label=${t("result.profile.plot", { points: profile.distance_um.length })}></div>`;
 }

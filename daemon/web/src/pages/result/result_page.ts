@@ -75,7 +75,8 @@ function Shown({ result, ended_utc }: { result: ResultJson; ended_utc: string })
         </section>
         <section class="panel print-only" aria-hidden="true"><h2>${t("result.measurements")}</h2>
           <${MeasurementTable} result=${result} shown=${null} all onShow=${() => undefined}/></section>
-        <details class="panel" open><summary>${t("result.conditions")}</summary><${Conditions} result=${result}/></details>
+        <details class="panel screen-only" open><summary>${t("result.conditions")}</summary><${Conditions} result=${result}/></details>
+        <section class="panel print-only" aria-hidden="true"><h2>${t("result.conditions")}</h2><${Conditions} result=${result}/></section>
         <${Downloads} result=${result}/>
         <${EvaluateAgain} result=${result}/>
       </div>
@@ -95,7 +96,7 @@ export function ResultPage({ id }: { id: string }) {
   switch (loaded.kind) {
     case "result": return html`<${Shown} key=${loaded.result.job.job_id} result=${loaded.result} ended_utc=${loaded.ended_utc}/>`;
     case "none": return html`<${NoResult} id=${id} status=${loaded.status}/>`;
-    case "problem": return html`<h1>${id}</h1><p class="problem" role="alert">${messageOf(loaded.error)}</p>`;
-    default: return html`<h1>${id}</h1><p role="status">${t("result.coming")}</p>`;
+    case "problem": return html`<h1><bdi>${id}</bdi></h1><p class="problem" role="alert">${messageOf(loaded.error)}</p>`;
+    default: return html`<h1><bdi>${id}</bdi></h1><p role="status">${t("result.coming")}</p>`;
   }
 }

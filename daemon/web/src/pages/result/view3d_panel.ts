@@ -117,7 +117,7 @@ export function View3dPanel({ map, summary }: { map: ResultMap; summary: string 
       onPointerUp=${() => void (held.current = null)} onPointerCancel=${() => void (held.current = null)}>
       ${layers && range && heights_um && width > 0 && html`<${View3dCanvas} coarse=${layers.coarse} fine=${layers.fine} map=${map.size} range=${range} heights_um=${heights_um}
         byTexture=${layers.byTexture} exaggeration=${exaggeration} look=${look} moving=${moving} canvas=${canvas} onMode=${setMode}/>`}
-      ${layers && !range && html`<p role="status">${t("result.map.empty")}</p>`}
+      ${layers && !heights_um && html`<p role="status">${t("result.map.empty")}</p>`}
       <span class="hidden" role="img" aria-label=${summary}></span>
     </div>
     <p>${t(mode === "relief" ? "result.view3d.relief" : "result.view3d.stated", { n: number(exaggeration) })}</p>

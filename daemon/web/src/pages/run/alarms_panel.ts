@@ -27,7 +27,7 @@ function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; m
     <svg width="24" height="24" viewBox="0 0 24 24" fill="currentColor" aria-hidden="true"><path d=${kShapes[alarm.level] ?? kShapes.error}/></svg>
     <div>
       <p><strong>${tWord("run.alarm_level", alarm.level)}</strong> <time datetime=${alarm.time_utc}>${timeForPeople(alarm.time_utc, language)}</time></p>
-      <p class="alarm-text">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</p>
+      <p class="alarm-text" dir="auto">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</p>
       <p class="help">${todo}</p>
     </div>
     ${alarm.acknowledged

@@ -3,14 +3,8 @@ import { number, t, tWord } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { VerdictLabel, verdictWord } from "../../parts/verdict_mark.ts";
 import { decimals, unitForPeople } from "../../run/value_digits.ts";
-import type { ValueRow } from "../../run/value_rows.ts";
+import { type ValueRow, forPeople } from "../../run/value_rows.ts";
 import { LimitBarView, limitsText } from "./limit_bar_view.ts";
-
-// Shares are told in percent.
-function forPeople(row: ValueRow): ValueRow {
-  if (row.measurement !== "" || row.unit !== "1" || row.value === null) return row;
-  return { ...row, value: 100 * row.value, unit: "%" };
-}
 
 function Row({ row: raw }: { row: ValueRow }) {
   const row = forPeople(raw);

@@ -20,7 +20,7 @@ export function TextField({ editor, schema, path, required }: FieldProps) {
   };
   const names = kNamesRegion.has(key) ? namesOf(editor, "regions") : kNamesSurface.has(key) ? ["measured", ...namesOf(editor, "surfaces")] : [];
   const id = idOf(path);
-  const about = { id, value: text, onInput: input, autocomplete: "off", ...describedBy(editor, path) };
+  const about = { id, value: text, onInput: input, autocomplete: "off", dir: "auto", ...describedBy(editor, path) };
   return html`<${FieldFrame} editor=${editor} schema=${schema} path=${path} required=${required}>
     ${(schema.maxLength ?? 0) > 256
       ? html`<textarea rows="2" ...${about}></textarea>`

@@ -37,7 +37,7 @@ export function AlarmJournal() {
           ${shown.map((alarm) => html`<tr key=${alarm.number}>
             <td class="time">${clockTime(alarm.time_utc)}</td>
             <td class=${`level ${alarm.level}`}><span aria-hidden="true">${kMarks[alarm.level] ?? "△"}</span> ${tWord("setup.level", alarm.level)}</td>
-            <td class="long">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</td>
+            <td class="long" dir="auto">${alarm.text}${alarm.count > 1 && ` (× ${alarm.count})`}</td>
             <td>${alarm.acknowledged ? t("setup.journal.acknowledged") : html`<button type="button" disabled=${why !== "" || running} title=${why}
               aria-label=${t("setup.journal.acknowledge_of", { number: alarm.number })}
               onClick=${() => void run(() => call("alarm.acknowledge", { number: alarm.number, time_utc: alarm.time_utc }))}>${t("setup.journal.acknowledge")}</button>`}</td>

@@ -3,6 +3,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { t, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { place } from "../../../lib/router.ts";
+import { moment } from "../../../lib/wake.ts";
 import { messageOf } from "../../../parts/message_of.ts";
 import { RpcError, call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
@@ -61,6 +62,7 @@ export function JogButtons() {
     },
     setTimer: (work, after_ms) => setTimeout(work, after_ms),
     clearTimer: (timer) => clearTimeout(timer as number),
+    now_ms: () => moment().clock_ms,
   }), []);
   useEffect(() => endsWith(hold), [hold]);
   // Control taken away, a job begun, no such speed: what may not be begun may not go on.

@@ -9,17 +9,20 @@ export interface JogPort {
   ended(error: unknown): void;           // by an error; undefined = by the person
   setTimer(call: () => void, after_ms: number): unknown;
   clearTimer(timer: unknown): void;
+  now_ms(): number;  // of a clock that goes on while this computer sleeps
 }
 
 export const kRepeat_ms = 100;
 export const kUntil_ms = 150;
 const kTryAgain_ms = 25;  // a picture may just be taken
+const kLongest_ms = 1000;  // between two repeats
 
 // One press, from the hand's coming to its going.
 interface Press {
   direction: Direction;
   abort: AbortController;
   timer: unknown;
+  last_ms: number;   // when it was repeated, or begun
   begun: boolean;
   waiting: boolean;  // for an answer
   due: boolean;      // a repeat was due while an answer was awaited
@@ -39,7 +42,7 @@ export class JogHold {
 
   begin(direction: Direction): void {
     this.end();
-    this.#press = { direction, abort: new AbortController(), timer: null, begun: false, waiting: false, due: false };
+    this.#press = { direction, abort: new AbortController(), timer: null, last_ms: this.#port.now_ms(), begun: false, waiting: false, due: false };
     this.#repeat(this.#press);
   }
 
@@ -55,6 +58,14 @@ export class JogHold {
   }
 
   #repeat(press: Press): void {
+    // After a sleep, or where the page stood still, nobody knows whether the hand is still there: the stage has halted, and
+    // a repeat would be a new motion.
+    const now_ms = this.#port.now_ms();
+    if (now_ms - press.last_ms > kLongest_ms) {
+      this.end();
+      return;
+    }
+    press.last_ms = now_ms;
     this.#again(press, kRepeat_ms);
     // Never two under way: on a slow line they would pile up, and arrive when nobody holds the button.
     press.due = press.waiting;

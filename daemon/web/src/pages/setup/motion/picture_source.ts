@@ -1,5 +1,5 @@
 // Pictures for the eye, one after another. Who operates has one taken; who looks on sees what the daemon shows anyhow.
-import { call, headers } from "../../../rpc/rpc.ts";
+import { ask, call } from "../../../rpc/rpc.ts";
 import type { LightParams } from "./light.ts";
 
 export interface Picture {
@@ -26,7 +26,7 @@ export async function takePicture(params: LightParams, signal: AbortSignal): Pro
 
 // Null: none within the daemon's patience.
 export async function awaitPicture(after: number, signal: AbortSignal): Promise<Picture | null> {
-  const response = await fetch(`/api/v1/preview.jpg?after=${after}`, { signal, cache: "no-store", headers: headers() });
+  const response = await ask(`/api/v1/preview.jpg?after=${after}`, { signal, cache: "no-store" });
   if (response.status === 204) return null;
   if (!response.ok) throw new Error(`HTTP ${response.status}`);
   const told = (name: string): number | null => {

@@ -38,7 +38,7 @@ export function JobIdsInput({ id, ids, known, describedBy, change }: Props) {
       <ul class="choices scroll tall" tabindex="0" aria-label=${t("setup.jobs.choose")}>
         ${jobs.map((job) => html`<li key=${job.job_id}><label class="check"><input type="checkbox" checked=${ids.includes(job.job_id)}
           onChange=${(event: Event) => change(withId(ids, job.job_id, (event.target as HTMLInputElement).checked))}/>
-          <span>${job.part_id} · ${job.recipe} · ${clockTime(job.ended_utc)}<br/><small>${job.job_id}</small></span></label></li>`)}
+          <span><bdi>${job.part_id}</bdi> · ${job.recipe} · ${clockTime(job.ended_utc)}<br/><small>${job.job_id}</small></span></label></li>`)}
       </ul>
       <p class="buttons"><button type="button" onClick=${addAll}>${t("setup.jobs.all")}</button>
         <button type="button" onClick=${() => change([])}>${t("setup.jobs.clear")}</button></p>

@@ -18,7 +18,7 @@ export function StudyList({ studies, broken, open }: Props) {
       <tr><th scope="col">${t("setup.studies.id")}</th><th scope="col">${t("setup.studies.kind")}</th><th scope="col">${t("setup.journal.time")}</th><th scope="col">${t("setup.studies.person")}</th><th scope="col">${t("setup.studies.state")}</th></tr>
       ${studies.map((study) => html`<tr key=${study.id}>
         <td><button type="button" onClick=${() => open(study.id)} aria-label=${t("setup.studies.open", { id: study.id })}>${study.id}</button></td>
-        <td>${tWord("setup.kind", study.kind)}</td><td class="time">${clockTime(study.time)}</td><td class="long">${study.person}</td>
+        <td>${tWord("setup.kind", study.kind)}</td><td class="time">${clockTime(study.time)}</td><td class="long" dir="auto">${study.person}</td>
         <td>${study.warnings > 0 && t("setup.studies.warnings", { count: study.warnings })} ${study.calibration === undefined ? "" : study.calibration === null ? t("setup.studies.proposed") : t("setup.studies.accepted", { version: study.calibration })}</td>
       </tr>`)}
     </table></div>`}
