@@ -77,10 +77,10 @@ def complete(client, rig, seq):
 
 def main():
     build = sys.argv[1]
-    standards = (15, 100_000, 2000, 400, 2)
+    standards = (15, 100_000, 2000, 800, 2)
     seconds, results, rate, slices, jobs = (int(sys.argv[i]) if len(sys.argv) > i else standard
                                             for i, standard in enumerate(standards, 2))
-    with Rig(build, {"part": recipe(start_um=-100, step_um=1, slices=slices)}) as rig:
+    with Rig(build, {"part": recipe(start_um=-100, step_um=0.5, slices=slices)}) as rig:
         rig.settings["rpc.max_connections"] = 64
         client = rig.start()
         client.ask("job.start", seq=1, part_id="part", recipe="part")
