@@ -25,6 +25,13 @@ using DescribeFields = std::function<void(Fields&)>;
 /// The names of the described parameters, in their order.
 [[nodiscard]] std::vector<std::string> param_names(const DescribeFields& describe);
 
+/// The same, made once: for each poll it would take longer than all else of it.
+template <void (*kDescribe)(Fields&)>
+[[nodiscard]] const std::vector<std::string>& names_in() {
+  static const std::vector<std::string> names = param_names(kDescribe);
+  return names;
+}
+
 /// The parameters by name, every one as described; whole numbers as integers, however they were written. given: an
 /// object, a list in the order of the description, or null. Throws ProtocolError that names the method, the parameter
 /// and what is accepted.

@@ -51,15 +51,15 @@ ReplyFormat reply_format(std::string_view name) {
   return name == "full" ? ReplyFormat::kFull : ReplyFormat::kComplete;
 }
 
-void describe_fields_param(Fields& described, std::vector<std::string>& fields, const DescribeFields& result) {
-  described.choices("fields", fields, param_names(result),
+void describe_fields_param(Fields& described, std::vector<std::string>& fields, const std::vector<std::string>& keys) {
+  described.choices("fields", fields, keys,
                     "only these keys of the result, in this order, as far as it has them; empty = all of the format");
 }
 
-void ReplyFormParams::describe(Fields& described, const DescribeFields& result) {
+void ReplyFormParams::describe(Fields& described, const std::vector<std::string>& keys) {
   described.choice("format", format, {"full", "compact"},
                    "compact: the keys that a PLC polls, at most 440 bytes; full: at most 1400 bytes");
-  describe_fields_param(described, fields, result);
+  describe_fields_param(described, fields, keys);
 }
 
 ReplyForm ReplyFormParams::form() const { return {reply_format(format), fields}; }

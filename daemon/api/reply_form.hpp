@@ -31,16 +31,16 @@ struct ReplyForm {
   std::vector<std::string> fields{};  ///< these keys, in this order; empty = the format's own
 };
 
-/// The parameters "format" and "fields" of a method, whose result `result` describes.
+/// The parameters "format" and "fields" of a method, whose result has these keys (names_in()).
 struct ReplyFormParams {
   std::string format = "full";
   std::vector<std::string> fields{};
 
-  void describe(Fields& described, const DescribeFields& result);
+  void describe(Fields& described, const std::vector<std::string>& keys);
   [[nodiscard]] ReplyForm form() const;
 };
-/// Adds "fields" alone. result: describes the keys that are accepted.
-void describe_fields_param(Fields& described, std::vector<std::string>& fields, const DescribeFields& result);
+/// Adds "fields" alone. keys: those that are accepted.
+void describe_fields_param(Fields& described, std::vector<std::string>& fields, const std::vector<std::string>& keys);
 [[nodiscard]] ReplyFormat reply_format(std::string_view name);
 
 /// The keys that the form asks for. all: every key; compact: keys of the compact form. Within its length: what does not

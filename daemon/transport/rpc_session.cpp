@@ -28,6 +28,9 @@ constexpr int kMostLooks = 4;
 constexpr std::string_view kTerminators("\n\r\0", 3);
 constexpr std::chrono::milliseconds kLongestLineEnd{3000};  // from a text to its end: networks repeat what they lose
 constexpr std::chrono::seconds kRefusalGrace{1};            // for a refused client to read the reason
+// What a refused client goes on sending is dropped no faster: as fast as it comes would take the processor from others.
+constexpr std::size_t kDropChunk_bytes = std::size_t{64} << 10U;
+constexpr std::chrono::milliseconds kDropPause{10};
 
 }  // namespace
 
@@ -51,7 +54,8 @@ RpcSession::RpcSession(const RpcSessionHost& host, Socket socket, Caller caller)
       caller_(std::move(caller)),
       idle_(host.context),
       wait_(host.context),
-      line_end_(host.context) {
+      line_end_(host.context),
+      drop_(host.context) {
   caller_.longest_reply_bytes = kLongestReply_bytes;
 }
 
@@ -91,6 +95,7 @@ void RpcSession::close() {
   idle_.cancel();
   wait_.cancel();
   line_end_.cancel();
+  drop_.cancel();
   socket_.shutdown(Socket::shutdown_both, ignored);
   socket_.close(ignored);
   host_.on_close(shared_from_this());
@@ -114,13 +119,25 @@ void RpcSession::read() {
   socket_.async_read_some(asio::buffer(chunk_), [self = shared_from_this()](ErrorCodeOf error, std::size_t count) {
     if (error == asio::error::eof && !self->refused_) return self->half_close();
     if (error) return self->close();
-    // Input after a refusal is read and dropped: closing with unread input would discard the refusal.
     if (!self->refused_) {
       self->receive({self->chunk_.data(), count});
       self->watches_end_ = false;
       self->process();
     }
+    if (self->refused_) return self->drop();
     self->read();
+  });
+}
+
+void RpcSession::drop() {
+  drop_.expires_after(kDropPause);
+  drop_.async_wait([self = shared_from_this()](ErrorCodeOf stopped) {
+    if (stopped) return;
+    thread_local std::array<char, kDropChunk_bytes> dropped;  // of all sessions: nobody looks at it
+    self->socket_.async_read_some(asio::buffer(dropped), [self](ErrorCodeOf error, std::size_t) {
+      if (error) return self->close();
+      self->drop();
+    });
   });
 }
 

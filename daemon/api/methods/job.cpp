@@ -53,7 +53,7 @@ struct WaitParams {
     fields.choice("until", until, {"acquired", "done"}, "acquired = the part may be moved");
     fields.integer64("timeout_ms", timeout_ms, {0, kLongestWait_ms}, "then the job's status comes as it is");
     client.describe(fields);
-    form.describe(fields, describe_job_status);
+    form.describe(fields, names_in<describe_job_status>());
   }
 };
 

@@ -44,7 +44,7 @@ JobKey JobKeyParams::key(const ClientParam& client) const {
 void JobStatusParams::describe(Fields& fields) {
   job.describe(fields);
   client.describe(fields);
-  form.describe(fields, describe_job_status);
+  form.describe(fields, names_in<describe_job_status>());
 }
 
 void OneJobParams::describe(Fields& fields) {

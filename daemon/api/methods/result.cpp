@@ -23,7 +23,7 @@ struct GetParams {
                      "compact: at most 440 bytes; full: at most 1400 bytes, and the warnings; complete: result.json, "
                      "of any length");
     client.describe(described);
-    describe_fields_param(described, fields, describe_result);
+    describe_fields_param(described, fields, names_in<describe_result>());
   }
 };
 

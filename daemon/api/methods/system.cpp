@@ -26,7 +26,7 @@ struct StateParams {
 
   void describe(Fields& fields) {
     client.describe(fields);
-    form.describe(fields, describe_machine_status);
+    form.describe(fields, names_in<describe_machine_status>());
   }
 };
 
