@@ -103,3 +103,19 @@ test("control that ran out in a sleep is not taken again without a press; a shor
     unwatch();
   }
 });
+
+test("the first timer after a sleep does not renew control that ran out, whoever notices the sleep first", async () => {
+  const now = Date.now;
+  try {
+    await takeControl(false);  // nothing else watches for a sleep here
+    Date.now = () => now() + 60000;
+    await later();
+    assert.deepEqual(asked, ["control.acquire", "control.acquire"], "a hidden tab, whose timers come once a minute");
+    Date.now = () => now() + 60000 + 70000;
+    await later();
+    assert.equal(isHeldHere.get(), false);
+    assert.equal(asked.length, 2);
+  } finally {
+    Date.now = now;
+  }
+});

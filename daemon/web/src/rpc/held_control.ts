@@ -1,6 +1,6 @@
 // Control that this tab has taken: renewed on whatever page, until it is given back, taken away, or the tab closes.
 import { createStore } from "../lib/store.ts";
-import { onWake } from "../lib/wake.ts";
+import { moment, onWake } from "../lib/wake.ts";
 import { type Topics, topics } from "../live/live.ts";
 import { ownerName } from "./owner_name.ts";
 import { RpcError, call } from "./rpc.ts";
@@ -8,6 +8,7 @@ import { session } from "./session.ts";
 
 const kLease_s = 60;
 const kRenew_ms = 20000;
+const kLate_ms = 5000;  // hidden tabs have their timers once a minute, which is no sleep
 
 export const isHeldHere = createStore(false);
 // Why the last renewal failed; null = it did not.
@@ -36,7 +37,16 @@ export async function takeControl(force: boolean): Promise<void> {
   renewalFault.set(null);
   clearInterval(timer);
   isHeldHere.set(true);
+  let before_ms = moment().clock_ms;
   timer = setInterval(() => {
+    const now_ms = moment().clock_ms;
+    const since_ms = now_ms - before_ms;
+    before_ms = now_ms;
+    // Whatever the timers do in a sleep, and whichever of them comes first after it: control that ran out is not taken again.
+    if (since_ms > 1000 * kLease_s + kLate_ms) {
+      letGo();
+      return;
+    }
     acquire(false).then(() => renewalFault.set(null), (error: unknown) => {
       renewalFault.set(error);
       if (isLost(error)) letGo();
