@@ -3,6 +3,7 @@
 /// The settings in force, the stream of frames, and the camera's clock. Inside the driver only: this header brings in
 /// Aravis.
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -22,8 +23,8 @@
 namespace fvd {
 
 /// Acquires from the first configure() on. The device's thread changes the object; the thread that uses the camera
-/// reads it after that command has ended. Only renew_clock() may run at the same time as other functions, but not as
-/// clock_due().
+/// reads it after that command has ended. Only renew_clock() may run at the same time as other functions. A configure()
+/// whose caller was interrupted may still run: only clock_due() may be called meanwhile.
 class Acquisition {
  public:
   /// The referenced objects outlive the acquisition. clock_renewal: age at which the offset of the camera's clock is
@@ -43,7 +44,7 @@ class Acquisition {
   /// Latches the camera's clock if a latch is due. context: the device's thread.
   void renew_clock();
 
-  /// Whether a latch is due. context: while no renew_clock() runs.
+  /// Whether a latch is due; while one is being made the answer is of before. context: thread-safe.
   [[nodiscard]] bool clock_due() const { return latches_ && clock_.due(HostClock::now()); }
   /// The time of a frame cannot be right: the next clock_due() says so.
   void doubt_clock() { clock_.doubt(); }
@@ -86,7 +87,7 @@ class Acquisition {
   std::optional<FrameBuffers> frames_;
   HostTime configured_{};
   std::uint64_t ignored_packets_ = 0;  // by Aravis, up to the last good frame
-  bool latches_ = true;                // the camera supports timestamp latching; renew_clock() writes it
+  std::atomic<bool> latches_{true};    // the camera supports timestamp latching; renew_clock() writes it
 };
 
 }  // namespace fvd
