@@ -23,8 +23,8 @@ stop_programs() {
 }
 
 station_begin() {
-  build=$1
-  mkdir -p "$build/demo"
+  mkdir -p "$1/demo"
+  build=$(cd "$1" && pwd)  # fvd takes a path that is not whole for one beside its configuration
   work=$(mktemp -d "$build/demo/run-XXXXXX")
   trap 'trap "" INT TERM HUP; stop_programs' EXIT  # a second Ctrl-C does not cut the end short
   trap 'exit 130' INT TERM HUP

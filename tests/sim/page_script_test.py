@@ -25,10 +25,11 @@ def expect(condition, what):
 
 
 def page_of(folder, world):
-    """The script, beside a folder that looks like the build: what it leaves goes away with the folder."""
+    """The script, beside a folder that looks like the build: what it leaves goes away with the folder. It is named as
+    people name it, from where they are."""
     return subprocess.Popen(
-        [os.path.join(ROOT, "sim/page.sh"), folder, world, os.path.join(ROOT, "sim/plants/chapter.json")],
-        text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+        [os.path.join(ROOT, "sim/page.sh"), os.path.basename(folder), world, os.path.join(ROOT, "sim/plants/chapter.json")],
+        cwd=os.path.dirname(folder), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
 
 
@@ -57,7 +58,8 @@ def role_by(address):
 
 
 def still_running(folder):
-    """Command lines that name the folder."""
+    """Command lines that name the folder, from wherever."""
+    folder = os.path.basename(folder)
     lines = []
     for pid in filter(str.isdigit, os.listdir("/proc")):
         try:
