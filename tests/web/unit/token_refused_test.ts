@@ -48,6 +48,19 @@ test("a call that is refused makes the tab forget its token, and say so", async 
   unwatch();
 });
 
+test("where fvd says nothing without a token, the tab is nobody, and not who it was", async () => {
+  const unwatch = watchRefusals();
+  setToken("fvd-withdrawn");
+  session.set({ who: "token anna", role: "operate" });
+  hold = Promise.resolve().then(() => {
+    hold = new Promise(() => undefined);  // the next one is not answered
+  });
+  await assert.rejects(call("system.state", {}), isRefusal);
+  await until(() => asked.length === 2);
+  assert.deepEqual(session.get(), { who: "", role: "none" });
+  unwatch();
+});
+
 test("so does a batch of looks, and whatever is fetched", async () => {
   setToken("fvd-withdrawn");
   const both = await Promise.allSettled([look("system.state", {}), look("control.state", {})]);

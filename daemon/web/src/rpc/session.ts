@@ -30,5 +30,7 @@ export async function logOut(): Promise<void> {
 // A token that was withdrawn meanwhile is forgotten with the first call that it is refused for: then the tab looks on as
 // one without. Call the result to end it.
 export const watchRefusals = (): (() => void) => tokenWasRefused.watch(() => {
-  if (tokenWasRefused.get()) void lookWhoIAm().catch(() => undefined);  // asked again after the next reconnection
+  if (!tokenWasRefused.get()) return;
+  session.set({ who: "", role: "none" });  // until fvd says more: it may say nothing to somebody without a token
+  void lookWhoIAm().catch(() => undefined);  // asked again after the next reconnection
 });
