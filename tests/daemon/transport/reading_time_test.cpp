@@ -10,15 +10,13 @@
 namespace fvd {
 namespace {
 
-using std::chrono::seconds;
-
 TEST(ReadingTime, IsThatOfAPieceForEachPieceThatIsBegun) {
   constexpr std::size_t kPieceOf_bytes = std::size_t{256} << 10U;
-  EXPECT_EQ(reading_time(0), seconds(10)) << "a header alone";
-  EXPECT_EQ(reading_time(1), seconds(10));
-  EXPECT_EQ(reading_time(kPieceOf_bytes), seconds(10));
-  EXPECT_EQ(reading_time(kPieceOf_bytes + 1), seconds(20));
-  EXPECT_EQ(reading_time(16 * kPieceOf_bytes), seconds(160)) << "the largest map that is sent whole";
+  EXPECT_EQ(reading_time(0), std::chrono::seconds(10)) << "a header alone";
+  EXPECT_EQ(reading_time(1), std::chrono::seconds(10));
+  EXPECT_EQ(reading_time(kPieceOf_bytes), std::chrono::seconds(10));
+  EXPECT_EQ(reading_time(kPieceOf_bytes + 1), std::chrono::seconds(20));
+  EXPECT_EQ(reading_time(16 * kPieceOf_bytes), std::chrono::seconds(160)) << "the largest map that is sent whole";
 }
 
 }  // namespace
