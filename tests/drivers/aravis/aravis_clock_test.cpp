@@ -79,7 +79,10 @@ TEST_F(AnAravisCamera, MeasuresItsClockWhileNothingIsAskedOfIt) {
   const auto camera = open(1500, std::chrono::milliseconds(1));
   camera->configure(settings());
   // More commands than its heartbeats are in the time.
-  fault({.fault = CameraFault::kClockStep, .on = sim::CameraEvent::kCommand, .after = 100});
+  fault({.fault = CameraFault::kClockStep,
+         .on = sim::CameraEvent::kCommand,
+         .after = 100,
+         .step = std::chrono::milliseconds(1)});
   const HostTime deadline = HostClock::now() + std::chrono::seconds(20);
   while (server_->faults().unconsumed() > 0 && HostClock::now() < deadline) camera->look_after();
   EXPECT_EQ(server_->faults().unconsumed(), 0U);
