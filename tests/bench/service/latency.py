@@ -13,6 +13,7 @@ import time
 
 from rig import Answer, Client, Rig, percentile, recipe, wait_for
 
+BUSY = 1002
 NO_CONTROL = 1003
 ROW_BYTES = 28 << 10  # seven pages of the write-ahead log
 
@@ -98,6 +99,16 @@ def stop(build, rounds):
     return {"stop_without_lease_ms": round(percentile(to_still_ms, 0.99), 1), "stops": rounds}
 
 
+def hold(client, motions, direction):
+    """Holds a jog's key, 100 ms between repeats, as a page does; the time of the last repeat, and 100 ms have gone since."""
+    for _ in range(4):
+        last = client.send("stage.jog", direction=direction, speed_um_per_s=1000)
+        client.receive()
+        motions.await_line("moving", last - 0.5)
+        time.sleep(max(0.0, last + 0.1 - time.monotonic()))
+    return last
+
+
 def jog(build, rounds):
     """From the last repeat to the true standstill, at the highest speed of a jog."""
     overruns_ms = []
@@ -105,20 +116,23 @@ def jog(build, rounds):
         client = rig.start()
         motions = rig.motions()
         client.ask("stage.home")
-        for i in range(rounds):
+        for i in range(3 * rounds):
+            if len(overruns_ms) == rounds:
+                break
             client.ask("stage.move", z_um=-450 if i % 2 == 0 else 450)
-            direction = "up" if i % 2 == 0 else "down"
-            for _ in range(4):  # 100 ms apart, as a page repeats it while a key is held
-                last = client.send("stage.jog", direction=direction, speed_um_per_s=1000)
-                client.receive()
-                motions.await_line("moving", last - 0.5)
-                time.sleep(max(0.0, last + 0.1 - time.monotonic()))
+            try:
+                last = hold(client, motions, "up" if i % 2 == 0 else "down")
+            except Answer as error:
+                if error.code != BUSY:
+                    raise
+                wait_for(lambda: client.ask("system.state")["ready"], what="ready")
+                continue  # this client came too late on a busy machine: the jog had ended, and the stage braked
             # The last one was sent 100 ms ago.
             still = motions.await_line("still", last)
             overruns_ms.append(1000 * (still - last))
             wait_for(lambda: client.ask("system.state")["ready"], what="ready")
-    print(f"jog: overrun median {percentile(overruns_ms, 0.5):.1f} ms of {rounds}")
-    return {"jog_overrun_ms": round(max(overruns_ms), 1), "jogs": rounds}
+    print(f"jog: overrun median {percentile(overruns_ms, 0.5):.1f} ms of {len(overruns_ms)}")
+    return {"jog_overrun_ms": round(max(overruns_ms), 1), "jogs": len(overruns_ms)}
 
 
 def main():

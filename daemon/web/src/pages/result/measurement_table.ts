@@ -61,7 +61,7 @@ function OneMeasurement({ name, measurement, result, isShown, all, onShow }: One
   const shown = all || isOpen || judged.length === 0 ? rows : judged;
   return html`<tbody>
     <tr class="measurement-head"><th colspan="4" scope="rowgroup">${name} <span class="help">${tWord("result.kind_of", measurement.kind)}</span>
-        ${measurement.reason && html`<span class="problem">${measurement.reason}</span>`}</th>
+        ${measurement.reason && html` <span class="problem">${measurement.reason}</span>`}</th>
       <td>${measurement.verdict && html`<${VerdictLabel} verdict=${measurement.verdict}/>`}</td></tr>
     ${shown.map(([key, value]) => html`<${ValueRow} name=${nameOf(key)} value=${value}/>`)}
     ${!all && html`<tr><td colspan="5" class="measurement-buttons">
