@@ -29,6 +29,11 @@ bool is_view(std::string_view path) {
   return false;
 }
 
+/// Whether somebody may have typed it for a view: no file, and nothing that programs ask for.
+bool may_be_mistyped(std::string_view path) {
+  return path.find('.') == std::string_view::npos && !path.starts_with("/api") && !path.starts_with("/assets");
+}
+
 /// No style and no script: none may be inline.
 constexpr std::string_view kNoPage = R"(<!doctype html>
 <html lang="en">
@@ -79,11 +84,19 @@ ResourceAnswer found(const PageFile& file, bool takes_gzip) {
 ResourceAnswer PageResource::get(const ResourceRequest& request) {
   const bool wants_view = is_view(request.path);
   if (files_.empty() && wants_view) return no_page();
-  if (!wants_view && !request.path.starts_with(kAssets) && request.path != kIcon) return missing();
-  const std::string_view path = wants_view ? kFrame : std::string_view(request.path);
+  const bool is_mistyped = !wants_view && may_be_mistyped(request.path);
+  if (!wants_view && !is_mistyped && !request.path.starts_with(kAssets) && request.path != kIcon) return missing();
+  const std::string_view path = wants_view || is_mistyped ? kFrame : std::string_view(request.path);
   const auto file =
       std::find_if(files_.begin(), files_.end(), [path](const PageFile& one) { return one.path == path; });
-  return file == files_.end() ? missing() : found(*file, request.takes_gzip);
+  if (file == files_.end()) return missing();
+  ResourceAnswer answer = found(*file, request.takes_gzip);
+  if (is_mistyped) {
+    // The page says so, with the way back.
+    answer.status = 404;
+    std::erase_if(answer.fields, [](const auto& field) { return field.first == "ETag"; });
+  }
+  return answer;
 }
 
 }  // namespace fvd

@@ -55,32 +55,25 @@ TEST_F(APage, ShowsItsFrameForEveryView) {
 }
 
 TEST_F(APage, HasNothingElse) {
-  for (const char* path : {"/index.html",
-                           "/jobs/",
-                           "/jobs/7/height",
-                           "/recipes/",
-                           "/recipes/a/b",
-                           "/setup/",
-                           "/setup/a",
-                           "/assets",
-                           "/assets/",
-                           "/assets/main.js",
-                           "/assets/main-1a2b.js/",
-                           "/assets/main-1a2b.js.gz",
-                           "/assets/../index.html",
-                           "/icon",
-                           "/favicon.ico",
-                           "/api/v1/events",
-                           "/api",
-                           "/main",
-                           "",
-                           "//",
-                           "/Jobs",
-                           "/etc/passwd"}) {
+  for (const char* path :
+       {"/index.html", "/assets", "/assets/", "/assets/main.js", "/assets/main-1a2b.js/", "/assets/main-1a2b.js.gz",
+        "/assets/../index.html", "/favicon.ico", "/api/v1/events", "/api", "/jobs/../index.html"}) {
     const ResourceAnswer answer = ask(page_, path);
     EXPECT_EQ(answer.status, 404) << path;
     EXPECT_EQ(nlohmann::json::parse(answer.body)["error"], "not_found");
     EXPECT_EQ(fields_of(answer)["Content-Type"], "application/json");
+  }
+}
+
+TEST_F(APage, TellsByItselfWhatIsMistyped) {
+  for (const char* path : {"/jobs/", "/jobs/7/height", "/recipes/", "/recipes/a/b", "/setup/", "/setup/a", "/icon",
+                           "/main", "", "//", "/Jobs", "/etc/passwd"}) {
+    const ResourceAnswer answer = ask(page_, path);
+    EXPECT_EQ(answer.status, 404) << path;
+    EXPECT_EQ(answer.body, frame_) << path;
+    auto fields = fields_of(answer);
+    EXPECT_EQ(fields["Content-Type"], "text/html; charset=utf-8");
+    EXPECT_EQ(fields.count("ETag"), 0U) << "it is no version of the frame";
   }
 }
 

@@ -51,7 +51,7 @@ export function AlarmsPanel() {
   return html`<section class=${`panel alarms ${waiting > 0 ? "waiting" : ""}`} aria-labelledby="alarms-title">
     <h2 id="alarms-title">${t("run.alarms")} ${waiting > 0 && html`<span class="tag">${t("run.alarms_waiting", { count: waiting })}</span>`}</h2>
     ${list.length === 0 && html`<p class="help">${t("run.no_alarms")}</p>`}
-    <div role="alert"><ul class="alarm-list">${list.map((alarm) => html`<${AlarmRow} key=${alarm.number} alarm=${alarm} mayAcknowledge=${mayAs(role, "operate")} acknowledge=${acknowledge}/>`)}</ul></div>
+    <div role="alert"><ul class="alarm-list" tabindex="0">${list.map((alarm) => html`<${AlarmRow} key=${alarm.number} alarm=${alarm} mayAcknowledge=${mayAs(role, "operate")} acknowledge=${acknowledge}/>`)}</ul></div>
     ${waiting > 0 && !mayAs(role, "operate") && html`<p class="help">${t("run.why.no_role")}</p>`}
     ${problem && html`<p class="problem" role="alert">${problem}</p>`}
   </section>`;

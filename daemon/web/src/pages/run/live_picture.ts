@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { number, t, tWord, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
-import { topics } from "../../live/live.ts";
+import { link, topics } from "../../live/live.ts";
 import { framed } from "../../parts/framed.ts";
 import { type Marks, paintMarks } from "../../run/focus_peaking.ts";
 import { type Picture, type PreviewStatus, watchPreview } from "../../run/preview_poll.ts";
@@ -13,6 +13,9 @@ import { useRecipeId } from "./use_machine.ts";
 import { useRecipe } from "./use_recipe.ts";
 
 type Told = Omit<Picture, "bitmap">;
+
+// A browser has six connections: state, values and map come first, and a picture may be that much later.
+const kAfterFirstView_ms = 200;
 
 function paint(canvas: HTMLCanvasElement, bitmap: ImageBitmap, marks: Marks): void {
   if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
@@ -38,18 +41,24 @@ function usePreview(marks: Marks) {
   const draw = (): void => {
     if (canvas.current && newest.current) paint(canvas.current, newest.current, wanted.current);
   };
+  const isLinked = useStore(link).status !== "never";
   useEffect(() => {
-    const end = watchPreview(({ bitmap, ...rest }) => {
-      newest.current?.close();
-      newest.current = bitmap;
-      setTold(rest);
-      draw();
-    }, setStatus);
+    if (!isLinked) return;
+    let end = (): void => undefined;
+    const begin = setTimeout(() => {
+      end = watchPreview(({ bitmap, ...rest }) => {
+        newest.current?.close();
+        newest.current = bitmap;
+        setTold(rest);
+        draw();
+      }, setStatus);
+    }, kAfterFirstView_ms);
     return () => {
+      clearTimeout(begin);
       end();
       newest.current?.close();
     };
-  }, []);
+  }, [isLinked]);
   useEffect(() => {
     wanted.current = marks;
     draw();
