@@ -46,8 +46,8 @@ def make_old_package(new, old_build, folder):
     (tree / "usr/lib/systemd/system/fvd.service").write_text(unit.replace("@CMAKE_INSTALL_FULL_SBINDIR@", "/usr/sbin"),
                                                              encoding="utf-8")
     (tree / "usr/lib/sysusers.d/fvd.conf").unlink()
-    (tree / "usr/lib/tmpfiles.d/fvd.conf").unlink()
     if old_build:
+        (tree / "usr/lib/tmpfiles.d/fvd.conf").unlink()  # today's programs need the folder that it makes
         for program, place in (("daemon/fvd", "sbin/fvd"), ("daemon/ctl/fvdctl", "bin/fvdctl"), ("sim/fvd-sim", "bin/fvd-sim")):
             shutil.copy(old_build / program, tree / "usr" / place)
             run("strip", str(tree / "usr" / place))
