@@ -34,7 +34,7 @@ function Content() {
   if (job?.["id"]) return html`<${ResultPage} key=${job["id"]} id=${job["id"]}/>`;
   const recipe = match("/recipes/:id", path);
   if (recipe?.["id"]) return html`<${RecipePage} key=${recipe["id"]} id=${recipe["id"]}/>`;
-  return html`<p>${t("page.missing")} <a href="/">${t("page.back")}</a></p>`;
+  return html`<h1>${t("page.missing")}</h1><p><a href="/">${t("page.back")}</a></p>`;
 }
 
 export function App() {
