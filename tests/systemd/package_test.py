@@ -43,6 +43,8 @@ def make_old_package(new, old_build, folder):
     tree = folder / "old"
     run("dpkg-deb", "-R", str(new), str(tree))
     unit = (HERE / "fvd-0.4.0.service.in").read_text(encoding="utf-8")
+    if not old_build:  # today's programs lock the drive
+        unit = unit.replace("[Service]\n", "[Service]\nReadWritePaths=/run/lock/fvd\n")
     (tree / "usr/lib/systemd/system/fvd.service").write_text(unit.replace("@CMAKE_INSTALL_FULL_SBINDIR@", "/usr/sbin"),
                                                              encoding="utf-8")
     (tree / "usr/lib/sysusers.d/fvd.conf").unlink()
