@@ -144,6 +144,8 @@ class Life:
         if not self.has_old_programs:
             self.make_database_older()
         self.dpkg("-i", "/packages/new.deb")
+        if not self.has_old_programs:  # it was stopped for its database, and an upgrade starts nothing that was stopped
+            self.machine.run("systemctl", "start", "fvd")
         self.wait("the new daemon is ready", lambda: self.state().get("epoch", 0) > before["epoch"] and self.state()["ready"])
         assert self.show("User") == "fvd"
         if not self.has_old_programs:
