@@ -100,7 +100,7 @@ def main():
                 if client.ask("job.status", seq=seq)["acquired"]:
                     sys.exit(f"the scan ended before the {seconds} s of polls: give it more slices than {slices}")
                 complete(client, rig, seq)
-                result = client.ask("result.get", seq=seq, fields=["frames", "slices", "times"])
+                result = client.ask("result.get", seq=seq, format="full", fields=["frames", "slices", "times"])
                 late += late_slices(result)
                 print(f"poll: {figures[-1]}, scan {result['times']['scan_ms']:.0f} ms")
         rig.stop()
