@@ -111,7 +111,7 @@ def hold(client, motions, direction):
 
 def jog(build, rounds):
     """From the last repeat to the true standstill, at the highest speed of a jog."""
-    overruns_ms = []
+    overruns_ms, late = [], 0
     with Rig(build) as rig:
         client = rig.start()
         motions = rig.motions()
@@ -126,12 +126,13 @@ def jog(build, rounds):
                 if error.code != BUSY:
                     raise
                 wait_for(lambda: client.ask("system.state")["ready"], what="ready")
+                late += 1
                 continue  # this client came too late on a busy machine: the jog had ended, and the stage braked
             # The last one was sent 100 ms ago.
             still = motions.await_line("still", last)
             overruns_ms.append(1000 * (still - last))
             wait_for(lambda: client.ask("system.state")["ready"], what="ready")
-    print(f"jog: overrun median {percentile(overruns_ms, 0.5):.1f} ms of {len(overruns_ms)}")
+    print(f"jog: overrun median {percentile(overruns_ms, 0.5):.1f} ms of {len(overruns_ms)}; {late} repeats came too late")
     return {"jog_overrun_ms": round(max(overruns_ms), 1), "jogs": len(overruns_ms)}
 
 

@@ -81,8 +81,8 @@ def main():
     third = (jobs - first) // 3
     if third < 1:
         sys.exit(f"{jobs} jobs are too few for a slope from job {first} on")
-    # Descriptors and memory come and go behind a result: a leak raises the least number. The fit is told beside it: what
-    # the allocator keeps for a while, up to 5 MiB, made it 1.8 KiB a job in a run that ended with less than it began.
+    # Descriptors come and go behind a result: a leak raises the least number. Of memory it is told beside the slope, which
+    # is judged: what the allocator keeps for a while, up to 5 MiB, is in the slope, too.
     gained = min(files[-third:]) - min(files[first:first + third])
     resident = [kib for _, kib in memory]
     grown_kib = min(resident[-third:]) - min(resident[first:first + third])
@@ -92,8 +92,8 @@ def main():
     was_needed = kept < jobs
     print(f"soak: {kept} results of {jobs} are kept, {max(sizes):.3f} GiB at most"
           f", {most_gib:.3f} allowed" + ("" if was_needed else ": retention had nothing to do"))
-    print(json.dumps({"soak_jobs": jobs, "rss_slope_kib_per_job": round(grown_kib / (2 * third), 3),
-                      "rss_fit_kib_per_job": round(slope(memory[first:]), 3),
+    print(json.dumps({"soak_jobs": jobs, "rss_slope_kib_per_job": round(slope(memory[first:]), 3),
+                      "rss_least_kib_per_job": round(grown_kib / (2 * third), 3),
                       "fd_slope_per_job": round(gained / (2 * third), 4), "state_gib_most": round(max(sizes), 3),
                       "state_gib_bounded": was_needed and max(sizes) <= most_gib}))
 
