@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join, relative } from "node:path";
-import { afterEach, mock, test } from "node:test";
+import { afterEach, test } from "node:test";
+import { letTimersGo, passTime, stopTimers } from "./stopped_timers.ts";
 import { onWake, sleptFor_ms } from "../../../daemon/web/src/lib/wake.ts";
 
 declare const WEB_DIR: string;
@@ -12,7 +13,7 @@ let ahead_ms = 0;
 afterEach(() => {
   Date.now = kNow;
   ahead_ms = 0;
-  mock.timers.reset();
+  letTimersGo();
 });
 
 test("a sleep is what the day has gone on for while timers stood still", () => {
@@ -22,24 +23,24 @@ test("a sleep is what the day has gone on for while timers stood still", () => {
 });
 
 test("waking is told once, with how long it was; a wrong day is not", () => {
-  mock.timers.enable({ apis: ["setInterval"] });
+  stopTimers();
   Date.now = () => kNow() + ahead_ms;
   ahead_ms = 24 * kHour_ms;  // as it always was
   const slept: number[] = [];
   const end = onWake((slept_ms) => slept.push(slept_ms));
-  mock.timers.tick(10000);
+  passTime(10000);
   assert.deepEqual(slept, []);
   ahead_ms += kHour_ms;
-  mock.timers.tick(2000);
-  mock.timers.tick(10000);
+  passTime(2000);
+  passTime(10000);
   assert.equal(slept.length, 1);
   assert.ok(Math.abs((slept[0] ?? 0) - kHour_ms) < 1000, String(slept[0]));
   ahead_ms += 1000;
-  mock.timers.tick(2000);
+  passTime(2000);
   assert.equal(slept.length, 1, "a clock that is corrected by a second");
   end();
   ahead_ms += kHour_ms;
-  mock.timers.tick(10000);
+  passTime(10000);
   assert.equal(slept.length, 1);
 });
 

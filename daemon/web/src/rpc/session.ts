@@ -1,6 +1,6 @@
 // As whom this tab calls.
 import { createStore } from "../lib/store.ts";
-import { call, setToken, tokenWasRefused } from "./rpc.ts";
+import { call, setToken, token, tokenWasRefused } from "./rpc.ts";
 
 export type Role = "none" | "view" | "operate" | "set_up" | "administer";
 
@@ -11,19 +11,22 @@ export const session = createStore<{ who: string; role: Role }>({ who: "", role:
 export const mayAs = (role: Role, needed: Role): boolean => kOrder.indexOf(role) >= kOrder.indexOf(needed);
 
 export async function lookWhoIAm(): Promise<void> {
+  const asked = token.get();
   const { who, role } = await call("session.info", {});
-  session.set({ who, role: role as Role });
+  if (token.get() === asked) session.set({ who, role: role as Role });  // else it is of who this tab was
 }
 
-// Throws RpcError with code 401 for a token that nobody has.
-export async function logIn(text: string): Promise<void> {
-  const { who, role } = await call("session.info", {}, { token: text });
+// Throws RpcError with code 401 for a token that nobody has. After the signal's end the tab stays who it is, whatever comes.
+export async function logIn(text: string, signal: AbortSignal): Promise<void> {
+  const { who, role } = await call("session.info", {}, { token: text, signal });
+  signal.throwIfAborted();
   setToken(text);
   session.set({ who, role: role as Role });
 }
 
 export async function logOut(): Promise<void> {
   setToken(null);
+  session.set({ who: "", role: "none" });  // until fvd says more
   await lookWhoIAm();
 }
 
@@ -31,6 +34,6 @@ export async function logOut(): Promise<void> {
 // one without. Call the result to end it.
 export const watchRefusals = (): (() => void) => tokenWasRefused.watch(() => {
   if (!tokenWasRefused.get()) return;
-  session.set({ who: "", role: "none" });  // until fvd says more: it may say nothing to somebody without a token
+  session.set({ who: "", role: "none" });  // fvd may say nothing to somebody without a token
   void lookWhoIAm().catch(() => undefined);  // asked again after the next reconnection
 });

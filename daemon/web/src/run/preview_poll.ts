@@ -1,4 +1,5 @@
 // The live picture: one request at a time, each for a picture newer than the last.
+import { pause, within } from "../lib/patience.ts";
 import { createStore } from "../lib/store.ts";
 import { ask } from "../rpc/rpc.ts";
 
@@ -50,8 +51,8 @@ export function watchPreview(show: (picture: Picture) => void, tell: (status: Pr
   const abort = new AbortController();
   let after = 0;
 
-  const once = async (): Promise<number> => {
-    const response = await ask(`/api/v1/preview.jpg?after=${after}`, { cache: "no-store", signal: AbortSignal.any([abort.signal, AbortSignal.timeout(kPatience_ms)]) });
+  const once = async (signal: AbortSignal): Promise<number> => {
+    const response = await ask(`/api/v1/preview.jpg?after=${after}`, { cache: "no-store", signal });
     if (response.status === 200) {
       const picture = await pictureOf(response);
       if (abort.signal.aborted) return 0;
@@ -75,7 +76,7 @@ export function watchPreview(show: (picture: Picture) => void, tell: (status: Pr
     while (!abort.signal.aborted) {
       let pause_ms: number;
       try {
-        if (document.visibilityState === "visible") pause_ms = await once();
+        if (document.visibilityState === "visible") pause_ms = await within(kPatience_ms, once, abort.signal);
         else pause_ms = kAfterFault_ms;
       } catch {
         if (abort.signal.aborted) return;
@@ -88,14 +89,4 @@ export function watchPreview(show: (picture: Picture) => void, tell: (status: Pr
   };
   void loop();
   return () => abort.abort();
-}
-
-function pause(wait_ms: number, signal: AbortSignal): Promise<void> {
-  return new Promise((resolve) => {
-    const timer = setTimeout(resolve, wait_ms);
-    signal.addEventListener("abort", () => {
-      clearTimeout(timer);
-      resolve();
-    }, { once: true });
-  });
 }

@@ -1,5 +1,6 @@
 // Starts jobs under this page's numbers. The same number of the same client is the same job, never a second motion: so
 // a request whose answer was lost is repeated as it was.
+import { within } from "../lib/patience.ts";
 import type { Methods } from "../rpc/methods.ts";
 import { RpcError, kOffline } from "../rpc/rpc.ts";
 
@@ -38,7 +39,7 @@ export function createStarter(calls: Calls, session: string): Starter {
   const repeated = async (params: Methods["job.start"]["params"], isCancelled: () => boolean): Promise<Methods["job.start"]["result"]> => {
     for (let attempt = 0; ; ++attempt) {
       try {
-        return await calls.start(params, AbortSignal.timeout(kPatience_ms));
+        return await within(kPatience_ms, (signal) => calls.start(params, signal));
       } catch (error) {
         if (!isLost(error)) throw error;
         if (attempt >= kRepeats || isCancelled()) throw new RpcError(kOffline, "offline", String(error));
