@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { clampView, fitView, middleOf, pointAt, toMap, toScreen, wantedTile, zoomAt } from "../../../daemon/web/src/surface/map_view.ts";
+import { clampView, fitView, middleOf, onCanvas, pointAt, toMap, toScreen, wantedTile, zoomAt } from "../../../daemon/web/src/surface/map_view.ts";
 
 const map = { width: 5000, height: 4000, pitch_x: 0.5, pitch_y: 0.5 };
 const canvas = { width: 1000, height: 500 };
@@ -18,6 +18,13 @@ test("the place under the pointer stays under it", () => {
   const before = toMap(view, canvas, at);
   const after = toMap(zoomAt(view, canvas, at, 3, map), canvas, at);
   assert.ok(Math.hypot(before.x - after.x, before.y - after.y) < 1e-9);
+});
+
+test("a place of the window is found on a canvas that is shown a little larger, at any fraction of a pixel", () => {
+  const shown = { left: 26.25, top: -40.5, width: 1002.5, height: 501.25 };
+  assert.deepEqual(onCanvas(canvas, shown, { x: 26.25, y: -40.5 }), { x: 0, y: 0 });
+  assert.deepEqual(onCanvas(canvas, shown, { x: 1028.75, y: 460.75 }), { x: 1000, y: 500 });
+  assert.deepEqual(onCanvas(canvas, { left: 10, top: 20, width: 1000, height: 500 }, { x: 35, y: 47 }), { x: 25, y: 27 });
 });
 
 test("bounds: half of the whole, points of 64 pixels, and small maps may be larger than that", () => {

@@ -48,6 +48,13 @@ export const toMap = (view: View, canvas: Size, at: { x: number; y: number }): {
   y: view.y + (at.y - canvas.height / 2) / view.scale,
 });
 
+// Of a place in the window. shown: where the canvas is there, a fraction of a pixel larger than it or, until a new layout
+// is measured, of another size.
+export const onCanvas = (canvas: Size, shown: Size & { left: number; top: number }, at: { x: number; y: number }): { x: number; y: number } => ({
+  x: ((at.x - shown.left) * canvas.width) / shown.width,
+  y: ((at.y - shown.top) * canvas.height) / shown.height,
+});
+
 // The place under `at` stays under it.
 export function zoomAt(view: View, canvas: Size, at: { x: number; y: number }, by: number, map: MapSize): View {
   const place = toMap(view, canvas, at);

@@ -6,7 +6,7 @@ import type { Shape } from "../../result/fitted_geometry.ts";
 import type { Range } from "../../surface/colours.ts";
 import type { Point } from "../../surface/full_map.ts";
 import type { Tile } from "../../surface/height_tile.ts";
-import { type View, clampView, fitView, middleOf, pointAt, toMap, toScreen, zoomAt } from "../../surface/map_view.ts";
+import { type View, clampView, fitView, middleOf, onCanvas, pointAt, toMap, toScreen, zoomAt } from "../../surface/map_view.ts";
 import type { Place, ProfileLine } from "../../surface/profile_line.ts";
 import { MapCanvas, type Plane } from "./map_canvas.ts";
 import { MapOverlay } from "./map_overlay.ts";
@@ -32,12 +32,6 @@ interface Props {
 const kGrip = 22;  // CSS pixels around a profile's end that hold it: a target of 44
 const kZoomStep = 1.25;
 
-// From the inside of the border, where the map begins.
-function placeIn(element: HTMLElement, { clientX, clientY }: MouseEvent): Place {
-  const { left, top } = element.getBoundingClientRect();
-  return { x: clientX - left - element.clientLeft, y: clientY - top - element.clientTop };
-}
-
 type Held = { what: "from" | "to" } | { what: "map"; x: number; y: number; view: View };
 
 export function MapStage(props: Props) {
@@ -50,6 +44,8 @@ export function MapStage(props: Props) {
   const aspect = (size.height * size.pitch_y) / (size.width * size.pitch_x);
   const canvas = { width, height: Math.max(220, Math.min(Math.round(width * aspect), Math.round(innerHeight * 0.72), 1400)) };
   const view = clampView(kept ?? fitView(size, canvas), size, canvas);
+  const placeIn = (stage: HTMLElement, { clientX, clientY }: MouseEvent): Place =>
+    onCanvas(canvas, (stage.querySelector(".map-canvas") ?? stage).getBoundingClientRect(), { x: clientX, y: clientY });
 
   // A wheel over the page scrolls it; over the map that was chosen, or with Ctrl, it zooms.
   useEffect(() => {
@@ -65,7 +61,8 @@ export function MapStage(props: Props) {
     return () => element.removeEventListener("wheel", turn);
   });
 
-  if (width === 0) return html`<div ref=${holder} class="map-stage"></div>`;
+  // Of the same elements as below: the one that is measured must be the one that stays.
+  if (width === 0) return html`<div><div ref=${holder} class="map-stage"></div></div>`;
 
   const place = (event: PointerEvent): Place => placeIn(event.currentTarget as HTMLElement, event);
   const inside = (at: Place): Place => ({

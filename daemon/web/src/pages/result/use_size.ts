@@ -1,4 +1,4 @@
-// The size of an element, followed as it changes.
+// The size of an element, followed as it changes. It must be the same element as long as its component is there.
 import { type RefObject } from "preact";
 import { useLayoutEffect, useState } from "preact/hooks";
 
