@@ -24,8 +24,8 @@ export function wantedOf(query: URLSearchParams): Wanted {
 }
 
 export function addressOf(wanted: Wanted): string {
-  const query = new URLSearchParams(kNames.filter((name) => wanted[name] !== "").map((name) => [name, wanted[name]]));
-  return query.size === 0 ? "/jobs" : `/jobs?${query}`;
+  const given = kNames.filter((name) => wanted[name] !== "").map((name) => [name, wanted[name]]);
+  return given.length === 0 ? "/jobs" : `/jobs?${new URLSearchParams(given)}`;
 }
 
 // The words of job.list; "none" = nothing was judged.

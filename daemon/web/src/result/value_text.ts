@@ -5,7 +5,7 @@ export function unitText(unit: string): string {
   if (unit === "1" || unit === "um/um") return "";
   if (unit === "deg") return "°";
   if (unit === "percent") return "%";
-  return unit.replace(/^um|(?<=\/)um/g, "µm").replace("^2", "²").replace("^3", "³");
+  return unit.replace(/\bum/g, "µm").replace("^2", "²").replace("^3", "³");
 }
 
 // "height_um" is the key of the value "height": the unit has a column of its own.

@@ -6,7 +6,8 @@ import { press } from "./one_button.ts";
 import { awaited, partId } from "./run_state.ts";
 import { buttonNow } from "./use_machine.ts";
 
-const isModalOpen = (): boolean => document.querySelector("dialog:modal") !== null;
+// All of this page's dialogs are modal; not every browser knows "dialog:modal".
+const isModalOpen = (): boolean => document.querySelector("dialog[open]") !== null;
 
 // Text that is typed belongs to the field that it is typed into.
 const takesText = (target: EventTarget | null): boolean =>
