@@ -155,10 +155,11 @@ test("whatever a part is called is text, apart from the text beside it", () => {
 });
 
 test("a folder of a result is named, and no link leads to it", () => {
-  const result = { ...kNoPoint, files: [{ name: "slices", files: 16, size_bytes: 100 }, { name: "height.tiff", state: "written", size_bytes: 2048 }, { name: "report.pdf", state: "pending" }] } as ResultJson;
+  const result = { ...kNoPoint, files: [{ name: "slices", files: 16, size_bytes: 100 }, { name: "height.tiff", state: "written", size_bytes: 2048 }, { name: "report.pdf", state: "not_made", reason: "disk" }] } as ResultJson;
   const all = drawn(html`<${Downloads} result=${result}/>`);
   assert.deepEqual(all.all("a").map((each) => each.text), ["height.tiff", "result.json"]);
   assert.match(all.text, /slices.*16/);
+  assert.match(all.text, /report\.pdf.*could not be made: disk/);
 });
 
 test("conditions that are not known say so, and the objective is told", () => {

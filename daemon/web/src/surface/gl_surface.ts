@@ -53,10 +53,6 @@ export class GlSurface {
     return gl.getProgramParameter(program, gl.LINK_STATUS) ? new GlSurface(gl, program) : null;
   }
 
-  has(part: Part): boolean {
-    return this.loaded.has(part);
-  }
-
   load(part: Part, positions: Float32Array, colours: Uint8Array, indices: Uint32Array, lines = false): void {
     const { gl } = this;
     this.drop(part);

@@ -1,7 +1,8 @@
-// The files that the result has.
+// The files that the result has; those that are being made appear by themselves.
 import { number, t, tWord } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import type { ResultFile, ResultJson } from "../../result/result_json.ts";
+import { useFiles } from "./use_files.ts";
 
 // What people ask for first.
 const kFirst = ["report.pdf", "height.x3p", "height.gsf", "height.csv", "height.ply"];
@@ -15,7 +16,7 @@ const rank = ({ name }: ResultFile): number => (kFirst.includes(name) ? kFirst.i
 
 export function Downloads({ result }: { result: ResultJson }) {
   const { job_id } = result.job;
-  const files = [...(result.files ?? [])].sort((a, b) => rank(a) - rank(b));
+  const files = [...useFiles(result)].sort((a, b) => rank(a) - rank(b));
   const isThere = (name: string): boolean => files.some((file) => file.name === name && file.files === undefined && (file.state ?? "written") === "written");
   const missing = kFirst.filter((name) => !isThere(name));
   const address = (name: string): string => `/api/v1/jobs/${encodeURIComponent(job_id)}/files/${encodeURIComponent(name)}`;

@@ -32,6 +32,7 @@ export function View3dCanvas(props: Props) {
   const { coarse, fine, map, range, heights_um, byTexture, exaggeration, look, moving, canvas, onMode } = props;
   const element = useRef<HTMLCanvasElement>(null);
   const [surface, setSurface] = useState<GlSurface | null>(null);
+  const newest = useRef<GlSurface | null>(null);
   const [isRelief, setRelief] = useState(false);
   const [lost, setLost] = useState(0);
 
@@ -46,6 +47,7 @@ export function View3dCanvas(props: Props) {
     }
     onMode("gl");
     setSurface(made);
+    newest.current = made;
     const gone = (event: Event): void => event.preventDefault();
     const back = (): void => setLost((count) => count + 1);
     target.addEventListener("webglcontextlost", gone);
@@ -56,7 +58,8 @@ export function View3dCanvas(props: Props) {
       setSurface(null);
     };
   }, [isRelief, lost]);
-  useEffect(() => () => surface?.end(), []);
+  // Not before: a context that was lost and came back belongs to the same canvas.
+  useEffect(() => () => newest.current?.end(), []);
 
   const mesh = ({ heights, colours }: Layer): Mesh => meshOf(heights, colours.mean, range, byTexture ? kGreyTable : kViridisTable, map, exaggeration);
 

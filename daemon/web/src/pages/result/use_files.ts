@@ -1,0 +1,40 @@
+// The files of a result as they are now. Those that no verdict waited for are made after it, and no event tells when.
+import { useEffect, useState } from "preact/hooks";
+import { pause } from "../../lib/patience.ts";
+import type { ResultFile, ResultJson } from "../../result/result_json.ts";
+import { call } from "../../rpc/rpc.ts";
+
+const kFirst_ms = 1000;
+const kLongest_ms = 30000;  // a disk that is full keeps a file waiting for days
+
+const isWaiting = (files: readonly ResultFile[]): boolean => files.some(({ state }) => state === "pending");
+
+async function follow(job_id: string, signal: AbortSignal, tell: (files: readonly ResultFile[]) => void): Promise<void> {
+  for (let wait_ms = kFirst_ms; ; wait_ms = Math.min(kLongest_ms, 2 * wait_ms)) {
+    await pause(wait_ms, signal);
+    if (signal.aborted) return;
+    try {
+      const { result } = await call("result.get", { job_id, format: "complete" }, { signal });
+      const files = (result as ResultJson | null | undefined)?.files ?? [];
+      if (signal.aborted) return;
+      tell(files);
+      if (!isWaiting(files)) return;
+    } catch {
+      // Whether fvd answers is told on top of every page; the next look may see more.
+    }
+  }
+}
+
+export function useFiles(result: ResultJson): readonly ResultFile[] {
+  const [files, setFiles] = useState<readonly ResultFile[]>(result.files ?? []);
+  const { job_id } = result.job;
+  useEffect(() => {
+    const known = result.files ?? [];
+    setFiles(known);
+    if (!isWaiting(known)) return;
+    const ending = new AbortController();
+    void follow(job_id, ending.signal, setFiles);
+    return () => ending.abort();
+  }, [result]);
+  return files;
+}
