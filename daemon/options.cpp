@@ -34,7 +34,8 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
       "say every problem of the configuration, its drive profile, its recipes and its folders on stderr and exit: "
       "0 = none, 78 = some");
   app.add_option("--check-recipe", options.check_recipe,
-                 "say every problem of a recipe on stderr and exit: 0 = none, 78 = some")
+                 "say every problem of a recipe on stderr and exit: 0 = none, 78 = some; with --config or --set the "
+                 "limits of that configuration's stage count too")
       ->type_name("FILE");
   app.add_flag("--dump-config", options.dump_config,
                "print the configuration in force as JSON, with the origin of every value, and exit");
@@ -43,6 +44,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
   app.add_flag("--print-drive-schema", options.print_drive_schema, "print the drive profiles' JSON schema and exit");
   try {
     app.parse(argc, argv);
+    options.config_is_told = app.count("--config") + app.count("--set") > 0;
   } catch (const CLI::ParseError& error) {
     parsed.exit = app.exit(error, out, err) == 0 ? exit_code::kOk : exit_code::kUsage;
   }
@@ -51,9 +53,9 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
 
 namespace {
 
-int check_recipe(const std::filesystem::path& file, std::ostream& err) {
+int check_recipe(const std::filesystem::path& file, const StageLimits* stage, std::ostream& err) {
   try {
-    const Recipe recipe = read_recipe_file(file);
+    const Recipe recipe = read_recipe_file(file, stage);
     for (const std::string& note : recipe.notes) err << file.string() << ": note: " << note << std::endl;
     return exit_code::kOk;
   } catch (const Error& error) {
@@ -73,14 +75,20 @@ StartUp start_up(const Options& options, std::ostream& out, std::ostream& err) {
     result.exit = exit_code::kOk;
     return result;
   }
-  if (!options.check_recipe.empty()) {
-    result.exit = check_recipe(options.check_recipe, err);
+  if (!options.check_recipe.empty() && !options.config_is_told) {
+    result.exit = check_recipe(options.check_recipe, nullptr, err);
     return result;
   }
   LoadedConfig loaded = load_config(options.config_file, options.overrides);
   if (!loaded.problems.empty()) {
     err << to_text(loaded.problems, options.config_file.string()) << std::endl;
     result.exit = exit_code::kConfig;
+    return result;
+  }
+  if (!options.check_recipe.empty()) {
+    const StageConfig& stage = loaded.config.stage;
+    const StageLimits limits{stage.min, stage.max, stage.take_up, stage.speed_um_per_s};
+    result.exit = check_recipe(options.check_recipe, &limits, err);
     return result;
   }
   if (options.check_config) {

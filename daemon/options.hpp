@@ -13,7 +13,8 @@ namespace fvd {
 struct Options {
   std::filesystem::path config_file = "/etc/fvd/fvd.json";
   Overrides overrides;
-  bool new_database = false;  ///< start though the database is gone
+  bool config_is_told = false;  ///< by --config or --set
+  bool new_database = false;    ///< start though the database is gone
   bool check_config = false;
   bool dump_config = false;
   std::filesystem::path check_recipe;  ///< a recipe's file; empty = none

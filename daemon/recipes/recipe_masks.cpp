@@ -92,11 +92,14 @@ void read_masks(const fs::path& folder, EvaluationPlan& plan, Problems& problems
   }
 }
 
-Recipe read_recipe_file(const fs::path& file) {
+Recipe read_recipe_file(const fs::path& file, const StageLimits* stage) {
   const std::string id = file.stem().string();
   Problems problems;
   Recipe recipe = read_recipe(read_text_file(file), id, problems);
   read_masks(file.parent_path(), recipe.evaluation, problems);
+  if (stage != nullptr) {
+    for (Problem& found : check_stage_limits(recipe, *stage, problems)) problems.push_back(std::move(found));
+  }
   throw_if_any(problems, ErrorCode::kBadRecipe, "recipe " + id);
   return recipe;
 }

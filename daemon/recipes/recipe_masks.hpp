@@ -14,13 +14,16 @@
 
 namespace fvd {
 
+struct StageLimits;
+
 /// Reads masks/NAME of the folder for each region of shape mask_png into plan.masks. A file that is missing, no PNG of
 /// 8 bit grey, above 64 MiB or 2^26 points, or without a point that is not 0 is a problem at the region's place behind
 /// /evaluation; a name that a problem of `problems` is about is passed over. context: thread-safe.
 void read_masks(const std::filesystem::path& folder, EvaluationPlan& plan, Problems& problems);
 
 /// The recipe of a file, whose id is the file's name without suffix, with the masks beside it. Throws Error kBadRecipe
-/// with every problem and its JSON pointer, kBadInput where the file cannot be read.
-[[nodiscard]] Recipe read_recipe_file(const std::filesystem::path& file);
+/// with every problem and its JSON pointer, kBadInput where the file cannot be read. stage: what leaves its limits is a
+/// problem too; nullptr = not judged.
+[[nodiscard]] Recipe read_recipe_file(const std::filesystem::path& file, const StageLimits* stage = nullptr);
 
 }  // namespace fvd

@@ -31,6 +31,9 @@ class Fvd : public ::testing::Test {
 TEST_F(Fvd, ReadsItsStandardFileUnlessTold) {
   EXPECT_EQ(parse({}).options.config_file, "/etc/fvd/fvd.json");
   EXPECT_EQ(parse({"--config", "x.json"}).options.config_file, "x.json");
+  EXPECT_FALSE(parse({"--check-recipe", "x.json"}).options.config_is_told);
+  EXPECT_TRUE(parse({"--config", "x.json"}).options.config_is_told);
+  EXPECT_TRUE(parse({"--set", "rpc.port=0"}).options.config_is_told);
   EXPECT_FALSE(parse({}).exit);
 }
 
@@ -128,6 +131,30 @@ TEST_F(FvdWithAFile, ChecksARecipeWithoutAConfiguration) {
   absent.check_recipe = folder_.path() / "no-such.json";
   EXPECT_EQ(start_up(absent, out_, err_).exit, 78);
   EXPECT_THAT(err_.str(), HasSubstr("no-such.json"));
+}
+
+TEST_F(FvdWithAFile, ChecksARecipeAgainstTheStageOfAConfigurationThatIsTold) {
+  const auto check =
+      [this](bool told, const Overrides& overrides) {
+        Options options = with_overrides(overrides);
+        options.config_is_told = told;
+        options.check_recipe = folder_.path() / "part.json";
+        std::ofstream(options.check_recipe)
+            << R"({"format": 2, "acquire": {"scan": {"start_um": 0, "step_um": 1, "slices": 3}}, "x": 1})";
+        err_.str("");
+        return start(kGood, options).exit;
+      };
+  const Overrides near{"stage.min_um=-5", "stage.max_um=1.5", "stage.take_up_um=2"};
+  EXPECT_EQ(check(true, near), 78);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("recipe part: /x: unknown key"),
+                                HasSubstr("recipe part: /acquire/scan/slices: 3 slices reach 2 um")));
+  EXPECT_EQ(check(true, {"stage.min_um=-5", "stage.max_um=2", "stage.take_up_um=2"}), 78);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("/x: unknown key"), ::testing::Not(HasSubstr("/acquire"))));
+  EXPECT_EQ(check(false, near), 78);
+  EXPECT_THAT(err_.str(), ::testing::Not(HasSubstr("/acquire")));
+  EXPECT_EQ(check(true, {"stage.min_um=7", "stage.max_um=1.5"}), 78);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("fvd.json: /stage/"), ::testing::Not(HasSubstr("recipe part"))))
+      << "a configuration that is refused tells nothing of a recipe";
 }
 
 TEST_F(FvdWithAFile, ChecksRecipesAndFoldersToo) {
