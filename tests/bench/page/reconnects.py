@@ -77,12 +77,13 @@ def is_end(event):
 
 
 def compare(told, got):
-    """How many of the events after the first that the cut reader got lack, and how many came twice or in another order."""
-    begin = told.index(got[0]) if got[0] in told else None
-    if begin is None:
-        sys.exit(f"the event {got[0]} was told to one reader alone")
+    """How many of the events between the first and the last that the cut reader got lack, and how many came twice or in
+    another order. What was told after its last, it had no time to read."""
+    for event in (got[0], got[-1]):
+        if event not in told:
+            sys.exit(f"the event {event} was told to one reader alone")
     known = set(got)
-    missed = [event for event in told[begin:] if event not in known]
+    missed = [event for event in told[told.index(got[0]):told.index(got[-1]) + 1] if event not in known]
     for event in missed[:10]:
         print(f"events_missed: {event}", flush=True)
     return len(missed), sum(1 for a, b in zip(got, got[1:]) if int(b.split("-")[-1]) <= int(a.split("-")[-1]))

@@ -73,6 +73,7 @@ export function caller(url, token) {
 //   state      the folder of results and database
 //   motions    file of the stage's commands and motions (fvd-sim --motion-log), in memory
 //   fvd()      the daemon's process
+//   options    of the daemon's command line
 //   restart({ signal, between })  ends the daemon, awaits between(state) without one, starts it at the same address
 export async function startStation({ world = "groove_50", plant = "chapter", settings = {}, recipes = {} } = {}) {
   if (process.env.FVD_PAGE_URL) {
@@ -110,9 +111,9 @@ export async function startStation({ world = "groove_50", plant = "chapter", set
     const call = caller(url, tokens[0][0]);
     const all = { "camera.address": camera_address, "stage.port": stage_port, "rpc.port": 0, "http.port": port,
       "rpc.token_file": at("tokens"), "paths.state_dir": at("state"), "paths.runtime_dir": at("run"), "paths.recipe_dir": at("recipes"), ...settings };
+    const options = ["--config", join(root, "config/fvd-sim.json"), ...Object.entries(all).flatMap(([key, value]) => ["--set", `${key}=${value}`])];
     const startDaemon = async () => {
-      fvd = run(programs.fvd, ["--config", join(root, "config/fvd-sim.json"),
-        ...Object.entries(all).flatMap(([key, value]) => ["--set", `${key}=${value}`])], at("fvd.log"));
+      fvd = run(programs.fvd, options, at("fvd.log"));
       await started(fvd, "fvd", at("fvd.log"), () => call("system.state").then(({ ready }) => ready, () => false));
     };
     const restart = async ({ signal, between } = {}) => {
@@ -121,7 +122,7 @@ export async function startStation({ world = "groove_50", plant = "chapter", set
       await startDaemon();
     };
     await startDaemon();
-    return { url, token: tokens[0][0], operator: tokens[1][0], call, stop, state: at("state"), motions, fvd: () => fvd, restart };
+    return { url, token: tokens[0][0], operator: tokens[1][0], call, stop, state: at("state"), motions, options, fvd: () => fvd, restart };
   } catch (error) {
     await stop();
     throw error;
