@@ -4,6 +4,7 @@ import { loadTexts } from "./i18n/i18n.ts";
 import { html } from "./lib/html.ts";
 import { followLinks } from "./lib/router.ts";
 import { applyTheme } from "./lib/theme.ts";
+import { rememberHealth } from "./live/health_history.ts";
 import { link, listen } from "./live/live.ts";
 import { watchControl } from "./rpc/held_control.ts";
 import { lookWhoIAm, watchRefusals } from "./rpc/session.ts";
@@ -14,6 +15,7 @@ takeTokenFromAddress();
 applyTheme();
 followLinks();
 listen();
+rememberHealth();
 watchControl();
 watchRefusals();
 // Again after every reconnection: the daemon may have another file of tokens.

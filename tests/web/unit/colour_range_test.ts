@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { kGreyTable, kViridisTable, level, rgba } from "../../../daemon/web/src/surface/colours.ts";
-import { percentileRange, typedNumber, wholeRange } from "../../../daemon/web/src/surface/colour_range.ts";
+import { percentileRange, wholeRange } from "../../../daemon/web/src/surface/colour_range.ts";
 import { paintReasons, paintValues } from "../../../daemon/web/src/surface/paint.ts";
 import { kHoleReasons, mainReason, reasonsOf } from "../../../daemon/web/src/surface/hole_reasons.ts";
 
@@ -17,14 +17,6 @@ test("percentiles go by the nearest rank and leave holes out", () => {
 test("the whole range is that of the extremes of blocks", () => {
   assert.deepEqual(wholeRange(new Float32Array([1, NaN, -4]), new Float32Array([2, NaN, 50])), { low: -4, high: 50 });
   assert.equal(wholeRange(new Float32Array([NaN]), new Float32Array([NaN])), null);
-});
-
-test("numbers are read with either decimal sign, and nothing else is a number", () => {
-  assert.equal(typedNumber(" 1,5 "), 1.5);
-  assert.equal(typedNumber("-.25"), -0.25);
-  assert.equal(typedNumber("−3"), -3);
-  assert.equal(typedNumber("2e-3"), 0.002);
-  for (const text of ["", "1,5,2", "12 µm", "NaN", "Infinity", "0x10", "."]) assert.equal(typedNumber(text), null, text);
 });
 
 test("values find their colours; a range without width has the middle", () => {

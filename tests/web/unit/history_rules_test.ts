@@ -3,7 +3,7 @@ import test from "node:test";
 import { centreOf, marksOf } from "../../../daemon/web/src/history/control_rules.ts";
 import { csvOf } from "../../../daemon/web/src/history/csv.ts";
 import { addressOf, filterOf, wantedOf } from "../../../daemon/web/src/history/filter.ts";
-import { digitsOf, pairs, valuesOf } from "../../../daemon/web/src/results/values.ts";
+import { pairs, valuesOf } from "../../../daemon/web/src/results/values.ts";
 
 test("the centre: the mean, and sigma of the moving range", () => {
   assert.deepEqual(centreOf([1, null, 3, 1, 3]), { mean: 2, sigma: 2 / 1.128, count: 4 });
@@ -112,11 +112,4 @@ test("values side by side, whichever of two results lacks one", () => {
   const value = (measurement: string, name: string) => ({ measurement, name, value: 1, unit: "", U: null, lower: null, upper: null, verdict: null, reason: "" });
   const found = pairs([value("a", "x"), value("b", "x")], [value("b", "x"), value("c", "x")]);
   assert.deepEqual(found.map((pair) => [pair.measurement, pair.before !== null, pair.after !== null]), [["b", true, true], ["c", false, true], ["a", true, false]]);
-});
-
-test("as many digits as the uncertainty makes sense of", () => {
-  assert.equal(digitsOf(50.1234, 0.0312), 3);
-  assert.equal(digitsOf(1234.5, 12), 0);
-  assert.equal(digitsOf(1.23456, null), 4);
-  assert.equal(digitsOf(0, null), 4);
 });

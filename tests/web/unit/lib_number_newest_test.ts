@@ -8,8 +8,8 @@ test("both decimal signs are read, separators of thousands and words are not", (
   assert.equal(readNumber(" -1.5 "), -1.5);
   assert.equal(readNumber("−3"), -3);
   assert.equal(readNumber("1e-3"), 0.001);
-  assert.equal(readNumber(".5"), 0.5);
-  for (const text of ["", "1,000.5", "1.000,5", "12 mm", "0x10", "1e999", "NaN", "--1"]) assert.equal(readNumber(text), null, text);
+  assert.deepEqual([".5", "-,5", "3."].map(readNumber), [0.5, -0.5, 3]);
+  for (const text of ["", " ", ".", "1,5,2", "1,000.5", "1.000,5", "1 2", "12 µm", "0x10", "1e999", "NaN", "Infinity", "--1"]) assert.equal(readNumber(text), null, text);
 });
 
 test("only the answer to the newest question counts, also when an older one comes later", async () => {

@@ -6,22 +6,11 @@ import { sPoints, shapesOf } from "../../../daemon/web/src/result/fitted_geometr
 import { freeName, measurementNames, profileMeasurement, withMeasurement } from "../../../daemon/web/src/result/recipe_draft.ts";
 import type { Measurement, ResultJson } from "../../../daemon/web/src/result/result_json.ts";
 import { mapOwner, measurementsOf } from "../../../daemon/web/src/result/result_json.ts";
-import { digitsFor, nameOf, percentDigits, unitText } from "../../../daemon/web/src/result/value_text.ts";
+import { nameOf, percentDigits } from "../../../daemon/web/src/result/value_text.ts";
 
-test("as many decimals as two digits of U need, four digits without U", () => {
-  assert.equal(digitsFor(49.978, 0.0277), 3);
-  assert.equal(digitsFor(49.978, 1.2), 1);
-  assert.equal(digitsFor(49.978, 120), 0);
-  assert.equal(digitsFor(49.978), 2);
-  assert.deepEqual([digitsFor(0), digitsFor(5)], [0, 0]);
-  assert.equal(digitsFor(1e-9), 6);
-});
-
-test("names, units and shares for people", () => {
+test("names and shares for people", () => {
   assert.equal(nameOf("height_areal_um"), "height areal");
   assert.equal(nameOf("K"), "K");
-  assert.equal(unitText("um"), "µm");
-  assert.deepEqual(["1", "um/um", "deg", "um^2", "um^3/um^2", "ms"].map(unitText), ["", "", "°", "µm²", "µm³/µm²", "ms"]);
   assert.deepEqual([1, 0.9999, 0.97548, 0, 0.0001].map(percentDigits), [100, 99.9, 97.5, 0, 0.1]);
 });
 

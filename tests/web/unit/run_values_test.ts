@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { limitBar } from "../../../daemon/web/src/run/limit_bar.ts";
-import { decimals, unitForPeople } from "../../../daemon/web/src/run/value_digits.ts";
 import { forPeople, mainHoleReason, rowsOf, verdictOf } from "../../../daemon/web/src/run/value_rows.ts";
 
 const near = (value: number | null | undefined, wanted: number): void =>
@@ -49,21 +48,6 @@ test("there is no bar without value, or without limit", () => {
   assert.equal(limitBar(null, 1, 0, 1), null);
   assert.equal(limitBar(NaN, 1, 0, 1), null);
   assert.equal(limitBar(1, 1, null, null), null);
-});
-
-test("decimals follow from U, else from the value", () => {
-  assert.equal(decimals(50.0895, 0.2322), 2);
-  assert.equal(decimals(50.0895, 0.0996), 2, "0.0996 is 0.10 with two digits");
-  assert.equal(decimals(50, 0.999), 1, "0.999 is 1.0 with two digits");
-  assert.equal(decimals(50, 12), 0);
-  assert.equal(decimals(50.123456, null), 3);
-  assert.equal(decimals(0.000123, null), 6, "never more than six");
-  assert.equal(decimals(0, null), 2);
-  assert.equal(decimals(123456, 0), 0, "a U of zero tells nothing");
-});
-
-test("units for people", () => {
-  assert.deepEqual(["um", "um2", "deg", "%", "1", "N"].map(unitForPeople), ["µm", "µm²", "°", "%", "", "N"]);
 });
 
 const evaluated = {

@@ -1,9 +1,9 @@
 // Who may press what, where the stage stands, what the journal, the plots and the sparklines show.
 import assert from "node:assert/strict";
 import test from "node:test";
+import "./browser_stand_in.ts";
 import { type Seen, isMine, refusalOf } from "../../../daemon/web/src/pages/setup/access_rules.ts";
 import { type Accuracy, rowsOf } from "../../../daemon/web/src/pages/setup/devices/accuracy_rows.ts";
-import { numbersOf, remember, seriesOf } from "../../../daemon/web/src/pages/setup/devices/health_history.ts";
 import { pathOf } from "../../../daemon/web/src/pages/setup/devices/sparkline_path.ts";
 import { newest } from "../../../daemon/web/src/pages/setup/journal/newest_alarms.ts";
 import { limitsOf, shareOf } from "../../../daemon/web/src/pages/setup/motion/stage_limits.ts";
@@ -61,32 +61,6 @@ test("the journal has the newest 200, the newest first", () => {
   assert.equal(shown[0]?.number, 250);
   assert.deepEqual(newest([alarm(1), alarm(2, "error")], "error").map(({ number }) => number), [2]);
   assert.equal(many[0]?.number, 1, "the list itself is not turned round");
-});
-
-test("health becomes numbers by path", () => {
-  assert.deepEqual(numbersOf({ open: true, disk: { free_bytes: 5 }, temperatures_c: { motor: 38.5 }, names: ["a"], none: null }),
-    { "disk.free_bytes": 5, "temperatures_c.motor": 38.5 });
-});
-
-const health = (requests: number) => ({ ok: true, stalled_threads: [], camera: {}, stage: { requests } });
-
-test("one sample a second is remembered, and not for ever", () => {
-  let samples = remember([], health(1), 0);
-  samples = remember(samples, health(2), 400);
-  assert.equal(samples.length, 1);
-  assert.equal(samples[0]?.values["stage.requests"], 2);
-  for (let i = 1; i <= 700; ++i) samples = remember(samples, health(2 + i), i * 1000);
-  assert.equal(samples.length, 600);
-  assert.equal(remember(samples, null, 1e9).length, 600);
-});
-
-test("counters are shown by what they grew a second, and never below 0", () => {
-  let samples = remember([], health(10), 0);
-  samples = remember(samples, health(30), 2000);
-  samples = remember(samples, health(0), 3000);
-  assert.deepEqual(seriesOf(samples, "stage.requests", true), [[2, 10], [3, 0]]);
-  assert.deepEqual(seriesOf(samples, "stage.requests", false), [[0, 10], [2, 30], [3, 0]]);
-  assert.deepEqual(seriesOf(samples, "disk.free_bytes", false), []);
 });
 
 test("curves fill their picture; a constant is a line in its middle", () => {

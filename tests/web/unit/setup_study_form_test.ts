@@ -5,9 +5,11 @@ import { join } from "node:path";
 import test from "node:test";
 import en from "../../../daemon/web/src/i18n/en.json" with { type: "json" };
 import { idsIn, withId } from "../../../daemon/web/src/pages/setup/studies/ids_text.ts";
-import { kMethods } from "../../../daemon/web/src/pages/setup/studies/kinds.ts";
+import { kKinds } from "../../../daemon/web/src/pages/setup/studies/kinds.ts";
 import { type Field, type Method, fieldsOf, rangeText } from "../../../daemon/web/src/pages/setup/studies/study_fields.ts";
 import { type Values, emptyValue, paramsOf } from "../../../daemon/web/src/pages/setup/studies/study_values.ts";
+
+const kMethods = kKinds.flatMap(([group, names]) => names.map((name) => `${group}.${name}`));
 
 declare const WEB_DIR: string;
 const described = JSON.parse(readFileSync(join(WEB_DIR, "openrpc.json"), "utf8")) as { methods: Method[] };

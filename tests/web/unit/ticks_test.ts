@@ -4,6 +4,7 @@ import { barLength, roundBelow, ticks } from "../../../daemon/web/src/surface/ti
 
 test("round numbers below a wish", () => {
   assert.deepEqual([1, 1.99, 2, 4.9, 5, 9.9, 10, 0.3, 1000].map(roundBelow), [1, 1, 2, 2, 5, 5, 10, 0.2, 1000]);
+  assert.deepEqual([5.4, 4.99, 0.5, 0.2, 0.1, 0.05, 0.0012, 54].map(roundBelow), [5, 2, 0.5, 0.2, 0.1, 0.05, 0.001, 50], "as people write them, not 0.05000000000000001");
   assert.equal(roundBelow(0), 1);
   assert.equal(roundBelow(NaN), 1);
   assert.equal(barLength(170), 100);

@@ -5,6 +5,6 @@ export function download(name: string, type: string, text: string): void {
   link.href = address;
   link.download = name;
   link.click();
-  // The browser has read it when the click was dealt with.
-  setTimeout(() => URL.revokeObjectURL(address), 0);
+  // Firefox reads it after the click was dealt with.
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
 }

@@ -1,4 +1,6 @@
 // What a focus curve of the picture's middle tells about a scan: its range, its step.
+import { roundBelow } from "../surface/ticks.ts";
+
 export type CurvePoint = readonly [number, number];  // z in um, sharpness
 
 export interface FocusCurve {
@@ -37,15 +39,6 @@ export function readCurve(points: readonly CurvePoint[]): FocusCurve | null {
   return { peak_um: (curve[at] as CurvePoint)[0], width_um: right - left, first_um: (out[0] as CurvePoint)[0], last_um: (out[out.length - 1] as CurvePoint)[0], base, top };
 }
 
-// The next smaller of 1, 2, 5, 10, …
-export function roundDown(value: number): number {
-  const ten = 10 ** Math.floor(Math.log10(value));
-  const lead = value / ten;
-  // 10 ** -3 and its like are not exact; the quotient's last digits are not either.
-  const digit = lead >= 5 - 1e-9 ? 5 : lead >= 2 - 1e-9 ? 2 : 1;
-  return Number((digit * ten).toPrecision(1));
-}
-
 export interface Scan {
   start_um: number;
   step_um: number;
@@ -58,7 +51,7 @@ const kMostSlices = 2000;
 
 // Five slices within the focus curve's width; the part's heights and once the width beyond on either side.
 export function suggestScan(curve: FocusCurve): Scan {
-  const step_um = roundDown(curve.width_um / kSlicesInWidth);
+  const step_um = roundBelow(curve.width_um / kSlicesInWidth);
   const start_um = Math.floor((curve.first_um - curve.width_um) / step_um) * step_um;
   const end_um = curve.last_um + curve.width_um;
   const slices = Math.min(kMostSlices, Math.max(kLeastSlices, Math.ceil((end_um - start_um) / step_um) + 1));

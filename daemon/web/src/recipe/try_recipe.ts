@@ -1,9 +1,9 @@
 // Tries a draft: kept under an id of its own, then a stored result is evaluated by it, or the part is scanned.
 import { RpcError, call } from "../rpc/rpc.ts";
+import { kClient } from "../run/start_job.ts";
 import { tryId } from "./ids.ts";
 
 const kUnknownRecipe = 1005;
-export const kTryClient = "page";
 
 // The draft's id once it is kept.
 export async function keepForTrial(id: string, text: string, author: string): Promise<string> {
@@ -20,7 +20,7 @@ export async function keepForTrial(id: string, text: string, author: string): Pr
   return trial;
 }
 
-export async function resultOf(job_id: string): Promise<unknown> {
+async function resultOf(job_id: string): Promise<unknown> {
   return (await call("result.get", { job_id, format: "complete" })).result;
 }
 
@@ -31,12 +31,14 @@ export async function evaluateBy(job_id: string, recipe: string): Promise<{ id: 
 
 // Waits for the scan's end; told() hears how far it is.
 export async function scanBy(recipe: string, part_id: string, told: (progress: number) => void): Promise<{ id: string; result: unknown }> {
-  const { newest_seq } = await call("job.latest", { client: kTryClient });
-  const { job_id } = await call("job.start", { seq: newest_seq + 1, part_id, recipe, client: kTryClient });
+  const { newest_seq } = await call("job.latest", { client: kClient });
+  const { job_id } = await call("job.start", { seq: newest_seq + 1, part_id, recipe, client: kClient });
   for (;;) {
     const status = await call("job.wait", { job_id, until: "done", timeout_ms: 1000 });
     told(status.progress ?? 0);
     if (!status.done) continue;
+    // It is shown to who asked for it, and nobody else will say so; whether that is heard changes nothing here.
+    call("result.ack", { job_id }).catch(() => undefined);
     if (status.state !== "completed") throw new Error(`${status.error ?? ""}: ${status.error_message ?? ""}`);
     return { id: job_id, result: await resultOf(job_id) };
   }

@@ -75,11 +75,3 @@ export function pairs(before: readonly Value[], after: readonly Value[]): Pair[]
   });
   return [...both, ...[...old.values()].map((value) => ({ measurement: value.measurement, name: value.name, before: value, after: null }))];
 }
-
-export const unitText = (unit: string): string => (unit === "1" ? "" : unit.replace(/\bum/g, "µm").replace("^2", "²"));
-
-// As many digits as its uncertainty makes sense of: two of U, else five of the value.
-export function digitsOf(value: number, U: number | null): number {
-  const last = U !== null && U > 0 ? Math.floor(Math.log10(U)) - 1 : value === 0 ? -4 : Math.floor(Math.log10(Math.abs(value))) - 4;
-  return Math.min(12, Math.max(0, -last));
-}

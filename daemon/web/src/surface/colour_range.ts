@@ -21,9 +21,3 @@ export function wholeRange(lowest: Float32Array, highest: Float32Array): Range |
   for (const value of highest) if (value > high) high = value;
   return low <= high ? { low, high } : null;
 }
-
-// What a person typed, with either decimal sign; null where it is no number.
-export function typedNumber(text: string): number | null {
-  const plain = text.trim().replace("−", "-").replace(",", ".");
-  return /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(plain) ? Number(plain) : null;
-}

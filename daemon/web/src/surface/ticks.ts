@@ -5,7 +5,8 @@ export function roundBelow(wish: number): number {
   if (!(wish > 0) || !Number.isFinite(wish)) return 1;
   const power = 10 ** Math.floor(Math.log10(wish) + 1e-12);
   const rest = wish / power;
-  return (rest >= 5 - 1e-9 ? 5 : rest >= 2 - 1e-9 ? 2 : 1) * power;
+  // Powers below one are not exact.
+  return Number(((rest >= 5 - 1e-9 ? 5 : rest >= 2 - 1e-9 ? 2 : 1) * power).toPrecision(1));
 }
 
 // Round values from low to high, at most `most` of them.

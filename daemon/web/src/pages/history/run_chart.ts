@@ -3,10 +3,12 @@ import { useEffect, useState } from "preact/hooks";
 import { number, t } from "../../i18n/i18n.ts";
 import { centreOf, marksOf } from "../../history/control_rules.ts";
 import { csvOf } from "../../history/csv.ts";
+import { digitsOf } from "../../lib/digits.ts";
 import { download } from "../../lib/download.ts";
 import { html } from "../../lib/html.ts";
+import { shownUnit } from "../../lib/units.ts";
 import { messageOf } from "../../parts/message_of.ts";
-import { digitsOf, unitText, valuesOf } from "../../results/values.ts";
+import { valuesOf } from "../../results/values.ts";
 import type { JobRow, ValuePoint } from "../../rpc/listed.ts";
 import { call } from "../../rpc/rpc.ts";
 import { RunCurve } from "./run_curve.ts";
@@ -58,7 +60,7 @@ export function RunChart({ rows, recipe }: { rows: readonly JobRow[]; recipe: st
   const values = points?.map((point) => point.value) ?? [];
   const centre = centreOf(values);
   const marks = marksOf(values, centre);
-  const unit = unitText(choice?.unit ?? "");
+  const unit = shownUnit(choice?.unit ?? "");
   const take = (): void => {
     if (!choice || !points) return;
     const head = ["job_id", "part_id", "ended_utc", choice.name, "U", "lower", "upper", "verdict", "rule_1", "rule_4"];

@@ -2,9 +2,9 @@
 import { useState } from "preact/hooks";
 import { number, t } from "../../i18n/i18n.ts";
 import type { Mark } from "../../history/control_rules.ts";
+import { digitsOf } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
-import { digitsOf } from "../../results/values.ts";
 import type { ValuePoint } from "../../rpc/listed.ts";
 
 export function RunTable({ points, marks, unit }: { points: readonly ValuePoint[]; marks: readonly Mark[]; unit: string }) {

@@ -1,15 +1,17 @@
 // Values of two results, old beside new.
 import { number, t } from "../../i18n/i18n.ts";
+import { digitsOf } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
+import { shownUnit } from "../../lib/units.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
 import { withUnits } from "./fields/names.ts";
-import { type Value, digitsOf, pairs, unitText } from "../../results/values.ts";
+import { type Value, pairs } from "../../results/values.ts";
 
 function said(value: Value | null) {
   if (value === null) return html`<span class="help">–</span>`;
   if (value.value === null) return html`<span class="help" lang="en">${withUnits(value.reason) || t("recipe.no_value")}</span>`;
   const digits = digitsOf(value.value, value.U);
-  return html`${number(value.value, digits)}${value.U !== null && ` ± ${number(value.U, digits)}`} ${unitText(value.unit)}
+  return html`${number(value.value, digits)}${value.U !== null && ` ± ${number(value.U, digits)}`} ${shownUnit(value.unit)}
     ${value.verdict !== null && html`<br/><${VerdictLabel} verdict=${value.verdict}/>`}`;
 }
 

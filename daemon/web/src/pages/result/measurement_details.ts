@@ -1,18 +1,20 @@
 // Why a value is what it is: uncertainty budgets, the surface it was measured on, what was not taken into account.
 import { number, t, tWord } from "../../i18n/i18n.ts";
+import { usefulDigits } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
+import { shownUnit } from "../../lib/units.ts";
 import { type EvaluatedValue, type Measurement, type Notch, type ResultJson, type SurfaceStep } from "../../result/result_json.ts";
-import { digitsFor, nameOf, unitText } from "../../result/value_text.ts";
+import { nameOf } from "../../result/value_text.ts";
 
 const significant = (value: number | undefined, digits = 3): string =>
-  value === undefined ? "–" : number(value, digitsFor(value, Math.abs(value) * 10 ** (2 - digits)));
+  value === undefined ? "–" : number(value, usefulDigits(value, digits));
 
 function Budget({ name, value }: { name: string; value: EvaluatedValue }) {
   const total = (value.budget ?? []).reduce((sum, { u }) => sum + u * u, 0);
   return html`<table class="budget">
-    <caption>${t("result.budget.of", { name: nameOf(name) })} u = ${significant(value.u)} ${unitText(value.unit)}, k = ${significant(value.k)}${
+    <caption>${t("result.budget.of", { name: nameOf(name) })} u = ${significant(value.u)} ${shownUnit(value.unit)}, k = ${significant(value.k)}${
       value.dof !== undefined && `, ν = ${number(value.dof, 0)}`}${value.u_method && `, ${tWord("result.u_method", value.u_method)}`}</caption>
-    <thead><tr><th scope="col">${t("result.budget.source")}</th><th scope="col">${t("result.budget.type")}</th><th class="number" scope="col">u / ${unitText(value.unit) || "1"}</th>
+    <thead><tr><th scope="col">${t("result.budget.source")}</th><th scope="col">${t("result.budget.type")}</th><th class="number" scope="col">u / ${shownUnit(value.unit) || "1"}</th>
       <th class="number" scope="col">${t("result.budget.share")}</th></tr></thead>
     <tbody>${(value.budget ?? []).map(({ source, type, u }) => html`<tr><th scope="row">${tWord("result.source", source)}</th><td>${type}</td>
       <td class="number">${significant(u)}</td><td class="number">${total > 0 ? `${number((100 * u * u) / total, 1)} %` : "–"}</td></tr>`)}</tbody>

@@ -1,18 +1,20 @@
 // Values with U, limits and verdicts; what each rests on, on demand.
 import { useState } from "preact/hooks";
 import { number, t, tWord } from "../../i18n/i18n.ts";
+import { digitsOf } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
+import { shownUnit } from "../../lib/units.ts";
 import { type EvaluatedValue, type Measurement, type ResultJson, judgedFigures, measurementsOf } from "../../result/result_json.ts";
-import { digitsFor, nameOf, unitText } from "../../result/value_text.ts";
+import { nameOf } from "../../result/value_text.ts";
 import { MeasurementDetails } from "./measurement_details.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
 
 export function valueText({ value, U }: EvaluatedValue): string {
-  return value === undefined ? "–" : number(value, digitsFor(value, U));
+  return value === undefined ? "–" : number(value, digitsOf(value, U));
 }
 
 export const uncertaintyText = ({ value, U }: EvaluatedValue): string =>
-  value === undefined || U === undefined ? t("result.no_U") : `± ${number(U, digitsFor(value, U))}`;
+  value === undefined || U === undefined ? t("result.no_U") : `± ${number(U, digitsOf(value, U))}`;
 
 export function limitsText({ limits }: EvaluatedValue): string {
   const { lower, upper } = limits ?? {};
@@ -28,7 +30,7 @@ function rowsOf({ values, main_value }: Measurement): [string, EvaluatedValue][]
 
 function ValueRow({ name, value }: { name: string; value: EvaluatedValue }) {
   return html`<tr>
-    <th scope="row">${name}${unitText(value.unit) && ` / ${unitText(value.unit)}`}</th>
+    <th scope="row">${name}${shownUnit(value.unit) && ` / ${shownUnit(value.unit)}`}</th>
     <td class="number"><data value=${String(value.value ?? "")}>${valueText(value)}</data></td>
     <td class="number">${uncertaintyText(value)}</td>
     <td class="number">${limitsText(value)}</td>

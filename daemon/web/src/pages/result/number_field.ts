@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { number } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
-import { typedNumber } from "../../surface/colour_range.ts";
+import { readNumber } from "../../lib/read_number.ts";
 
 interface Props {
   label: string;
@@ -26,7 +26,7 @@ export function NumberField({ label, value, digits, unit = "", least = -Infinity
   const take = (event: Event): void => {
     const typed = (event.target as HTMLInputElement).value;
     setText(typed);
-    const read = typedNumber(typed);
+    const read = readNumber(typed);
     const bad = read === null || read < least || read > most;
     setWrong(bad);
     if (!bad && number(read, digits) !== shown) onChange(read);

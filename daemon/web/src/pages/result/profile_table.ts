@@ -1,24 +1,16 @@
 // The profile as a table: what the curve shows, for those who do not see it, and for a spreadsheet.
 import { useState } from "preact/hooks";
 import { number, t } from "../../i18n/i18n.ts";
+import { download } from "../../lib/download.ts";
 import { html } from "../../lib/html.ts";
 import type { Profile } from "../../surface/profile_line.ts";
 
 const kRows = 500;  // more are for a file, not for reading
 
 // Machine values: a point for the decimal sign, an empty cell for a hole.
-export function profileCsv({ distance_um, height_um, sigma_um }: Profile): string {
+function profileCsv({ distance_um, height_um, sigma_um }: Profile): string {
   const rows = distance_um.map((x, i) => `${x},${height_um[i] ?? ""},${Number.isNaN(sigma_um[i]) ? "" : (sigma_um[i] ?? "")}`);
   return `distance_um,height_um,sigma_um\r\n${rows.join("\r\n")}\r\n`;
-}
-
-function save(profile: Profile, name: string): void {
-  const address = URL.createObjectURL(new Blob([profileCsv(profile)], { type: "text/csv" }));
-  const link = document.createElement("a");
-  link.href = address;
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
 export function ProfileTable({ profile, unit, name }: { profile: Profile; unit: string; name: string }) {
@@ -28,7 +20,7 @@ export function ProfileTable({ profile, unit, name }: { profile: Profile; unit: 
   const cell = (value: number | null | undefined, hole: string): string => (value === null || value === undefined || Number.isNaN(value) ? hole : number(value, 4));
   return html`<details onToggle=${(event: Event) => setOpen((event.target as HTMLDetailsElement).open)}>
     <summary>${t("result.profile.table")}</summary>
-    ${isOpen && html`<p><button type="button" onClick=${() => save(profile, name)}>${t("result.profile.csv")}</button></p>
+    ${isOpen && html`<p><button type="button" onClick=${() => download(name, "text/csv", profileCsv(profile))}>${t("result.profile.csv")}</button></p>
       ${every > 1 && html`<p class="help">${t("result.profile.every", { n: number(every) })}</p>`}
       <div class="scroll profile-table" tabindex="0" role="region" aria-label=${t("result.profile.table")}><table>
         <thead><tr><th class="number" scope="col">${t("result.axis.along", { unit })}</th><th class="number" scope="col">${t("result.axis.height")}</th>

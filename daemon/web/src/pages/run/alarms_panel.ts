@@ -9,10 +9,8 @@ import type { Alarm } from "../../rpc/listed.ts";
 import { call } from "../../rpc/rpc.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { ordered, timeForPeople } from "../../run/alarm_order.ts";
+import { errorCodeIn } from "../../run/error_in_text.ts";
 import { whatToDo } from "./what_to_do.ts";
-
-// An alarm of an error carries its code where the daemon tells it.
-type CodedAlarm = Alarm & { error_code?: number };
 
 const kShapes: Record<Alarm["level"], string> = {
   warning: "M12 3 22 21H2Z",
@@ -20,9 +18,9 @@ const kShapes: Record<Alarm["level"], string> = {
   critical: "M12 1 15 9 23 12 15 15 12 23 9 15 1 12 9 9Z",
 };
 
-function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: CodedAlarm; mayAcknowledge: boolean; acknowledge: (alarm: Alarm) => void }) {
+function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: Alarm; mayAcknowledge: boolean; acknowledge: (alarm: Alarm) => void }) {
   const language = useLanguage();
-  const todo = whatToDo(alarm.error_code ?? 0) || tWord("run.alarm_todo", alarm.level);
+  const todo = whatToDo(errorCodeIn(alarm.text)) || tWord("run.alarm_todo", alarm.level);
   return html`<li class=${`alarm alarm-${alarm.level} ${alarm.acknowledged ? "seen" : ""}`}>
     <svg width="24" height="24" viewBox="0 0 24 24" fill="currentColor" aria-hidden="true"><path d=${kShapes[alarm.level] ?? kShapes.error}/></svg>
     <div>

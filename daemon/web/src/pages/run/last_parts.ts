@@ -27,8 +27,9 @@ function useStrip(): Strip {
   useEffect(() => {
     if (!isLinked) return;
     let isOver = false;
-    look("job.list", { most: kMost }).then(({ jobs }) => {
-      const parts = jobs.filter(({ state }) => state !== "processing");
+    // One more than is shown: the newest may be running yet.
+    look("job.list", { most: kMost + 1 }).then(({ jobs }) => {
+      const parts = jobs.filter(({ state }) => state !== "processing").slice(0, kMost);
       if (!isOver) setStrip({ isTold: true, parts, problem: "" });
     }, (error: unknown) => {
       if (!isOver) setStrip((before) => ({ ...before, problem: messageOf(error) }));

@@ -5,6 +5,7 @@ import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
 import { link, resyncs, topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
+import { isTryId } from "../../recipe/ids.ts";
 import { look } from "../../rpc/look.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { kMostPartId, nextPartId, partIdProblem } from "../../run/part_ids.ts";
@@ -35,7 +36,7 @@ function RecipeChoice() {
   const problem = useRecipeList();
   return html`<label class="field">${t("run.recipe")}
       <select value=${id} onChange=${(event: Event) => recipeChoice.set((event.target as HTMLSelectElement).value)}>
-        ${(known ?? []).map((each) => html`<option key=${each} value=${each}>${each}</option>`)}
+        ${(known ?? []).map((each) => html`<option key=${each} value=${each}>${each}${isTryId(each) && ` – ${t("recipe.kind_try")}`}</option>`)}
       </select>
     </label>
     ${known?.length === 0 && html`<p class="help">${t("run.no_recipes")}</p>`}

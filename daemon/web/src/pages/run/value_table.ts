@@ -1,15 +1,16 @@
 // What was measured: name, value, U, limits, verdict.
 import { number, t, tWord } from "../../i18n/i18n.ts";
+import { digitsOf } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
+import { shownUnit } from "../../lib/units.ts";
 import { VerdictLabel, verdictWord } from "../../parts/verdict_mark.ts";
-import { decimals, unitForPeople } from "../../run/value_digits.ts";
 import { type ValueRow, forPeople } from "../../run/value_rows.ts";
 import { LimitBarView, limitsText } from "./limit_bar_view.ts";
 
 function Row({ row: raw }: { row: ValueRow }) {
   const row = forPeople(raw);
-  const unit = unitForPeople(row.unit);
-  const digits = row.value === null ? 2 : decimals(row.value, row.U);
+  const unit = shownUnit(row.unit);
+  const digits = row.value === null ? 2 : digitsOf(row.value, row.U);
   const withUnit = (value: number): string => `${number(value, digits)}${unit && ` ${unit}`}`;
   const limits = limitsText(row, unit);
   const value = row.value === null ? t("run.no_value") : withUnit(row.value);

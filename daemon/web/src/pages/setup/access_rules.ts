@@ -1,9 +1,6 @@
 // What a button needs, and what hinders: rules alone, so that they are tested.
 import type { Topics } from "../../live/live.ts";
-import type { Role } from "../../rpc/session.ts";
-
-const kOrder: readonly Role[] = ["none", "view", "operate", "set_up", "administer"];
-const isAtLeast = (role: Role, needed: Role): boolean => kOrder.indexOf(role) >= kOrder.indexOf(needed);
+import { type Role, mayAs } from "../../rpc/session.ts";
 
 export interface Asked {
   role: Role;
@@ -28,7 +25,7 @@ export const isMine = (seen: Pick<Seen, "control" | "who">): boolean =>
 
 export function refusalOf(asked: Asked, seen: Seen): Refusal {
   if (!seen.online) return "offline";
-  if (!isAtLeast(seen.role, asked.role)) return seen.hasToken ? "role" : "token";
+  if (!mayAs(seen.role, asked.role)) return seen.hasToken ? "role" : "token";
   if (asked.control && !isMine(seen)) return seen.control?.owner ? "control_other" : "control_none";
   if (asked.still && seen.state?.acquiring) return "job";
   return "";

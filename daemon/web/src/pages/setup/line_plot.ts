@@ -1,7 +1,7 @@
 // A curve with its axes' ends and a mark: for what one reads at a glance. The numbers are in a table for who cannot see it.
 import { number, t, useLanguage } from "../../i18n/i18n.ts";
+import { usefulDigits } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
-import { usefulDigits } from "./units.ts";
 
 interface Props {
   points: [number, number][];

@@ -1,13 +1,15 @@
 // Values of the trial by the draft's measurements, and the limits of each.
 import { useState } from "preact/hooks";
 import { number, t } from "../../../i18n/i18n.ts";
+import { digitsOf } from "../../../lib/digits.ts";
 import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
+import { shownUnit } from "../../../lib/units.ts";
 import { VerdictLabel } from "../../../parts/verdict_mark.ts";
 import { getAt } from "../../../recipe/document.ts";
 import { evaluateBy, keepForTrial } from "../../../recipe/try_recipe.ts";
 import { session } from "../../../rpc/session.ts";
-import { type Value, digitsOf, unitText, valuesOf } from "../../../results/values.ts";
+import { type Value, valuesOf } from "../../../results/values.ts";
 import { textOfValue, valueOfText } from "../fields/number_field.ts";
 import { withUnits } from "../fields/names.ts";
 import type { StepProps } from "./assistant.ts";
@@ -42,7 +44,7 @@ export function LimitStep({ editor, newest }: StepProps) {
       <tbody>${values.map((value) => html`<tr key=${`${value.measurement} ${value.name}`}>
         <td>${value.measurement}<br/><span class="help">${value.name}</span></td>
         <td class="number">${value.value === null ? html`<span class="help" lang="en">${withUnits(value.reason)}</span>`
-          : `${number(value.value, digitsOf(value.value, value.U))}${value.U === null ? "" : ` ± ${number(value.U, digitsOf(value.value, value.U))}`} ${unitText(value.unit)}`}</td>
+          : `${number(value.value, digitsOf(value.value, value.U))}${value.U === null ? "" : ` ± ${number(value.U, digitsOf(value.value, value.U))}`} ${shownUnit(value.unit)}`}</td>
         <td>${limit(value, "lower")}</td><td>${limit(value, "upper")}</td>
         <td><${VerdictLabel} verdict=${value.verdict}/></td>
       </tr>`)}</tbody>

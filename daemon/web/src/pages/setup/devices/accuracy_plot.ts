@@ -1,13 +1,13 @@
 // How exactly the stage went where it was sent, over all scans: mean, spread, 95 % and worst on one scale.
 import { useEffect, useState } from "preact/hooks";
 import { number, t, useLanguage } from "../../../i18n/i18n.ts";
+import { usefulDigits } from "../../../lib/digits.ts";
 import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
 import { results } from "../../../live/live.ts";
 import { messageOf } from "../../../parts/message_of.ts";
 import { call } from "../../../rpc/rpc.ts";
 import { Problem } from "../problem.ts";
-import { usefulDigits } from "../units.ts";
 import { type Accuracy, type Row, rowsOf } from "./accuracy_rows.ts";
 
 function Scale({ row }: { row: Row }) {

@@ -1,10 +1,10 @@
 // Whether camera, stage and disk are there, and what their lines counted.
 import { number, t, tWord, useLanguage } from "../../../i18n/i18n.ts";
+import { usefulDigits } from "../../../lib/digits.ts";
 import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
+import { numbersOf } from "../../../live/health_history.ts";
 import { topics } from "../../../live/live.ts";
-import { usefulDigits } from "../units.ts";
-import { numbersOf } from "./health_history.ts";
 
 interface Device {
   open?: boolean;

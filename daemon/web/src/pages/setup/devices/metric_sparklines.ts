@@ -1,10 +1,9 @@
 // Metrics as small curves: form and newest value, from what was told since this tab was opened.
 import { number, t, tWord, useLanguage } from "../../../i18n/i18n.ts";
+import { usefulDigits } from "../../../lib/digits.ts";
 import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
-import { usefulDigits } from "../units.ts";
-import { seriesOf } from "./health_history.ts";
-import { healthHistory } from "./health_store.ts";
+import { healthHistory, seriesOf } from "../../../live/health_history.ts";
 import { Sparkline } from "./sparkline.ts";
 
 interface Metric {

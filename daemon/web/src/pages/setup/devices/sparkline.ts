@@ -1,7 +1,7 @@
 // A curve as small as a word.
 import { number, t } from "../../../i18n/i18n.ts";
+import { usefulDigits } from "../../../lib/digits.ts";
 import { html } from "../../../lib/html.ts";
-import { usefulDigits } from "../units.ts";
 import { pathOf } from "./sparkline_path.ts";
 
 const kWidth = 120;

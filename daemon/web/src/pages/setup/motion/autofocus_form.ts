@@ -2,12 +2,12 @@
 import { useState } from "preact/hooks";
 import { number, t, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
+import { readNumber } from "../../../lib/read_number.ts";
 import { useStore } from "../../../lib/store.ts";
 import { call } from "../../../rpc/rpc.ts";
 import { LinePlot } from "../line_plot.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import { typedNumber } from "../typed_number.ts";
 import { useCommand } from "../use_command.ts";
 import { asCommand } from "./devices_turn.ts";
 import { isLight, light, lightParams } from "./light.ts";
@@ -21,9 +21,9 @@ export function AutofocusForm() {
   const settings = useStore(light);
   const { running, answer, problem, run } = useCommand<Found>();
   const why = useRefusal({ role: "set_up", control: true, still: true });
-  const from_um = typedNumber(range.from);
-  const to_um = typedNumber(range.to);
-  const step_um = typedNumber(range.step);
+  const from_um = readNumber(range.from);
+  const to_um = readNumber(range.to);
+  const step_um = readNumber(range.step);
   const isRange = from_um !== null && to_um !== null && from_um < to_um && (range.step.trim() === "" || (step_um !== null && step_um > 0));
 
   const search = (event: Event): void => {

@@ -1,12 +1,12 @@
 // Light: what pictures are taken with, what the daemon suggests, and one picture kept on the instrument's computer.
 import { useEffect, useState } from "preact/hooks";
 import { number, t, useLanguage } from "../../../i18n/i18n.ts";
+import { usefulDigits } from "../../../lib/digits.ts";
 import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
 import { call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import { usefulDigits } from "../units.ts";
 import { useCommand } from "../use_command.ts";
 import { asCommand } from "./devices_turn.ts";
 import { type Light, isLight, light, lightParams } from "./light.ts";

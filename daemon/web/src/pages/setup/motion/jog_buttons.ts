@@ -2,13 +2,13 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { t, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
+import { readNumber } from "../../../lib/read_number.ts";
 import { place } from "../../../lib/router.ts";
 import { moment } from "../../../lib/wake.ts";
 import { messageOf } from "../../../parts/message_of.ts";
 import { RpcError, call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import { typedNumber } from "../typed_number.ts";
 import { commandsUnderWay } from "./devices_turn.ts";
 import { type Direction, JogHold, kUntil_ms } from "./jog_hold.ts";
 import { stagePlace } from "./stage_place.ts";
@@ -45,7 +45,7 @@ export function JogButtons() {
   const [held, setHeld] = useState<Direction | null>(null);
   const [problem, setProblem] = useState("");
   const why = useRefusal({ role: "set_up", control: true, still: true });
-  const value = typedNumber(speed);
+  const value = readNumber(speed);
   const isSpeed = value !== null && value > 0;
   const speedNow = useRef(0);
   speedNow.current = isSpeed ? value : 0;

@@ -1,6 +1,6 @@
 // Exposure and gain that pictures, snaps and the focus search are taken with: typed here once.
+import { readNumber } from "../../../lib/read_number.ts";
 import { createStore } from "../../../lib/store.ts";
-import { typedNumber } from "../typed_number.ts";
 
 export interface Light {
   exposure_us: string;  // as typed; empty = as the camera has it, or the recipe
@@ -18,8 +18,8 @@ export interface LightParams {
 
 export function lightParams({ exposure_us, gain_db, recipe }: Light): LightParams {
   const params: LightParams = {};
-  const exposure = typedNumber(exposure_us);
-  const gain = typedNumber(gain_db);
+  const exposure = readNumber(exposure_us);
+  const gain = readNumber(gain_db);
   if (exposure !== null) params.exposure_us = exposure;
   if (gain !== null) params.gain_db = gain;
   if (recipe !== "") params.recipe = recipe;
@@ -27,4 +27,4 @@ export function lightParams({ exposure_us, gain_db, recipe }: Light): LightParam
 }
 
 export const isLight = ({ exposure_us, gain_db }: Light): boolean =>
-  [exposure_us, gain_db].every((text) => text.trim() === "" || typedNumber(text) !== null);
+  [exposure_us, gain_db].every((text) => text.trim() === "" || readNumber(text) !== null);

@@ -2,10 +2,10 @@
 import { useState } from "preact/hooks";
 import { number, t, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
+import { readNumber } from "../../../lib/read_number.ts";
 import { call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import { typedNumber } from "../typed_number.ts";
 import { useCommand } from "../use_command.ts";
 import { asCommand } from "./devices_turn.ts";
 import { sawStageAt, stagePlace } from "./stage_place.ts";
@@ -16,7 +16,7 @@ export function StageCommands() {
   const { running, answer, problem, run } = useCommand<{ z_um: number }>();
   const why = useRefusal({ role: "set_up", control: true, still: true });
   const whyHome = useRefusal({ role: "operate", control: true, still: true });
-  const z_um = typedNumber(target);
+  const z_um = readNumber(target);
 
   const moved = (work: () => Promise<{ z_um: number }>): void => {
     void run(() => asCommand(async () => {

@@ -1,5 +1,6 @@
 // A study's figure as people read it.
-import { digitsOfUncertain, shownUnit, usefulDigits } from "../units.ts";
+import { digitsOfUncertain, usefulDigits } from "../../../lib/digits.ts";
+import { shownUnit } from "../../../lib/units.ts";
 import type { Figure } from "./study_types.ts";
 
 export interface FigureText {

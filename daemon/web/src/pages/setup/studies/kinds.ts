@@ -5,7 +5,5 @@ export const kKinds = [
   ["gauge", ["type1", "rr", "capability"]],
 ] as const;
 
-export const kMethods: readonly string[] = kKinds.flatMap(([group, names]) => names.map((name) => `${group}.${name}`));
-
 // The guidance of a proposal is that of the test it rests on.
 export const proposes = (method: string): boolean => method.startsWith("calibrate.");

@@ -1,7 +1,7 @@
 // Rows of a parameter that is a list of objects, as the steps of known height: one row a job.
 import { t, tWord, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
-import { shownUnit } from "../units.ts";
+import { shownUnit } from "../../../lib/units.ts";
 import type { Field } from "./study_fields.ts";
 import { type Faults, type Row, emptyRow } from "./study_values.ts";
 

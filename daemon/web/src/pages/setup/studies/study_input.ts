@@ -1,7 +1,7 @@
 // One parameter of a study: its name, unit, range and default, the daemon's sentence about it, and what takes it.
 import { number, t, tWord, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
-import { shownUnit } from "../units.ts";
+import { shownUnit } from "../../../lib/units.ts";
 import { JobIdsInput } from "./job_ids_input.ts";
 import type { KnownJobs } from "./known_jobs.ts";
 import { RegionInput } from "./region_input.ts";

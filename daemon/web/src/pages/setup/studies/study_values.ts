@@ -1,5 +1,5 @@
 // What was typed into a study's form, as the daemon takes it, or which fields are not right yet.
-import { typedNumber } from "../typed_number.ts";
+import { readNumber } from "../../../lib/read_number.ts";
 import type { Field } from "./study_fields.ts";
 
 export interface Region {
@@ -33,7 +33,7 @@ export const emptyRow = (field: Field): Row =>
   Object.fromEntries(field.columns.map(({ name, fallback }) => [name, typeof fallback === "string" ? fallback : ""]));
 
 function faultOfNumber(text: string, field: Field): Fault | null {
-  const value = typedNumber(text);
+  const value = readNumber(text);
   if (value === null) return "no_number";
   if (field.kind === "integer" && !Number.isInteger(value)) return "no_integer";
   if (field.minimum !== null && (field.isOpen ? value <= field.minimum : value < field.minimum)) return "too_small";
@@ -48,7 +48,7 @@ function takeText(field: Field, text: string, at: string, faults: Faults): unkno
   }
   if (field.kind !== "number" && field.kind !== "integer") return text.trim();
   const fault = faultOfNumber(text, field);
-  if (fault === null) return typedNumber(text);
+  if (fault === null) return readNumber(text);
   faults[at] = fault;
   return undefined;
 }
@@ -57,7 +57,7 @@ function takeRegion(region: Region, at: string, faults: Faults): unknown {
   if (region.shape === "") return undefined;
   const numbers: Record<string, number> = {};
   for (const name of kRegionNumbers[region.shape]) {
-    const value = typedNumber(region.numbers[name] ?? "");
+    const value = readNumber(region.numbers[name] ?? "");
     if (value === null) faults[`${at}.${name}`] = "no_number";
     else if (value <= 0 && name !== "x" && name !== "y") faults[`${at}.${name}`] = "too_small";
     else numbers[name] = value;

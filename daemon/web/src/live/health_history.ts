@@ -1,5 +1,6 @@
-// What the daemon told of its devices while this page was open, for the sparklines: a bounded memory, no request of its own.
-import type { Topics } from "../../../live/live.ts";
+// What the daemon told of its devices while this tab was open, for the sparklines: a bounded memory, no request of its own.
+import { createStore } from "../lib/store.ts";
+import { type Topics, topics } from "./live.ts";
 
 export interface Sample {
   at_ms: number;
@@ -39,4 +40,17 @@ export function seriesOf(samples: readonly Sample[], path: string, isCounter: bo
     rates.push([to_s, Math.max(0, after - before) / (to_s - from_s)]);
   }
   return rates;
+}
+
+export const healthHistory = createStore<Sample[]>([]);
+
+// Begins to remember; call the result to end it.
+export function rememberHealth(): () => void {
+  let last: Topics["health"] = null;
+  return topics.watch(() => {
+    const { health } = topics.get();
+    if (health === last) return;
+    last = health;
+    healthHistory.update((samples) => remember(samples, health, performance.now()));
+  });
 }
