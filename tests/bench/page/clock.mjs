@@ -1,6 +1,7 @@
 // Times of this program, of the page and of the simulated stage on one clock: CLOCK_MONOTONIC, in ms.
+import { now_ms } from "../../web/browser/wait.mjs";
 
-export const now_ms = () => Number(process.hrtime.bigint() / 1000n) / 1000;
+export { now_ms };
 
 // What has to be added to the page's performance.now(). The tightest of several looks counts: within half of its width.
 export async function offsetOf(page) {

@@ -54,7 +54,15 @@ export async function keyboardJob(browser, station, figures, recipe = "groove") 
     await tabTo(page, "the result", isFocused('a[href^="/jobs/"]'));
     await page.keyboard.press("Enter");
     await until("the result's page", () => page.url().includes("/jobs/"));
-    await tabTo(page, "the profile", isFocused(".profile input, .profile button, .profile-tool input, [data-tool=profile]"));
+    await page.locator(".profile-panel").waitFor();
+    await tabTo(page, "the profile", isFocused(".profile-panel input"));
+    // Another beginning of the line: another curve, as its table says.
+    const title = () => page.locator(".profile-plot").getAttribute("aria-label");
+    const before = await title();
+    await page.keyboard.press("Control+A");
+    await page.keyboard.type("1");
+    await page.keyboard.press("Enter");
+    await until("the curve of another line", async () => await title() !== before);
     steps.push("profile");
     return true;
   } catch (error) {

@@ -21,6 +21,7 @@ export async function openTab(browser, station, figures, { language = "en", them
     tell("breach of the content security policy", text);
   });
   await context.addInitScript(([given, settings]) => {
+    if (self.origin === "null") return;  // an empty page may keep nothing
     if (given) sessionStorage.setItem("fvd.token", given);
     for (const [key, value] of Object.entries(settings)) localStorage.setItem(key, value);
     addEventListener("securitypolicyviolation", (event) => void window.tellBreach(`${event.violatedDirective} ${event.blockedURI}`));

@@ -1,5 +1,8 @@
 // Waits for conditions with generous bounds; nothing here sleeps a fixed time to be lucky.
 
+// CLOCK_MONOTONIC, in ms.
+export const now_ms = () => Number(process.hrtime.bigint() / 1000n) / 1000;
+
 export async function until(what, condition, within_ms = 30000) {
   const end = performance.now() + within_ms;
   for (;;) {
