@@ -64,6 +64,53 @@ test("who never answers is given up, and the number is asked for anew", async ()
   assert.equal(looks(), 2);
 });
 
+test("a start that still asks for its number is not sent after a stop", async () => {
+  let cancel = (): void => undefined;
+  let asked = 0;
+  const starter = createStarter({
+    start: async ({ seq }) => {
+      ++asked;
+      return { job_id: `job-${seq}`, seq, client: "page", duplicate: false, state: "processing" };
+    },
+    newest: async () => {
+      cancel();
+      return 1;
+    },
+    wait: async () => undefined,
+  }, "s");
+  cancel = starter.cancel;
+  await assert.rejects(starter.start("p", "r"), { code: kOffline });
+  assert.equal(asked, 0);
+});
+
+test("a press of before a sleep starts nothing after it", async () => {
+  const now = Date.now;
+  let asked = 0;
+  let slept_ms = 0;
+  Date.now = () => now() + slept_ms;
+  const sleeping = (when: "asked" | "waited") => createStarter({
+    start: async () => {
+      ++asked;
+      throw new RpcError(kOffline, "offline", "gone");
+    },
+    newest: async () => {
+      if (when === "asked") slept_ms += 3600000;
+      return 1;
+    },
+    wait: async () => {
+      if (when === "waited") slept_ms += 3600000;
+    },
+  }, "s");
+  try {
+    await assert.rejects(sleeping("asked").start("p", "r"), { code: kOffline });
+    assert.equal(asked, 0);
+    await assert.rejects(sleeping("waited").start("p", "r"), { code: kOffline });
+    assert.equal(asked, 1);
+  } finally {
+    Date.now = now;
+  }
+});
+
 test("after a stop a lost start is not repeated", async () => {
   let cancel = (): void => undefined;
   let asked = 0;
