@@ -40,6 +40,9 @@ test("the narrower soft limits hold", () => {
   assert.deepEqual(limitsOf(stage, objectives, "5x"), { min_um: -500, max_um: 500 });
   assert.deepEqual(limitsOf({ open: true }, objectives, "20x"), { min_um: -100, max_um: 900 });
   assert.equal(limitsOf({ open: true }, objectives, ""), null);
+  const oneSided = [{ name: "50x", min_um: -20 }];
+  assert.deepEqual(limitsOf(stage, oneSided, "50x"), { min_um: -20, max_um: 500 });
+  assert.equal(limitsOf({ open: true }, oneSided, "50x"), null, "the other end is not known");
   assert.equal(limitsOf(undefined, undefined, ""), null);
   assert.equal(limitsOf({ min_um: 5, max_um: 5 }, [], ""), null);
 });

@@ -4,6 +4,7 @@ import { digitsOf } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
 import { shownUnit } from "../../lib/units.ts";
 import { VerdictLabel, verdictWord } from "../../parts/verdict_mark.ts";
+import { nameOf } from "../../result/value_text.ts";
 import { type ValueRow, forPeople } from "../../run/value_rows.ts";
 import { LimitBarView, limitsText } from "./limit_bar_view.ts";
 
@@ -15,7 +16,7 @@ function Row({ row: raw }: { row: ValueRow }) {
   const limits = limitsText(row, unit);
   const value = row.value === null ? t("run.no_value") : withUnit(row.value);
   return html`<tr>
-    <th scope="row">${row.measurement ? html`<span class="measurement">${row.measurement}</span> ${row.name}` : tWord("run.value", row.name)}</th>
+    <th scope="row">${row.measurement ? html`<span class="measurement">${row.measurement}</span> ${nameOf(row.name)}` : tWord("run.value", row.name)}</th>
     <td class="number">${value}</td>
     <td class="number">${row.value === null ? "" : row.U === null ? html`<span class="help">${t("run.no_u")}</span>` : `± ${withUnit(row.U)}`}</td>
     <td class="limits">${row.value !== null && html`<${LimitBarView} row=${row} label=${`${value}; ${limits}; ${verdictWord(row.verdict)}`}/>`}

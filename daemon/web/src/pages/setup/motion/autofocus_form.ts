@@ -1,5 +1,6 @@
 // Looks for the sharpest place in a range, and shows how sharp it was where.
 import { useState } from "preact/hooks";
+import { asCommand } from "../../../camera/devices_turn.ts";
 import { number, t, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { readNumber } from "../../../lib/read_number.ts";
@@ -9,7 +10,6 @@ import { LinePlot } from "../line_plot.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
 import { useCommand } from "../use_command.ts";
-import { asCommand } from "./devices_turn.ts";
 import { isLight, light, lightParams } from "./light.ts";
 import { sawStageAt, stagePlace } from "./stage_place.ts";
 

@@ -1,5 +1,6 @@
 // Light: what pictures are taken with, what the daemon suggests, and one picture kept on the instrument's computer.
 import { useEffect, useState } from "preact/hooks";
+import { asCommand } from "../../../camera/devices_turn.ts";
 import { number, t, useLanguage } from "../../../i18n/i18n.ts";
 import { usefulDigits } from "../../../lib/digits.ts";
 import { html } from "../../../lib/html.ts";
@@ -8,7 +9,6 @@ import { call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
 import { useCommand } from "../use_command.ts";
-import { asCommand } from "./devices_turn.ts";
 import { type Light, isLight, light, lightParams } from "./light.ts";
 import { sawStageAt } from "./stage_place.ts";
 

@@ -1,5 +1,6 @@
 // Two buttons that move the stage while they are held, by a pointer or by a key.
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { commandsUnderWay } from "../../../camera/devices_turn.ts";
 import { t, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { readNumber } from "../../../lib/read_number.ts";
@@ -9,7 +10,6 @@ import { messageOf } from "../../../parts/message_of.ts";
 import { RpcError, call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
-import { commandsUnderWay } from "./devices_turn.ts";
 import { type Direction, JogHold, kUntil_ms } from "./jog_hold.ts";
 import { stagePlace } from "./stage_place.ts";
 

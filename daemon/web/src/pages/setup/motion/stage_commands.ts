@@ -1,5 +1,6 @@
 // One motion a press: to a place, to the reference, to where the picture is sharpest.
 import { useState } from "preact/hooks";
+import { asCommand } from "../../../camera/devices_turn.ts";
 import { number, t, useLanguage } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { readNumber } from "../../../lib/read_number.ts";
@@ -7,7 +8,6 @@ import { call } from "../../../rpc/rpc.ts";
 import { useRefusal } from "../permission.ts";
 import { Problem } from "../problem.ts";
 import { useCommand } from "../use_command.ts";
-import { asCommand } from "./devices_turn.ts";
 import { sawStageAt, stagePlace } from "./stage_place.ts";
 
 export function StageCommands() {

@@ -7,18 +7,18 @@ export interface Limits {
 
 const isNumber = (value: unknown): value is number => typeof value === "number" && Number.isFinite(value);
 
-function limitsIn(about: unknown): Limits | null {
+// One end may be missing: an objective may limit the stage at one side alone.
+function endsOf(about: unknown): { low: number; high: number } {
   const { min_um, max_um } = (about ?? {}) as Record<string, unknown>;
-  return isNumber(min_um) && isNumber(max_um) && min_um < max_um ? { min_um, max_um } : null;
+  return { low: isNumber(min_um) ? min_um : -Infinity, high: isNumber(max_um) ? max_um : Infinity };
 }
 
-// The confirmed objective's limits hold inside the stage's own. Null: the daemon told neither; it holds them anyhow.
+// The confirmed objective's limits hold inside the stage's own. Null: the daemon did not tell both ends; it holds them anyhow.
 export function limitsOf(stage: unknown, objectives: unknown, confirmed: string): Limits | null {
-  const own = limitsIn(stage);
   const list = Array.isArray(objectives) ? (objectives as Record<string, unknown>[]) : [];
-  const narrower = limitsIn(list.find((each) => each["name"] === confirmed));
-  if (own === null || narrower === null) return narrower ?? own;
-  return { min_um: Math.max(own.min_um, narrower.min_um), max_um: Math.min(own.max_um, narrower.max_um) };
+  const all = [stage, list.find((each) => each["name"] === confirmed)].map(endsOf);
+  const [min_um, max_um] = [Math.max(...all.map(({ low }) => low)), Math.min(...all.map(({ high }) => high))];
+  return Number.isFinite(min_um) && Number.isFinite(max_um) && min_um < max_um ? { min_um, max_um } : null;
 }
 
 // Where a position lies on a scale of limits: 0 at the lower end, 1 at the upper.

@@ -1,6 +1,6 @@
 // The devices do one command at a time. The live picture takes its turn between the commands of this tab, so that
 // a press is not answered with "busy" by the page's own picture.
-import { createStore } from "../../../lib/store.ts";
+import { createStore } from "../lib/store.ts";
 
 let last: Promise<unknown> = Promise.resolve();
 

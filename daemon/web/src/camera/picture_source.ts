@@ -1,6 +1,9 @@
 // Pictures for the eye, one after another. Who operates has one taken; who looks on sees what the daemon shows anyhow.
-import { ask, call } from "../../../rpc/rpc.ts";
-import type { LightParams } from "./light.ts";
+import { within } from "../lib/patience.ts";
+import type { Methods } from "../rpc/methods.ts";
+import { ask, call } from "../rpc/rpc.ts";
+
+export type PictureParams = Methods["camera.preview"]["params"];
 
 export interface Picture {
   seq: number;
@@ -19,13 +22,15 @@ function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-export async function takePicture(params: LightParams, signal: AbortSignal): Promise<Picture> {
+export async function takePicture(params: PictureParams, signal: AbortSignal): Promise<Picture> {
   const { seq, width_px, height_px, z_um, focus, saturated_fraction, png_base64 } = await call("camera.preview", params, { signal });
   return { seq, width_px, height_px, z_um, focus, saturated_fraction, blob: new Blob([bytesOf(png_base64)], { type: "image/png" }) };
 }
 
+const kPatience_ms = 20000;  // a connection that died in sleep or with a cable answers nothing, for minutes
+
 // Null: none within the daemon's patience.
-export async function awaitPicture(after: number, signal: AbortSignal): Promise<Picture | null> {
+export const awaitPicture = (after: number, outer: AbortSignal): Promise<Picture | null> => within(kPatience_ms, async (signal) => {
   const response = await ask(`/api/v1/preview.jpg?after=${after}`, { signal, cache: "no-store" });
   if (response.status === 204) return null;
   if (!response.ok) throw new Error(`HTTP ${response.status}`);
@@ -43,4 +48,4 @@ export async function awaitPicture(after: number, signal: AbortSignal): Promise<
     focus: told("X-Fvd-Focus"),
     saturated_fraction: told("X-Fvd-Saturated-Fraction"),
   };
-}
+}, outer);
