@@ -10,6 +10,7 @@
 #include "daemon/transport/http_fields.hpp"
 #include "daemon/transport/http_message.hpp"
 #include "daemon/transport/http_routes.hpp"
+#include "daemon/transport/paced_drop.hpp"
 #include "daemon/transport/reading_time.hpp"
 #include "daemon/transport/tcp_options.hpp"
 
@@ -29,7 +30,8 @@ constexpr std::chrono::seconds kHeaderTime{10};
 constexpr std::chrono::seconds kBodyTime{10};
 constexpr std::chrono::seconds kKeepAliveTime{60};  // between two requests
 constexpr std::chrono::seconds kDrainTime{1};
-constexpr std::size_t kDrainChunk_bytes = 4096;
+/// Of what a reader of a stream says, which is for nobody.
+constexpr std::size_t kMostBehindStream_bytes = std::size_t{1} << 20U;
 
 /// Without a token nobody can change anything by HTTP, whatever his address may do elsewhere: a page in a browser has
 /// that address too.
@@ -258,9 +260,9 @@ void HttpSession::watch_client() {
     if (self->socket_.available(gone) == 0) return self->close();
     // Behind a stream comes no other request: what is sent all the same would hide the client's end.
     if (!self->fetch_ || !self->fetch_->stream) return;
-    std::array<char, kDrainChunk_bytes> dropped{};
-    self->socket_.read_some(asio::buffer(dropped), gone);
-    if (gone) return self->close();
+    std::array<char, 4096> dropped{};
+    self->behind_stream_bytes_ += self->socket_.read_some(asio::buffer(dropped), gone);
+    if (gone || self->behind_stream_bytes_ > kMostBehindStream_bytes) return self->close();
     self->watch_client();
   });
 }
@@ -378,18 +380,12 @@ void HttpSession::drain() {
   state_ = AtWork::kNothing;
   ErrorCodeOf ignored;
   socket_.shutdown(Socket::shutdown_send, ignored);
-  expire_after(kDrainTime);
-  drain_more();
-}
-
-void HttpSession::drain_more() {
-  buffer_.clear();
-  socket_.async_read_some(buffer_.prepare(kDrainChunk_bytes),
-                          [self = shared_from_this()](ErrorCodeOf error, std::size_t) {
-                            if (self->is_closed_) return;
-                            if (error || self->timed_out_) return self->close();
-                            self->drain_more();
-                          });
+  // expire_after() ends what is under way; between two reads nothing is.
+  deadline_.expires_after(kDrainTime);
+  deadline_.async_wait([self = shared_from_this()](ErrorCodeOf error) {
+    if (!error) self->close();
+  });
+  drop_at_a_pace(socket_, wait_, [self = shared_from_this()] { self->close(); });
 }
 
 }  // namespace fvd

@@ -115,7 +115,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void check_wait(bool timed_out);
   void end_wait(std::optional<std::string> reply);
   /// Closes when the client does, which nobody would see during a wait otherwise; until end_request(). A request behind
-  /// this one stays unread and hides that end; behind a stream, which no request follows, input is dropped.
+  /// this one stays unread and hides that end; behind a stream, which no request follows, input is dropped, and closes
+  /// where it is much.
   void watch_client();
   /// Runs `what`, which may block, on a worker, then the member `then` with its result on the server's thread.
   template <typename Result>
@@ -166,7 +167,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   [[nodiscard]] bool is_head() const;
   /// Lets the client read the answer, then closes: to close with unread input would discard it.
   void drain();
-  void drain_more();
   /// Whatever is under way ends then with timed_out_ set.
   void expire_after(std::chrono::milliseconds time);
 
@@ -190,6 +190,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   HostTime since_ = HostClock::now();
   std::uint64_t watches_ = 0;  ///< of the client, that began
   std::uint64_t watch_ = 0;    ///< the one that counts; 0 = none
+  std::size_t behind_stream_bytes_ = 0;
   AtWork state_ = AtWork::kNothing;
   bool timed_out_ = false;
   bool wait_is_over_ = false;

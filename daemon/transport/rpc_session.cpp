@@ -8,6 +8,7 @@
 #include <boost/asio/write.hpp>
 
 #include "daemon/transport/foreign_protocol.hpp"
+#include "daemon/transport/paced_drop.hpp"
 #include "daemon/transport/tcp_options.hpp"
 
 namespace fvd {
@@ -28,9 +29,6 @@ constexpr int kMostLooks = 4;
 constexpr std::string_view kTerminators("\n\r\0", 3);
 constexpr std::chrono::milliseconds kLongestLineEnd{3000};  // from a text to its end: networks repeat what they lose
 constexpr std::chrono::seconds kRefusalGrace{1};            // for a refused client to read the reason
-// What a refused client goes on sending is dropped no faster: as fast as it comes would take the processor from others.
-constexpr std::size_t kDropChunk_bytes = std::size_t{64} << 10U;
-constexpr std::chrono::milliseconds kDropPause{10};
 
 }  // namespace
 
@@ -124,20 +122,8 @@ void RpcSession::read() {
       self->watches_end_ = false;
       self->process();
     }
-    if (self->refused_) return self->drop();
+    if (self->refused_) return drop_at_a_pace(self->socket_, self->drop_, [self] { self->close(); });
     self->read();
-  });
-}
-
-void RpcSession::drop() {
-  drop_.expires_after(kDropPause);
-  drop_.async_wait([self = shared_from_this()](ErrorCodeOf stopped) {
-    if (stopped) return;
-    thread_local std::array<char, kDropChunk_bytes> dropped;  // of all sessions: nobody looks at it
-    self->socket_.async_read_some(asio::buffer(dropped), [self](ErrorCodeOf error, std::size_t) {
-      if (error) return self->close();
-      self->drop();
-    });
   });
 }
 

@@ -85,8 +85,6 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   /// Restarts the idle timeout; an unfinished line does not restart it, an empty one does.
   void watch_idle();
   void read();
-  /// After a refusal: closing with unread input would discard the refusal.
-  void drop();
   /// Cuts what has come into lines.
   void receive(std::string_view bytes);
   /// The client closed its sending side; its open requests are still answered.
@@ -127,7 +125,7 @@ class RpcSession : public std::enable_shared_from_this<RpcSession> {
   boost::asio::steady_timer idle_;
   boost::asio::steady_timer wait_;
   boost::asio::steady_timer line_end_;
-  boost::asio::steady_timer drop_;
+  boost::asio::steady_timer drop_;  // of what comes after a refusal
   std::array<char, 4096> chunk_{};
   std::string input_;           // the beginning of a line whose end has not come
   std::deque<Line> lines_;      // that wait for their turn; none is blank

@@ -248,6 +248,16 @@ TEST_F(AServerOfStreams, NoticesThatReadersGoWhoSaidMore) {
   EXPECT_TRUE(comes([this] { return news_.readers == 0; }));
 }
 
+TEST_F(AServerOfStreams, ClosesReadersThatTalkOn) {
+  HttpClient one(server_->port());
+  open(one);
+  const std::string more(std::size_t{1} << 16U, 'x');
+  int sent = 0;
+  while (sent < 1000 && one.send(more)) ++sent;
+  EXPECT_LT(sent, 1000);
+  EXPECT_TRUE(comes([this] { return news_.readers == 0; }));
+}
+
 TEST_F(AServerOfStreams, WaitsForNobodyWhoDoesNotRead) {
   HttpClient silent(server_->port());
   HttpClient one(server_->port());
