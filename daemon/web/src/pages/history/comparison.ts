@@ -11,7 +11,7 @@ import { call } from "../../rpc/rpc.ts";
 import { percentDigits } from "../../result/value_text.ts";
 import { valuesOf } from "../../results/values.ts";
 import type { Range } from "../../surface/colours.ts";
-import { percentileRange } from "../../surface/colour_range.ts";
+import { percentileRange, wholeRange } from "../../surface/colour_range.ts";
 import { type Tile, fetchTile } from "../../surface/height_tile.ts";
 import { type WholeMap, fetchWholeMap } from "../../surface/whole_map.ts";
 import { pitchOf } from "../recipe/newest_job.ts";
@@ -44,13 +44,15 @@ function Maps({ sides }: { sides: readonly Side[] }) {
   const range = ranges.length === 0 ? null : { low: Math.min(...ranges.map(({ low }) => low)), high: Math.max(...ranges.map(({ high }) => high)) };
   return html`<div class="side-by-side">${sides.map(({ job_id, result, map, picture }, i) => {
     const valid = map.values.reduce((count, value) => count + (Number.isNaN(value) ? 0 : 1), 0);
+    const whole = wholeRange(map.values, map.values);
+    const um = (metres: number): string => number(metres * 1e6, 2);
     const verdict = result["verdict"];
     const job = result["job"];
     return html`<section class="panel" key=${job_id}>
       <h2>${i === 0 ? "A" : "B"}: <a href=${`/jobs/${encodeURIComponent(job_id)}`}>${job_id}</a></h2>
       <p><bdi>${isObject(job) ? String(job["part_id"] ?? "") : ""}</bdi> · ${isObject(job) ? String(job["recipe"] ?? "") : ""} · <${VerdictLabel} verdict=${typeof verdict === "string" ? verdict : null}/></p>
       <${MapPicture} values=${picture.mean} width=${picture.width} height=${picture.height} range=${range} digits=${2}
-        label=${valid === 0 ? t("map.no_point") : t("history.map_label", { width: map.width, height: map.height, valid: percentDigits(valid / map.values.length) })}/>
+        label=${whole === null ? t("map.no_point") : t("history.map_label", { low: um(whole.low), high: um(whole.high), width: map.width, height: map.height, valid: percentDigits(valid / map.values.length) })}/>
     </section>`;
   })}</div>`;
 }
