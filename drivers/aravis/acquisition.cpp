@@ -140,10 +140,18 @@ void Acquisition::send_trigger() {
 }
 
 void Acquisition::renew_clock() {
-  if (!clock_.due(HostClock::now())) return;
+  if (clock_.due(HostClock::now())) latch();
+}
+
+void Acquisition::renew_clock_early() {
+  if (clock_.due_soon(HostClock::now())) latch();
+}
+
+void Acquisition::latch() {
   const auto pair = latch_clock(presence_.device());
   latches_ = pair.has_value();
-  if (pair) clock_.add(*pair);
+  if (pair) return clock_.add(*pair);
+  clock_.doubt();  // a command may have been lost: the next configure() tries again, also before the clock is old
 }
 
 /// For cameras without a latch: an exposure starts after its trigger was sent, so taking the quickest of some triggers

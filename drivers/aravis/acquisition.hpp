@@ -23,8 +23,9 @@
 namespace fvd {
 
 /// Acquires from the first configure() on. The device's thread changes the object; the thread that uses the camera
-/// reads it after that command has ended. Only renew_clock() may run at the same time as other functions. A configure()
-/// whose caller was interrupted may still run: only clock_due() may be called meanwhile.
+/// reads it after that command has ended. Only renew_clock() and renew_clock_early() may run at the same time as other
+/// functions. A configure() whose caller was interrupted may still run: only clock_due() and clock_due_soon() may be
+/// called meanwhile.
 class Acquisition {
  public:
   /// The referenced objects outlive the acquisition. clock_renewal: age at which the offset of the camera's clock is
@@ -43,9 +44,13 @@ class Acquisition {
   void send_trigger();
   /// Latches the camera's clock if a latch is due. context: the device's thread.
   void renew_clock();
+  /// The same if one soon will be: while nothing is asked of the camera, so that no scan waits for it. context: the
+  /// device's thread.
+  void renew_clock_early();
 
   /// Whether a latch is due; while one is being made the answer is of before. context: thread-safe.
   [[nodiscard]] bool clock_due() const { return latches_ && clock_.due(HostClock::now()); }
+  [[nodiscard]] bool clock_due_soon() const { return latches_ && clock_.due_soon(HostClock::now()); }
   /// The time of a frame cannot be right: the next clock_due() says so.
   void doubt_clock() { clock_.doubt(); }
   [[nodiscard]] const std::string& refusal() const { return intake_.refusal(); }
@@ -72,6 +77,7 @@ class Acquisition {
   void start();
   void stop() noexcept;
   std::uint64_t warm_up();
+  void latch();
   void take_clock_from_triggers();
   [[nodiscard]] std::chrono::microseconds readout() const;
   [[nodiscard]] StreamTimes stream_times() const;
@@ -87,7 +93,7 @@ class Acquisition {
   std::optional<FrameBuffers> frames_;
   HostTime configured_{};
   std::uint64_t ignored_packets_ = 0;  // by Aravis, up to the last good frame
-  std::atomic<bool> latches_{true};    // the camera supports timestamp latching; renew_clock() writes it
+  std::atomic<bool> latches_{true};    // the camera supports timestamp latching; latch() writes it
 };
 
 }  // namespace fvd

@@ -227,7 +227,7 @@ class AravisCamera final : public Camera {
   void look_after() override {
     try {
       presence_.look_after();
-      if (connected()) renew_clock_if_due();  // so that the next scan need not, while its first motion waits
+      if (connected()) renew_clock_early();
     } catch (const Error& error) {
       spdlog::warn("{}", error.what());
     }
@@ -330,11 +330,20 @@ class AravisCamera final : public Camera {
     }
   }
 
+  /// Nothing that needs time is asked now; the next scan need not do it while its first motion waits.
+  void renew_clock_early() {
+    if (is_renewing() || !acquisition_.clock_due_soon()) return;
+    renewal_ = device_.post([this] { acquisition_.renew_clock_early(); });
+  }
+
   void renew_clock_if_due() {
-    // First: until the renewal is done, the device's thread writes what clock_due() reads.
-    if (renewal_.valid() && renewal_.wait_for(milliseconds(0)) != std::future_status::ready) return;
-    if (!acquisition_.clock_due()) return;
+    if (is_renewing() || !acquisition_.clock_due()) return;
     renewal_ = device_.post([this] { acquisition_.renew_clock(); });
+  }
+
+  /// One at a time: until it is done the clock is due as before.
+  [[nodiscard]] bool is_renewing() const {
+    return renewal_.valid() && renewal_.wait_for(milliseconds(0)) != std::future_status::ready;
   }
 
   const CameraConfig config_;

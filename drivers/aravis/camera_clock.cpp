@@ -94,9 +94,13 @@ bool CameraClock::known() const {
   return latest_.has_value();
 }
 
-bool CameraClock::due(HostTime now) const {
+bool CameraClock::due(HostTime now) const { return is_older(now, renew_after_); }
+
+bool CameraClock::due_soon(HostTime now) const { return is_older(now, renew_after_ / 2); }
+
+bool CameraClock::is_older(HostTime now, HostClock::duration age) const {
   const MutexLock lock(mutex_);
-  return !latest_ || doubted_ || now - latest_->host > renew_after_;
+  return !latest_ || doubted_ || now - latest_->host > age;
 }
 
 std::optional<HostTime> CameraClock::to_host(std::uint64_t camera_ns) const {

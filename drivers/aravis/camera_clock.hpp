@@ -37,10 +37,14 @@ class CameraClock {
   [[nodiscard]] bool known() const;
   /// Whether another pair should be added; true before the first.
   [[nodiscard]] bool due(HostTime now) const;
+  /// The same from half of that age on: who has time to spare adds it now, and nobody has to who has none.
+  [[nodiscard]] bool due_soon(HostTime now) const;
   /// Host time of a camera time, within a month of the latest pair; nothing before the first.
   [[nodiscard]] std::optional<HostTime> to_host(std::uint64_t camera_ns) const;
 
  private:
+  [[nodiscard]] bool is_older(HostTime now, HostClock::duration age) const;
+
   const std::chrono::milliseconds renew_after_;
   mutable Mutex mutex_;
   std::optional<ClockPair> first_ FVD_GUARDED_BY(mutex_);  // of the present rate

@@ -99,6 +99,19 @@ TEST(ACameraClock, StaysWithinAMonthOfItsLatestPair) {
   }
 }
 
+TEST(ACameraClock, IsDueSoonFromHalfItsAgeOn) {
+  CameraClock clock(std::chrono::seconds(4));
+  const HostTime now = HostClock::now();
+  EXPECT_TRUE(clock.due_soon(now)) << "before the first";
+  clock.add({1'000'000'000'000, now, {}});
+  EXPECT_FALSE(clock.due_soon(now + std::chrono::seconds(2)));
+  EXPECT_TRUE(clock.due_soon(now + std::chrono::milliseconds(2001)));
+  EXPECT_FALSE(clock.due(now + std::chrono::seconds(4)));
+  EXPECT_TRUE(clock.due(now + std::chrono::milliseconds(4001)));
+  clock.add({3'000'000'000'000, now + std::chrono::seconds(2), {}});
+  EXPECT_FALSE(clock.due_soon(now + std::chrono::seconds(4)));
+}
+
 TEST(ACameraClock, IsDueAgainWhenDoubted) {
   CameraClock clock(std::chrono::hours(1));
   const HostTime now = HostClock::now();
