@@ -93,6 +93,8 @@ DevicesHealth DeviceHub::health() const {
                        .stage = {axis_.connected(), axis_.openings()}};
   if (health.camera.open) health.frames = camera_.get().health();
   if (!health.stage.open) return health;
+  const StageInfo stage = axis_.get().info();
+  health.reach = StageReach{stage.min, stage.max};
   health.link = axis_.get().link_stats();
   if (const auto seen = axis_.get().last_seen()) {
     health.temperatures = seen->temperatures;

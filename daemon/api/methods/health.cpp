@@ -22,7 +22,8 @@ void describe_health(Fields& fields) {
       "has a line also, since it was opened: requests, retries, unanswered, refused, put_off, reconnects, implausible, "
       "discarded_bytes, latency_p50_us, latency_p99_us; temperatures_c by name where the drive tells them; z_um, where "
       "it was at the last look between jobs and "
-      "commands, not its place while one runs, if that is known");
+      "commands, not its place while one runs, if that is known; min_um, max_um, how far it may be sent, while it is "
+      "open");
   result.any("disk", "an object: free_bytes, size_bytes of the file system of the results", Presence::kSometimes);
 }
 
@@ -52,6 +53,7 @@ Reply stage_of(const DevicesHealth& health, bool stands) {
                   {"latency_p99_us", link->latency_p99_us}});
   }
   if (health.position) stage["z_um"] = health.position->value;
+  if (health.reach) stage.update({{"min_um", health.reach->min.value}, {"max_um", health.reach->max.value}});
   for (const StageTemperature& temperature : health.temperatures) {
     stage["temperatures_c"][temperature.name] = temperature.celsius;
   }

@@ -90,6 +90,14 @@ TEST_F(AnInstrumentWithSeveralCallers, TellsWhereTheStageIsWhereThatIsKnown) {
   EXPECT_EQ(answer_to(page_, call("system.health"))["result"]["stage"]["z_um"], -12.5);
 }
 
+TEST_F(AnInstrumentWithSeveralCallers, TellsHowFarTheStageMayBeSentWhileItIsOpen) {
+  EXPECT_FALSE(answer_to(page_, call("system.health"))["result"]["stage"].contains("min_um"));
+  service_.machine.emplace().health.reach = StageReach{Micrometers{-3000.0}, Micrometers{12000.5}};
+  const json stage = answer_to(page_, call("system.health"))["result"]["stage"];
+  EXPECT_EQ(stage["min_um"], -3000.0);
+  EXPECT_EQ(stage["max_um"], 12000.5);
+}
+
 TEST_F(AnInstrumentWithSeveralCallers, StopsWithoutAWorker) {
   service_.current = JobStatus{};
   service_.current->job_id = "J1";

@@ -119,6 +119,16 @@ TEST_F(ADeviceHub, TellsWhereTheAxisWasSeenAsLongAsItIsThere) {
   EXPECT_EQ(hub_.health().position, std::nullopt) << "it may be anywhere";
 }
 
+TEST_F(ADeviceHub, TellsHowFarTheAxisMayBeSentAsLongAsItIsThere) {
+  EXPECT_FALSE(hub_.health().reach.has_value());
+  ASSERT_EQ(hub_.open(), std::nullopt);
+  ASSERT_TRUE(hub_.health().reach.has_value());
+  EXPECT_EQ(hub_.health().reach->min.value, hub_.facts().stage.min.value);
+  EXPECT_EQ(hub_.health().reach->max.value, hub_.facts().stage.max.value);
+  cables_.axis = false;
+  EXPECT_FALSE(hub_.health().reach.has_value());
+}
+
 TEST_F(ADeviceHub, SeesTheAxisStandByItsNewestSampleAlone) {
   EXPECT_FALSE(hub_.seen_standing()) << "there is none";
   cables_.seen_um = 0.0;
