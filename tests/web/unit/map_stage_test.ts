@@ -44,7 +44,10 @@ const overview: Tile = {
   mean: plane, lowest: plane, highest: plane,
 };
 
-test("the width is the stage's own, without its border, and the cursor is at the point under the pointer", async () => {
+Object.defineProperty(SmallElement.prototype, "setPointerCapture", { value: () => undefined });
+
+// The stage when it knows its width, and the points that the cursor was at.
+async function stageOf(): Promise<{ page: SmallElement; stage: SmallElement; seen: (Point | null)[] }> {
   const seen: (Point | null)[] = [];
   const none = (): void => undefined;
   const page = drawn(html`<${MapStage} map=${{ full: { job: "j" }, size, has_pitch: true, unit: "µm" }} overview=${overview} range=${{ low: 0, high: 1 }}
@@ -53,14 +56,34 @@ test("the width is the stage's own, without its border, and the cursor is at the
   await new Promise((tell) => setTimeout(tell));  // it is drawn anew when it knows its width
   const [stage] = page.all(".map-stage");
   assert.ok(stage);
+  return { page, stage, seen };
+}
+
+function send(stage: SmallElement, type: string, clientX: number, clientY: number): void {
+  const listener = stage.listeners.get(type);
+  assert.ok(listener, type);
+  listener.call(stage, { type, button: 0, currentTarget: stage, clientX, clientY });
+}
+
+test("the width is the stage's own, without its border, and the cursor is at the point under the pointer", async () => {
+  const { page, stage, seen } = await stageOf();
   assert.deepEqual(watched, [stage]);
   assert.equal(page.all(".map-overlay")[0]?.given.get("viewBox"), "0 0 398 220");
 
   // 398 x 199 um on 398 x 220 pixels, in the middle; shown in a box of 199 pixels' height, where a pixel is 220 / 199.
-  const type = "pointermove";
-  const point = (clientX: number, clientY: number): void => stage.listeners.get(type)?.call(stage, { type, currentTarget: stage, clientX, clientY });
-  point(11.25, 21.5 + 99.5);
-  point(11.25 + 100.6, 21.5 + 99.5);
-  point(11.25 + 397.9, 21.5 + 99.5);
+  send(stage, "pointermove", 11.25, 21.5 + 99.5);
+  send(stage, "pointermove", 11.25 + 100.6, 21.5 + 99.5);
+  send(stage, "pointermove", 11.25 + 397.9, 21.5 + 99.5);
   assert.deepEqual(seen, [{ column: 0, row: 199 }, { column: 201, row: 199 }, { column: 795, row: 199 }]);
+});
+
+test("a map that is dragged keeps the point under the pointer, also before it is drawn anew", async () => {
+  const { stage, seen } = await stageOf();
+  send(stage, "pointermove", 211.3, 121);
+  send(stage, "pointerdown", 211.3, 121);
+  send(stage, "pointermove", 171.3, 101);
+  await new Promise((tell) => setTimeout(tell));
+  send(stage, "pointermove", 180.3, 131);
+  assert.ok(seen[0]);
+  assert.deepEqual(seen.slice(1), [seen[0], seen[0]]);
 });

@@ -1,5 +1,5 @@
 // Draws tiles of a map into a canvas: the overview first, a sharper piece of what is seen over it when it has come.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { html } from "../../lib/html.ts";
 import { type Kind, type Tile, fetchTile } from "../../surface/height_tile.ts";
 import type { Range } from "../../surface/colours.ts";
@@ -65,7 +65,8 @@ export function MapCanvas({ job, kind, map, overview, range, plane, view, canvas
   const factor = shown?.factor ?? overview.factor;
   useEffect(() => onFactor(factor), [factor]);
 
-  useEffect(() => {
+  // Within the frame in which the overlay moves: else line and cursor would run ahead of the map.
+  useLayoutEffect(() => {
     const target = element.current;
     const context = target?.getContext("2d");
     if (!target || !context) return;

@@ -1,5 +1,5 @@
 // The map in 2D: what it shows, its colours, and what is under the cursor.
-import { useState } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import { number, t, tWord } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { messageOf } from "../../parts/message_of.ts";
@@ -52,9 +52,12 @@ export function MapPanel({ result, map, summary, shapes, line, marks, onLine }: 
   const [cursor, setCursor] = useState<{ at: Point | null; byKeyboard: boolean }>({ at: null, byKeyboard: false });
   const { tile, error } = useOverview(map.full.job, kind);
   const unit = kind === "height" || kind === "sigma" ? "µm" : "";
-  const automatic = tile && rangeOf(tile, mode === "hand" ? "p99" : mode, null);
+  // All values are sorted for it, which is too much for every move of the pointer.
+  const automatic = useMemo(() => tile && rangeOf(tile, mode === "hand" ? "p99" : mode, null), [tile, mode]);
   const range = (mode === "hand" && hand[kind]) || automatic;
   const digits = kind === "texture" ? 0 : range && range.high - range.low < 1 ? 4 : 2;
+  const moveCursor = (at: Point | null, byKeyboard: boolean): void =>
+    setCursor((before) => (before.at?.column === at?.column && before.at?.row === at?.row && before.byKeyboard === byKeyboard ? before : { at, byKeyboard }));
   const byHand = (change: Partial<Range>): void => {
     const next = { ...(range ?? { low: 0, high: 1 }), ...change };
     setHand({ ...hand, [kind]: next });
@@ -88,7 +91,7 @@ export function MapPanel({ result, map, summary, shapes, line, marks, onLine }: 
     ${tile && !range && html`<p role="status">${t("result.map.empty")}</p>`}
     ${tile && html`<${MapStage} map=${map} overview=${tile} plane=${plane} summary=${summary} shapes=${shapes} line=${line} marks=${marks} cursor=${cursor.at}
       range=${range ? { low: range.low / perMetre(kind), high: range.high / perMetre(kind) } : { low: 0, high: 1 }}
-      onCursor=${(at: Point | null, byKeyboard: boolean) => setCursor({ at, byKeyboard })} onLine=${onLine} onFactor=${setFactor}
+      onCursor=${moveCursor} onLine=${onLine} onFactor=${setFactor}
       onError=${(failed: unknown) => setProblem(messageOf(failed))}/>`}
     <${Readout} map=${map} cursor=${cursor.at} byKeyboard=${cursor.byKeyboard}/>
     ${factor > 1 && html`<p class="help">${t("result.reduced", { n: number(factor) })}</p>`}

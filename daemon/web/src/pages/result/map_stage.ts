@@ -1,5 +1,5 @@
 // The map that one can hold: pan, zoom, the profile's ends, a cursor of the pointer and one of the keyboard.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { t } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import type { Shape } from "../../result/fitted_geometry.ts";
@@ -47,8 +47,8 @@ export function MapStage(props: Props) {
   const placeIn = (stage: HTMLElement, { clientX, clientY }: MouseEvent): Place =>
     onCanvas(canvas, (stage.querySelector(".map-canvas") ?? stage).getBoundingClientRect(), { x: clientX, y: clientY });
 
-  // A wheel over the page scrolls it; over the map that was chosen, or with Ctrl, it zooms.
-  useEffect(() => {
+  // A wheel over the page scrolls it; over the map that was chosen, or with Ctrl, it zooms, from the view as it is drawn.
+  useLayoutEffect(() => {
     const element = holder.current;
     if (!element) return;
     const turn = (event: WheelEvent): void => {
@@ -82,12 +82,14 @@ export function MapStage(props: Props) {
   const move = (event: PointerEvent): void => {
     const at = place(event);
     const hold = held.current;
+    let seen = view;
     if (hold?.what === "map") {
-      setView(clampView({ ...hold.view, x: hold.view.x - (at.x - hold.x) / view.scale, y: hold.view.y - (at.y - hold.y) / view.scale }, size, canvas));
+      seen = clampView({ ...hold.view, x: hold.view.x - (at.x - hold.x) / view.scale, y: hold.view.y - (at.y - hold.y) / view.scale }, size, canvas);
+      setView(seen);
     } else if (hold) {
       onLine({ ...line, [hold.what]: inside(toMap(view, canvas, at)) });
     }
-    onCursor(pointAt(size, toMap(view, canvas, at)), false);
+    onCursor(pointAt(size, toMap(seen, canvas, at)), false);
   };
   const zoom = (by: number): void => {
     const middle = cursor ? toScreen(view, canvas, middleOf(size, cursor)) : { x: canvas.width / 2, y: canvas.height / 2 };

@@ -1,5 +1,5 @@
 // The surface in 3D: coarse while it turns, fine when it rests.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { html } from "../../lib/html.ts";
 import { type Range, kGreyTable, kViridisTable } from "../../surface/colours.ts";
 import { GlSurface, frameAt } from "../../surface/gl_surface.ts";
@@ -63,14 +63,15 @@ export function View3dCanvas(props: Props) {
 
   const mesh = ({ heights, colours }: Layer): Mesh => meshOf(heights, colours.mean, range, byTexture ? kGreyTable : kViridisTable, map, exaggeration);
 
-  useEffect(() => {
+  // At once, and what it draws within the same frame: a hand that turns it sees where it is.
+  useLayoutEffect(() => {
     if (!surface) return;
     surface.loadMesh("coarse", mesh(coarse));
     surface.loadMesh("fine", mesh(fine));
     surface.load("frame", ...frameAt(map.width * map.pitch_x, map.height * map.pitch_y, heights_um.low, 128), true);
   }, [surface, coarse, fine, range.low, range.high, byTexture, exaggeration]);
 
-  useEffect(() => {
+  useLayoutEffect(() => {
     const target = element.current;
     if (!target || isRelief || !surface) return;
     const ratio = moving ? 1 : globalThis.devicePixelRatio || 1;

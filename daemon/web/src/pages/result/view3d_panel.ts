@@ -1,5 +1,5 @@
 // The 3D view with what turns it: pointer, keys, buttons.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { number, t } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { messageOf } from "../../parts/message_of.ts";
@@ -73,7 +73,8 @@ export function View3dPanel({ map, summary }: { map: ResultMap; summary: string 
   });
 
   const canvas = { width, height: Math.max(220, Math.min(Math.round(width * 0.7), Math.round(innerHeight * 0.7))) };
-  const found = layers && percentileRange(layers.fine.heights.mean, 0.005, 0.995);
+  // All heights are sorted for it, which is too much for every step of a turn.
+  const found = useMemo(() => layers && percentileRange(layers.fine.heights.mean, 0.005, 0.995), [layers]);
   const heights_um = found && { low: found.low * 1e6, high: found.high * 1e6 };
   const range = layers && (layers.byTexture ? { low: 0, high: 255 } : found);
   const exaggeration = typed ?? (heights_um ? suggestedExaggeration(heights_um.high - heights_um.low, extent(map.size).width) : 1);
