@@ -4,26 +4,18 @@
 #include <exception>
 #include <iostream>
 
-#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.hpp"
 #include "daemon/base/exit_code.hpp"
+#include "daemon/base/heap.hpp"
 #include "daemon/devices/left_threads.hpp"
 #include "daemon/options.hpp"
 #include "daemon/service.hpp"
 
-namespace {
-
-/// Each job's threads are new ones. With the standard eight heaps a core they come upon another one each time, and
-/// years of jobs leave in each of them the most that any thread ever needed.
-void keep_heaps_few() { (void)::mallopt(M_ARENA_MAX, 2); }
-
-}  // namespace
-
 int main(int argc, char** argv) try {
   using namespace fvd;
-  keep_heaps_few();
+  bound_heap();
   const ParsedOptions parsed = parse_options(argc, argv, std::cout, std::cerr);
   if (parsed.exit) return *parsed.exit;
   const StartUp start = start_up(parsed.options, std::cout, std::cerr);

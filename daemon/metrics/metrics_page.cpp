@@ -13,6 +13,7 @@
 
 #include "core/runtime/thread_ticks.hpp"
 #include "daemon/api/rpc_errors.hpp"
+#include "daemon/base/heap.hpp"
 #include "daemon/base/version.hpp"
 #include "daemon/jobs/machine_state.hpp"
 
@@ -115,6 +116,11 @@ void add_system(Page& page, const MachineStatus& machine) {
     page.gauge("process_resident_memory_bytes", "memory in use",
                static_cast<double>(resident_pages) * static_cast<double>(::sysconf(_SC_PAGESIZE)));
   }
+  const HeapUse heap = heap_use();
+  page.gauge("fvd_heap_in_use_bytes", "taken and not freed, without large images; a leak makes it rise without end",
+             static_cast<double>(heap.in_use_bytes));
+  page.gauge("fvd_heap_held_bytes", "that in use, and what the heap keeps for what is taken next",
+             static_cast<double>(heap.held_bytes));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "daemon/metrics/metrics_page.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -9,6 +10,7 @@
 #include <gmock/gmock.h>
 
 #include "core/runtime/thread_ticks.hpp"
+#include "tests/daemon/surface_files/peak_memory.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/scratch_dir.hpp"
 
@@ -93,6 +95,20 @@ TEST(MetricsPage, IsUnhealthyWhileAThreadHangs) {
   ticks.tick(HostClock::now() - std::chrono::seconds(1));
   EXPECT_THAT(why_unhealthy(machine), Optional(HasSubstr("fvd-example hangs")));
   EXPECT_THAT(metrics_text(machine), HasSubstr("fvd_threads_stalled 1\n"));
+}
+
+/// Of a series without labels; -1 = there is none.
+double value_of(const std::string& page, const std::string& series) {
+  const auto at = page.find("\n" + series + " ");
+  return at == std::string::npos ? -1.0 : std::strtod(page.c_str() + at + series.size() + 2, nullptr);
+}
+
+TEST(MetricsPage, TellsOfTheHeapWhatIsInUseAndWhatIsHeld) {
+  const std::string page = metrics_text(MachineStatus{});
+  const double in_use_bytes = value_of(page, "fvd_heap_in_use_bytes");
+  const double held_bytes = value_of(page, "fvd_heap_held_bytes");
+  EXPECT_GE(in_use_bytes, test::kKeepsWhatIsFreed ? 0.0 : 1.0) << "a sanitizer has a heap of its own";
+  EXPECT_GE(held_bytes, in_use_bytes);
 }
 
 std::string promtool() { return std::getenv("FVD_PROMTOOL") != nullptr ? std::getenv("FVD_PROMTOOL") : "promtool"; }
