@@ -63,9 +63,15 @@ def late_slices(result):
             + slices["planned"] - slices["measured"] + slices["retaken"])
 
 
-def resident_kib(pid):
+def memory_kib(pid):
+    """In all ("VmRSS"), and what of it is "RssAnon": its own; "RssFile": programs and files that are mapped."""
     with open(f"/proc/{pid}/status", encoding="ascii") as status:
-        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
+        words = [line.split() for line in status if line.startswith(("VmRSS", "Rss"))]
+    return {key.rstrip(":"): int(kib) for key, kib, _ in words}
+
+
+def resident_kib(pid):
+    return memory_kib(pid)["VmRSS"]
 
 
 class Answer(Exception):
