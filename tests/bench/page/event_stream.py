@@ -54,12 +54,12 @@ class EventStream:
         return None
 
     def close(self):
+        """Another thread may be reading: it comes to the end, and the reply stays open for it until then."""
         try:
             self.socket.shutdown(socket.SHUT_RDWR)
         except OSError:
             pass
-        self.reply.close()
-        self.connection.close()
+        self.socket.close()
 
 
 class Follower(threading.Thread):

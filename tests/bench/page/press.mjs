@@ -31,13 +31,16 @@ async function byPage(tab, station, motions, part) {
   return { stage_ms: moved_ms - pressed_ms, screen_ms: await shown - valid_ms };
 }
 
-async function byCall(station, motions, seq) {
+// Ends when the page shows it: what presses next has seen what was before, and waits for none of it.
+async function byCall(tab, station, motions, seq) {
+  const part_id = `call-${seq}`;
   await isReady(station);
   const sent_ms = now_ms();
-  const { job_id } = await station.call("job.start", { client: "harness", seq, part_id: `call-${seq}`, recipe });
+  const { job_id } = await station.call("job.start", { client: "harness", seq, part_id, recipe });
   const moved_ms = await motions.awaitLine("move", sent_ms);
   await endOf(station, job_id);
   await station.call("result.ack", { job_id });
+  await tab.shownAt(part_id);
   return moved_ms - sent_ms;
 }
 
@@ -47,13 +50,13 @@ await phase(async ({ browser, station, figures }) => {
   const page_ms = [];
   const call_ms = [];
   const screen_ms = [];
-  await byCall(station, motions, 1);  // the first one homes
+  await byCall(tab, station, motions, 1);  // the first one homes
   await byPage(tab, station, motions, "press-0");
   for (let i = 1; i <= rounds(100); ++i) {
     const measured = await byPage(tab, station, motions, `press-${i}`);
     page_ms.push(measured.stage_ms);
     screen_ms.push(measured.screen_ms);
-    call_ms.push(await byCall(station, motions, i + 1));
+    call_ms.push(await byCall(tab, station, motions, i + 1));
   }
   await tab.close();
   motions.close();

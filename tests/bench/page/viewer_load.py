@@ -57,21 +57,25 @@ class Reader:
                 self.maps += 1
 
     def look_on(self):
-        http, after = Http(self.port), 0
+        http, after, newest = Http(self.port), 0, 0
         while not self.is_over:
             status, fields, body = http.get(f"/api/v1/preview.jpg?after={after}")
             now = time.monotonic()
             if status == 204:
-                after = 0
+                after = 0  # as the page does: the picture that is there comes once more
                 continue
             if status != 200:
                 self.failure = f"a viewer gets no picture: {status} {body[:200]!r}"
                 return
             after = int(fields["x-fvd-seq"])
-            self.first_s = self.first_s or now
-            self.last_s = now
-            self.pictures += 1
             self.bytes += len(body)
+            if after == newest:
+                continue
+            newest = after
+            self.pictures += 1
+            if self.pictures == 2:  # the first one may be of a scan before
+                self.first_s = now
+            self.last_s = now
             self.widest_px = max(self.widest_px, jpeg_width(body))
 
     def end(self):
@@ -81,7 +85,7 @@ class Reader:
             thread.join(8)
 
     def pictures_per_s(self):
-        return (self.pictures - 1) / (self.last_s - self.first_s) if self.pictures > 1 else 0.0
+        return (self.pictures - 2) / (self.last_s - self.first_s) if self.pictures > 2 else 0.0
 
 
 class NeverReader:
