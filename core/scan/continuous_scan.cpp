@@ -13,6 +13,7 @@
 
 #include "core/base/error.hpp"
 #include "core/runtime/guarded_thread.hpp"
+#include "core/scan/reference.hpp"
 
 namespace fvd {
 
@@ -235,7 +236,7 @@ void ContinuousScan::run(const ScanPlan& plan, ScanReport& report,
   const StageInfo stage = deps_.stage.info();
   check_continuous(plan, free_run_.settings(), stage);
   check_plan(plan, stage);
-  if (!deps_.stage.status().homed) {
+  if (!has_reference(deps_.stage, deps_.clock)) {
     throw Error(ErrorCode::kStageNotHomed, "the stage has no reference: home it before the scan");
   }
   FrameLedger ledger;

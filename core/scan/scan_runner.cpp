@@ -6,6 +6,7 @@
 
 #include "core/base/error.hpp"
 #include "core/scan/approach.hpp"
+#include "core/scan/reference.hpp"
 #include "core/scan/slice_capture.hpp"
 
 namespace fvd {
@@ -134,7 +135,7 @@ std::optional<CapturedFrame> ScanRunner::capture_believed(const ScanPlan& plan, 
 void ScanRunner::run(const ScanPlan& plan, ScanReport& report, const std::function<void(const ScanReport&)>& on_slice,
                      std::stop_token stop) {
   check_plan(plan, deps_.stage.info());
-  if (!deps_.stage.status().homed) {
+  if (!has_reference(deps_.stage, deps_.clock)) {
     throw Error(ErrorCode::kStageNotHomed, "the stage has no reference: home it before the scan");
   }
   // With no feedback the position is not observable; the commanded one is all there is.

@@ -8,6 +8,7 @@
 #include "core/base/error.hpp"
 #include "core/focus/streaming_focus_stack.hpp"
 #include "core/scan/continuous_scan.hpp"
+#include "core/scan/reference.hpp"
 #include "daemon/pipeline/reconstruct.hpp"
 #include "daemon/pipeline/scan_average.hpp"
 
@@ -161,7 +162,7 @@ void measure(const Recipe& recipe, const MeasurementDependencies& deps, const Me
   renew_stack();
   std::optional<ScanAverage> average;
   if (recipe.repeat > 1) average.emplace(settings.width, settings.height);
-  if (!deps.stage.status().homed) deps.stage.home(stop);
+  if (!has_reference(deps.stage, deps.clock)) deps.stage.home(stop);
   result.times.prepare_ms = milliseconds_since(deps.clock, started);
 
   observer.on_phase("acquiring");
