@@ -48,8 +48,13 @@ std::size_t PeakAccumulator<Texture>::memory_bytes(int width, int height, const 
 
 template <typename Texture>
 void PeakAccumulator<Texture>::touch_rows(int first, int end) noexcept {
-  std::fill(storage_.data() + static_cast<std::size_t>(first) * blocks_per_row_,
-            storage_.data() + static_cast<std::size_t>(end) * blocks_per_row_, Block{});
+  if (first >= end) return;
+  constexpr std::size_t kBlocksPerPage = 4096 / sizeof(Block);
+  const std::size_t stop = static_cast<std::size_t>(end) * blocks_per_row_;
+  for (std::size_t i = static_cast<std::size_t>(first) * blocks_per_row_; i < stop; i += kBlocksPerPage) {
+    storage_[i] = Block{};
+  }
+  storage_[stop - 1] = Block{};  // of the last page, where the rows begin in the middle of one
 }
 
 template <typename Texture>

@@ -46,7 +46,8 @@ class PeakAccumulator {
   PeakAccumulator(int width, int height, const StateParts& parts, KeptPagesPtr pages = nullptr);
 
   [[nodiscard]] StateRow<Texture> row(int y) noexcept;
-  /// Writes rows first to end - 1, so that their pages exist before the first slice, near the thread that calls.
+  /// Writes into each page of rows first to end - 1, so that they exist before the first slice, near the thread that
+  /// calls. Not the whole rows: that takes tens of milliseconds for a large image, and the first motion waits for it.
   void touch_rows(int first, int end) noexcept;
   /// Row 0 becomes a copy of row y of another accumulator of the same width and kind.
   void copy_row(const PeakAccumulator& from, int y) noexcept;

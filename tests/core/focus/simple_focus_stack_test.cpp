@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <string>
 
 #include "gtest/gtest.h"
@@ -91,6 +92,32 @@ INSTANTIATE_TEST_SUITE_P(
         Case{PixelFormat::kMono8, Surface::kRandom, 8, 8, 1, 3, 1, FocusOperator::kModifiedLaplacian, 1, 0.8},
         Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 1, 3},
         Case{PixelFormat::kMono8, Surface::kTilted, 8, 8, 2, 3}));
+
+/// Large enough for its pages to be kept; rows end within a vector of columns.
+TEST(AStackOnKeptPages, KnowsNothingOfTheScanBefore) {
+  constexpr int kWidth = 331;
+  constexpr int kHeight = 350;
+  WorkerPool pool(2);
+  for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono16}) {
+    const Scan before = make_scan(format, Surface::kBright, kWidth, kHeight, 7, 1);
+    const Scan scan = make_scan(format, Surface::kStepped, kWidth, kHeight, 13, 2);
+    for (const int bin : {1, 2}) {
+      FocusSettings settings{.min_prominence = 0.3, .bin_slices = bin};
+      settings.tests.second_peak = 0.8;
+      const auto map_of = [&](const Scan& slices, const KeptPagesPtr& pages) {
+        StreamingFocusStack stack(kWidth, kHeight, format, settings, pool, false, pages);
+        for (std::size_t k = 0; k < slices.slices.size(); ++k) stack.push(slices.slice(k), slices.z_um[k]);
+        return stack.finish(PeakMethod::kFiveSample);
+      };
+      const auto pages = std::make_shared<KeptPages>(std::size_t{256} << 20U);
+      (void)map_of(before, pages);
+      ASSERT_GT(pages->kept_bytes(), 0U);
+      const HeightMap map = map_of(scan, pages);
+      expect_identical(map, map_of(scan, nullptr));
+      EXPECT_GT(std::ranges::count(map.mask.pixels(), MaskReasons{0}), kWidth * kHeight / 2);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace fvd

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 #include <vector>
+
+#include <sys/mman.h>
 
 #include "core/focus/measure/slice_binner.hpp"
 #include "gtest/gtest.h"
@@ -131,6 +134,23 @@ TYPED_TEST(APeakAccumulator, SumsTheSlicesOfABin) {
       ASSERT_EQ(row.texture[x], slices[middle].pixels[static_cast<std::size_t>(x)]);
     }
   }
+}
+
+/// Pages of the state that no memory stands behind.
+std::ptrdiff_t missing_pages(PeakAccumulator<std::uint8_t>& accumulator) {
+  std::vector<unsigned char> resident((accumulator.memory_bytes() + 4095) / 4096);
+  EXPECT_EQ(::mincore(accumulator.row(0).curve.previous, accumulator.memory_bytes(), resident.data()), 0);
+  return std::count_if(resident.begin(), resident.end(), [](unsigned char page) { return (page & 1U) == 0; });
+}
+
+TEST(PeakAccumulator, HasItsPagesBeforeTheFirstSlice) {
+  PeakAccumulator<std::uint8_t> accumulator(1001, 700, {});  // rows end within pages
+  ASSERT_GT(missing_pages(accumulator), 0);
+  accumulator.touch_rows(0, 0);
+  for (const auto& [first, end] : {std::pair(0, 233), std::pair(233, 466), std::pair(466, 700)}) {
+    accumulator.touch_rows(first, end);
+  }
+  EXPECT_EQ(missing_pages(accumulator), 0);
 }
 
 TEST(PeakAccumulator, TakesTheStatedBytesPerPixelWhereRowsFillTheirBlocks) {
