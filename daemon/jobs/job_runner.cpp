@@ -141,7 +141,12 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
   const Recipe recipe = with_learnt_width(job.recipe, deps_.store.curve_widths());
   ResultData acquired = described(job, recipe, deps_.config, deps_.board.read().objective);
   note_constants(recipe, deps_.calibrations, deps_.repeatability, acquired);
-  AtomicDirectory directory(deps_.config.paths.state_dir / "results" / job.status.job_id);
+  // Made when the first slice is there: a file system that is writing may hold up who makes a directory, and between a
+  // trigger and the first motion nobody is to wait for it.
+  std::optional<AtomicDirectory> directory;
+  const auto need_directory = [&] {
+    if (!directory) directory.emplace(deps_.config.paths.state_dir / "results" / job.status.job_id);
+  };
   MeasurementObserver observer = this->observer();
   const auto tell_phase = observer.on_phase;
   observer.on_phase = [&](std::string_view phase) {
@@ -155,15 +160,17 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
   };
   observer.on_earlier_scan = remember_steps;
   std::optional<SliceRecorder> recorder;
-  if (recipe.keep_slices) recorder.emplace(directory);
-  observer.tap = [&recorder, this](const ImageView& pixels, double z_um) {
+  observer.tap = [&](const ImageView& pixels, double z_um) {
+    need_directory();
+    if (recipe.keep_slices && !recorder) recorder.emplace(*directory);
     if (recorder) recorder->add(pixels, z_um);
     deps_.preview.offer(pixels, z_um);
   };
   std::optional<FirstFilesWriter> files;
   observer.on_maps = [&] {
+    need_directory();
     if (recorder) recorder->finish("job " + job.status.job_id, acquired.simulated);
-    files.emplace(directory, acquired);  // while it is evaluated
+    files.emplace(*directory, acquired);  // while it is evaluated
   };
   measure(recipe,
           {deps_.hub.camera(), deps_.hub.axis(), deps_.clock, deps_.pool, deps_.pages,
@@ -171,7 +178,7 @@ JobResult JobRunner::acquire_and_store(const AcceptedJob& job, const std::stop_t
           observer, acquired, stop);
   observer.on_phase("storing");
   remember_steps(acquired.steps);
-  JobResult result = deps_.make_result(directory, acquired, files ? &*files : nullptr);
+  JobResult result = deps_.make_result(*directory, acquired, files ? &*files : nullptr);
   if (!result.error) learn_width(recipe, acquired, deps_.store.curve_widths());
   return result;
 }
@@ -191,6 +198,8 @@ MeasurementObserver JobRunner::observer() {
   MeasurementObserver observer;
   observer.on_phase = [this, change_job](std::string_view phase) {
     deps_.ticks.tick(HostClock::now(), longest_step_);
+    const auto shown = deps_.board.snapshot()->job;
+    if (shown && shown->phase == phase) return;  // as at the start: an accepted job is told as preparing
     change_job([phase](MachineRecord&, JobStatus& job) { job.phase = phase; });
   };
   observer.on_slice = [this, change_job](const SliceProgress& progress) {
