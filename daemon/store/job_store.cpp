@@ -32,8 +32,13 @@ std::filesystem::path checked_file(const std::filesystem::path& file, const JobS
   return with_folder(file);
 }
 
+/// The same one again writes nothing: most jobs run by the recipe of the job before.
 void remember_in(const Database& database, const std::string& recipe_id) {
-  Statement(database, "INSERT OR REPLACE INTO prepared_recipe (one, recipe) VALUES (1, ?)").bind(recipe_id).run();
+  Statement(database,
+            "INSERT INTO prepared_recipe (one, recipe) VALUES (1, ?) "
+            "ON CONFLICT (one) DO UPDATE SET recipe = excluded.recipe WHERE recipe <> excluded.recipe")
+      .bind(recipe_id)
+      .run();
 }
 
 }  // namespace
@@ -138,6 +143,7 @@ JobStore::JobStore(const std::filesystem::path& file, const Options& options)
 JobStore::~JobStore() = default;
 
 std::optional<JobStatus> JobStore::find_repeated(const JobRequest& request) const {
+  if (is_surely_new(*newest_seqs(), request)) return std::nullopt;  // accept() looks into the database
   const KeptEnds kept = impl_->kept();
   const MutexLock lock(impl_->read_mutex);
   return repeated_in(impl_->reader, kept, request, impl_->options.repeat_window);

@@ -87,6 +87,11 @@ NewestSeqs newest_seqs_in(const Database& database) {
   return newest;
 }
 
+bool is_surely_new(const NewestSeqs& newest, const JobRequest& request) {
+  const auto known = newest.find(request.client);
+  return known == newest.end() || (request.seq > known->second && request.seq <= known->second + kSeqJump);
+}
+
 void raise_seq_floors(Database& database, const NewestSeqs& newest, std::int64_t margin) {
   for (const auto& [client, seq] : newest) {
     Statement(database,

@@ -25,6 +25,10 @@ inline constexpr std::int64_t kLargestSeq = (std::int64_t{1} << 53U) - 1;
 using NewestSeqs = std::map<std::string, std::int64_t>;
 [[nodiscard]] NewestSeqs newest_seqs_in(const Database& database);
 
+/// Whether the number is above its client's newest, and not too far: then no job of it is known. The usual trigger of a
+/// line, whose database need not be read for that.
+[[nodiscard]] bool is_surely_new(const NewestSeqs& newest, const JobRequest& request);
+
 /// Counts all numbers up to `newest_seq + margin` of each client as used, whatever jobs are known.
 void raise_seq_floors(Database& database, const NewestSeqs& newest, std::int64_t margin);
 

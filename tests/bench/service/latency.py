@@ -15,7 +15,7 @@ from rig import Answer, Client, Rig, percentile, recipe, wait_for
 
 BUSY = 1002
 NO_CONTROL = 1003
-ROW_BYTES = 28 << 10  # seven pages of the write-ahead log
+ROW_BYTES = 24 << 10  # six pages of the write-ahead log
 
 
 def trigger(build, rounds):

@@ -72,6 +72,21 @@ TEST_F(AJobStore, WritesItsLogAnewWhenItIsShortened) {
   EXPECT_EQ(store_->find(ClientSeq{59}).status.state, JobState::kCompleted);
 }
 
+TEST_F(AJobStore, WritesThePreparedRecipeOnlyWhereItIsAnother) {
+  const auto written_for = [this](std::int64_t seq, const std::string& recipe) {
+    const std::filesystem::path log = file_.string() + "-wal";
+    const auto before = std::filesystem::file_size(log);
+    (void)store_->accept(request(seq, "part", recipe));
+    return std::filesystem::file_size(log) - before;
+  };
+  (void)written_for(1, "chapter");
+  const auto for_the_same = written_for(2, "chapter");
+  EXPECT_EQ(written_for(3, "groove"), for_the_same + 24 + 4096) << "a page, and its head in the log";
+  EXPECT_EQ(store_->prepared_recipe(), "groove");
+  reopen();
+  EXPECT_EQ(store_->prepared_recipe(), "groove");
+}
+
 TEST_F(AJobStore, KeepsTheTemperatureThatCameWithAJob) {
   JobRequest warm = request(1);
   warm.temperature_c = 20.1;  // no binary fraction: it must come back as it went

@@ -64,6 +64,20 @@ TEST_F(SequenceNumbers, MayNotJumpByMoreThanTenThousand) {
   EXPECT_EQ(newest(), 1'010'000);
 }
 
+TEST_F(SequenceNumbers, AreSurelyNewAboveTheNewestAlone) {
+  const NewestSeqs newest{{"plc", 7}};
+  EXPECT_TRUE(is_surely_new(newest, {8, "part", "chapter"}));
+  EXPECT_TRUE(is_surely_new(newest, {7 + kSeqJump, "part", "chapter"}));
+  EXPECT_FALSE(is_surely_new(newest, {8 + kSeqJump, "part", "chapter"})) << "which is refused";
+  EXPECT_FALSE(is_surely_new(newest, {7, "part", "chapter"}));
+  EXPECT_FALSE(is_surely_new(newest, {6, "part", "chapter"})) << "it may have been left out, or used";
+  EXPECT_TRUE(is_surely_new(newest, {7, "part", "chapter", "fvdctl"})) << "of another client";
+  end(7);
+  EXPECT_FALSE(store_->find_repeated({8, "part", "chapter"}).has_value());
+  EXPECT_TRUE(store_->find_repeated({7, "part", "chapter"}).has_value());
+  EXPECT_FALSE(store_->find_repeated({6, "part", "chapter"}).has_value());
+}
+
 TEST_F(SequenceNumbers, AreNotRepeatedLongAfterTheirJobEnded) {
   end(7, "2026-01-01T00:00:00.000Z");
   FVD_EXPECT_ERROR_SAYING(kSeqStale, (void)store_->find_repeated({7, "part", "chapter"}),
