@@ -4,10 +4,10 @@
 soak.py BUILD [JOBS] [FROM]
 FROM: the job from which on slopes are told; memory and caches fill before. The last line is one JSON object.
 
-Memory is looked at after each job, as it is: files of its result are still being made, and a picture of them takes
-6 MiB meanwhile. What of it is judged is rss_slope_kib_per_job; the other slopes say where a rise comes from. anon:
-without programs and files that are mapped; heap_in_use: taken and not freed, which a leak raises; heap_held: that, and
-what the allocator keeps; idle: of all memory, every 10 jobs, once the daemon has nothing to do.
+What is judged is rss_slope_kib_per_job: memory every 10 jobs, once the daemon has nothing to do, which a leak raises.
+The other slopes are those after each job, while files of its result are still being made: a picture of them takes 6 MiB
+meanwhile, and whether it is just being drawn has more weight than years of a small leak. busy: all memory; anon: without
+programs and files that are mapped; heap_in_use: taken and not freed; heap_held: that, and what the allocator keeps.
 """
 
 import http.client
@@ -24,7 +24,7 @@ IDLE = 10  # jobs between two looks at the daemon at rest
 KEEP_GIB = 1  # the least that can be configured: results of 2,000 jobs take four times as much
 RETENTION_S = 75  # retention looks once a minute, and removes while the next results come
 DATABASE_GIB = 0.02  # not counted by retention
-SLOPES = (("rss_slope_kib_per_job", "VmRSS"), ("anon_slope_kib_per_job", "RssAnon"),
+SLOPES = (("busy_slope_kib_per_job", "VmRSS"), ("anon_slope_kib_per_job", "RssAnon"),
           ("heap_in_use_slope_kib_per_job", "heap_in_use"), ("heap_held_slope_kib_per_job", "heap_held"))
 LINE = ("soak: {seq} jobs, {VmRSS} KiB ({RssAnon} anon, {RssFile} of files; of the heap {heap_in_use:.0f} in use, "
         "{heap_held:.0f} held; idle {idle}), {descriptors} descriptors, {gib:.3f} GiB")
@@ -100,10 +100,11 @@ def measure(rig, seq):
 
 
 def risen(samples, idle, first):
-    slopes = {name: slope(samples[first:], key) for name, key in SLOPES}
     late = [sample for sample in idle if sample["seq"] > first]
-    if len(late) > 1:
-        slopes["rss_idle_slope_kib_per_job"] = slope(late, "VmRSS")
+    if len(late) < 2:
+        sys.exit(f"the daemon was looked at {len(late)} times at rest from job {first} on: too few for a slope")
+    slopes = {"rss_slope_kib_per_job": slope(late, "VmRSS")}
+    slopes |= {name: slope(samples[first:], key) for name, key in SLOPES}
     return {name: round(kib, 3) for name, kib in slopes.items()}
 
 
@@ -119,7 +120,7 @@ def main():
         for seq in range(1, jobs + 1):
             measure(rig, seq)
             samples.append(look(pid, port, seq))
-            if seq % IDLE == 0 or seq == jobs:
+            if seq % max(1, min(IDLE, first)) == 0 or seq == jobs:
                 await_files(rig, seq)
                 idle.append(look(pid, port, seq))
             if seq % BLOCK == 0 or seq == jobs:
