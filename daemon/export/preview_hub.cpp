@@ -1,5 +1,6 @@
 #include "daemon/export/preview_hub.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -17,7 +18,7 @@ namespace {
 constexpr int kMaxPictureSide = 1280;
 constexpr int kMaxPngWidth = 640;
 constexpr int kMaxPngHeight = 480;
-constexpr std::chrono::milliseconds kMinPictureInterval{100};
+constexpr std::chrono::milliseconds kPictureInterval{100};
 constexpr std::chrono::seconds kViewerTimeout{3};
 
 }  // namespace
@@ -49,18 +50,20 @@ std::string preview_json(const PreviewPicture& picture) {
       .dump();
 }
 
+void PicturePace::taken(HostTime now) { due_ = std::max(due_, now - kPictureInterval / 2) + kPictureInterval; }
+
 void PreviewHub::offer(const ImageView& image, double z_um) {
   const HostTime now = HostClock::now();
   if (now > wanted_until_.load() || !mutex_.try_lock()) return;
-  const bool recent = newest_ && now - taken_ < kMinPictureInterval;
+  const bool is_due = pace_.is_due(now);
   mutex_.unlock();
-  if (recent) return;
+  if (!is_due) return;
   const auto picture = std::make_shared<PreviewPicture>(make_preview(image, z_um));
   if (!mutex_.try_lock()) return;
   // Nothing here throws.
   picture->seq = ++seq_;
   newest_ = picture;
-  taken_ = now;
+  pace_.taken(now);
   mutex_.unlock();
 }
 
@@ -69,7 +72,7 @@ std::shared_ptr<const PreviewPicture> PreviewHub::take(const ImageView& image, d
   const MutexLock lock(mutex_);
   picture->seq = ++seq_;
   newest_ = picture;
-  taken_ = HostClock::now();
+  pace_.taken(HostClock::now());
   return picture;
 }
 
@@ -88,6 +91,7 @@ std::optional<std::string> PreviewHub::newest() {
 void PreviewHub::clear() {
   const MutexLock lock(mutex_);
   newest_.reset();
+  pace_ = {};
 }
 
 }  // namespace fvd

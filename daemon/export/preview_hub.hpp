@@ -32,10 +32,21 @@ struct PreviewPicture {
 /// at most 640 x 480 pixels, made of the given one.
 [[nodiscard]] std::string preview_json(const PreviewPicture& picture);
 
+/// Ten pictures a second in the mean. One may come up to 50 ms before its time where the one before was late: of a
+/// camera that gives just ten, a strict distance would take every second one only.
+class PicturePace {
+ public:
+  [[nodiscard]] bool is_due(HostTime now) const { return now >= due_; }
+  void taken(HostTime now);
+
+ private:
+  HostTime due_{};
+};
+
 /// A measurement offers its slices and never waits. context: thread-safe.
 class PreviewHub {
  public:
-  /// Skips the slice if there is no viewer, the last picture is younger than 0.1 s, or the lock is taken.
+  /// Skips the slice if there is no viewer, no picture is due (PicturePace), or the lock is taken.
   void offer(const ImageView& image, double z_um);
   /// Keeps an image that somebody took between the jobs, whether there is a viewer or not.
   std::shared_ptr<const PreviewPicture> take(const ImageView& image, double z_um);
@@ -50,7 +61,7 @@ class PreviewHub {
   std::atomic<HostTime> wanted_until_{HostTime{}};
   Mutex mutex_;
   std::shared_ptr<const PreviewPicture> newest_ FVD_GUARDED_BY(mutex_);
-  HostTime taken_ FVD_GUARDED_BY(mutex_){};
+  PicturePace pace_ FVD_GUARDED_BY(mutex_);
   std::uint64_t seq_ FVD_GUARDED_BY(mutex_) = 0;
 };
 

@@ -21,7 +21,7 @@ struct LiveJpeg {
   double saturated_fraction = 0.0;
 };
 
-/// context: thread-safe; a caller encodes, others wait for that. At most ten pictures a second come.
+/// context: thread-safe; a caller encodes, others wait for that. Ten pictures a second come in the mean, no more.
 class LivePicture {
  public:
   /// source outlives it.

@@ -1,5 +1,7 @@
 #include "daemon/export/preview_hub.hpp"
 
+#include <chrono>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -44,6 +46,34 @@ TEST(PreviewPicture, AsJsonIsAtMost640By480) {
   EXPECT_EQ(json["height_px"], 341);
   EXPECT_EQ(json["z_um"], 3.5);
   EXPECT_FALSE(json["png_base64"].get<std::string>().empty());
+}
+
+using std::chrono::milliseconds;
+
+/// How many of these are taken.
+int pictures_of(int offers, milliseconds (*at)(int)) {
+  PicturePace pace;
+  int taken = 0;
+  for (int i = 0; i < offers; ++i) {
+    const HostTime now = HostTime{} + std::chrono::hours(1) + at(i);
+    if (!pace.is_due(now)) continue;
+    pace.taken(now);
+    ++taken;
+  }
+  return taken;
+}
+
+TEST(PicturePace, TakesAllOfACameraThatGivesTenASecond) {
+  EXPECT_EQ(pictures_of(1000, [](int i) { return milliseconds(100 * i); }), 1000);
+  EXPECT_GE(pictures_of(1000, [](int i) { return milliseconds(100 * i + (i * 7919) % 41 - 20); }), 999);
+  EXPECT_EQ(pictures_of(100, [](int i) { return milliseconds(150 * i); }), 100);
+}
+
+TEST(PicturePace, TakesTenASecondOfAFasterOne) {
+  EXPECT_LE(pictures_of(3000, [](int i) { return milliseconds(10 * i); }), 301);
+  EXPECT_GE(pictures_of(3000, [](int i) { return milliseconds(10 * i); }), 300);
+  // 7 ms apart, a pause of ten minutes before each hundred: nothing piles up meanwhile.
+  EXPECT_LE(pictures_of(200, [](int i) { return milliseconds(7 * i + 600'000 * (i / 100)); }), 2 * 8);
 }
 
 TEST(PreviewHub, KeepsNoSliceWithoutAViewer) {
