@@ -1,6 +1,7 @@
 // The devices do one command at a time. The live picture takes its turn between the commands of this tab, so that
 // a press is not answered with "busy" by the page's own picture.
 import { createStore } from "../lib/store.ts";
+import { sincePress, tooLate } from "../rpc/stop_stage.ts";
 
 let last: Promise<unknown> = Promise.resolve();
 
@@ -13,10 +14,15 @@ function inTurn<T>(work: () => Promise<T>): Promise<T> {
   return turn;
 }
 
+// What a stop came before, or what waited for very long, is not done any more: it may move the stage.
 export async function asCommand<T>(work: () => Promise<T>): Promise<T> {
+  const mayBegin = sincePress();
   commandsUnderWay.update((count) => count + 1);
   try {
-    return await inTurn(work);
+    return await inTurn(() => {
+      if (!mayBegin()) throw tooLate();
+      return work();
+    });
   } finally {
     commandsUnderWay.update((count) => count - 1);
   }

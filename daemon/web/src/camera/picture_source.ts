@@ -22,12 +22,13 @@ function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-export async function takePicture(params: PictureParams, signal: AbortSignal): Promise<Picture> {
+const kPatience_ms = 20000;  // a connection that died in sleep or with a cable answers nothing, for minutes
+
+// The commands of this tab wait for it.
+export const takePicture = (params: PictureParams, outer: AbortSignal): Promise<Picture> => within(kPatience_ms, async (signal) => {
   const { seq, width_px, height_px, z_um, focus, saturated_fraction, png_base64 } = await call("camera.preview", params, { signal });
   return { seq, width_px, height_px, z_um, focus, saturated_fraction, blob: new Blob([bytesOf(png_base64)], { type: "image/png" }) };
-}
-
-const kPatience_ms = 20000;  // a connection that died in sleep or with a cable answers nothing, for minutes
+}, outer);
 
 // Null: none within the daemon's patience.
 export const awaitPicture = (after: number, outer: AbortSignal): Promise<Picture | null> => within(kPatience_ms, async (signal) => {

@@ -1,5 +1,6 @@
 // Tries a draft: kept under an id of its own, then a stored result is evaluated by it, or the part is scanned.
 import { RpcError, call } from "../rpc/rpc.ts";
+import { sincePress, stopPresses, tooLate } from "../rpc/stop_stage.ts";
 import { kClient } from "../run/start_job.ts";
 import { tryId } from "./ids.ts";
 
@@ -31,8 +32,13 @@ export async function evaluateBy(job_id: string, recipe: string): Promise<{ id: 
 
 // Waits for the scan's end; told() hears how far it is.
 export async function scanBy(recipe: string, part_id: string, told: (progress: number) => void): Promise<{ id: string; result: unknown }> {
+  const before = stopPresses.get();
+  const mayBegin = sincePress();
   const { newest_seq } = await call("job.latest", { client: kClient });
+  if (!mayBegin()) throw tooLate();
   const { job_id } = await call("job.start", { seq: newest_seq + 1, part_id, recipe, client: kClient });
+  // On its way it may have been overtaken by a stop, which then found nothing.
+  if (stopPresses.get() !== before) await call("job.abort", { job_id });
   for (;;) {
     const status = await call("job.wait", { job_id, until: "done", timeout_ms: 1000 });
     told(status.progress ?? 0);

@@ -4,7 +4,8 @@ import { topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { look } from "../../rpc/look.ts";
 import { call } from "../../rpc/rpc.ts";
-import { mayAs, session } from "../../rpc/session.ts";
+import { session } from "../../rpc/session.ts";
+import { stopPresses, stopStage } from "../../rpc/stop_stage.ts";
 import type { ButtonAction } from "../../run/button_rules.ts";
 import { nextPartId } from "../../run/part_ids.ts";
 import { createStarter, kClient, newSession } from "../../run/start_job.ts";
@@ -15,6 +16,7 @@ const starter = createStarter({
   newest: async () => (await look("job.latest", { client: kClient })).newest_seq,
   wait: (duration_ms) => new Promise((resolve) => setTimeout(resolve, duration_ms)),
 }, newSession());
+stopPresses.watch(starter.cancel);  // wherever it was pressed
 
 // Asks for the newest number ahead of the press that needs it.
 export function askNewest(): void {
@@ -25,7 +27,8 @@ export function askNewest(): void {
 const problem = (error: unknown): void => notice.set({ kind: "problem", text: messageOf(error) });
 
 async function during(action: ButtonAction | "home", work: () => Promise<void>): Promise<void> {
-  if (awaited.get() === action) return;
+  // Each stop is sent: the one before may be lost.
+  if (awaited.get() === action && action !== "stop") return;
   awaited.set(action);
   notice.set(null);
   try {
@@ -38,20 +41,23 @@ async function during(action: ButtonAction | "home", work: () => Promise<void>):
 }
 
 export const start = (part_id: string, recipe: string): Promise<void> => during("start", async () => {
+  const before = stopPresses.get();
   const started = await starter.start(part_id, recipe);
+  // On its way it may have been overtaken by a stop, which then found nothing.
+  if (stopPresses.get() !== before) await call("job.abort", { job_id: started.job_id });
   if (started.duplicate) notice.set({ kind: "note", text: t("run.duplicate", { seq: started.seq }) });
   if (partId.get() === part_id) partId.set(countsOn.get() ? nextPartId(part_id) : "");
 });
 
 // The stage first, whatever has it; then the job, which may be computing without it.
 export const stop = (): Promise<void> => during("stop", async () => {
-  if (!mayAs(session.get().role, "operate")) {
+  // Who this tab is may not be known yet: fvd knows.
+  if (session.get().role === "view") {
     notice.set({ kind: "problem", text: t("run.why.no_role") });
     return;
   }
-  starter.cancel();
   const { job } = topics.get();
-  const { stopped } = await call("stage.stop", {});
+  const { stopped } = await stopStage();
   if (stopped !== "job" && job && !job.done) await call("job.abort", { job_id: job.job_id });
   notice.set({ kind: "note", text: t(stopped === "nothing" ? "run.stopped_nothing" : "run.stopped") });
 });

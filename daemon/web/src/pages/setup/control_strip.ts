@@ -1,9 +1,11 @@
 // Who may move the station, who this tab is, and STOP, on every part of the set-up page.
+import { useState } from "preact/hooks";
 import { t, tWord, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
+import { messageOf } from "../../parts/message_of.ts";
 import { giveControlBack, isHeldHere, takeControl } from "../../rpc/held_control.ts";
-import { call } from "../../rpc/rpc.ts";
+import { stopStage } from "../../rpc/stop_stage.ts";
 import { isMine } from "./access_rules.ts";
 import { useRefusal, useSeen } from "./permission.ts";
 import { Problem } from "./problem.ts";
@@ -14,13 +16,18 @@ export function ControlStrip() {
   const seen = useSeen();
   const keeps = useStore(isHeldHere);
   const change = useCommand<void>();
-  const stop = useCommand<void>();
+  const [stopProblem, setStopProblem] = useState("");
   const why = useRefusal({ role: "operate" });
   const whyForce = useRefusal({ role: "administer" });
   const mine = isMine(seen);
   const owner = seen.control?.owner ?? "";
   const others = owner !== "" && !mine;
 
+  // Each press is sent, also where nobody seems to listen: streams of events may be refused, or broken, where calls are answered.
+  const stop = (): void => {
+    setStopProblem("");
+    stopStage().catch((error: unknown) => setStopProblem(messageOf(error)));
+  };
   const state = mine ? t(keeps ? "setup.control.mine" : "setup.control.mine_elsewhere")
     : others ? t("setup.control.other", { owner, who: seen.control?.who ?? "" })
       : t("setup.control.nobody");
@@ -36,10 +43,10 @@ export function ControlStrip() {
         : others
           ? html`<button type="button" disabled=${whyForce !== "" || change.running} onClick=${() => void change.run(() => takeControl(true))}>${t("setup.control.force")}</button>`
           : html`<button type="button" disabled=${why !== "" || change.running} onClick=${() => void change.run(() => takeControl(false))}>${t("setup.control.take")}</button>`}
-      <button type="button" class="main stop" disabled=${why !== ""} onClick=${() => void stop.run(async () => void (await call("stage.stop", {})))}>${t("setup.stop")}</button>
+      <button type="button" class="main stop" disabled=${seen.role === "view"} onClick=${stop}>${t("setup.stop")}</button>
     </p>
     ${(why || (others && whyForce)) && html`<p class="help wide">${why || whyForce}</p>`}
     <p class="help wide">${t("setup.stop_is_no_safety")}</p>
-    <${Problem} text=${change.problem || stop.problem}/>
+    <${Problem} text=${change.problem || stopProblem}/>
   </section>`;
 }
