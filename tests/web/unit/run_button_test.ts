@@ -4,7 +4,7 @@ import test from "node:test";
 import { type Situation, isSlip, oneButton } from "../../../daemon/web/src/run/button_rules.ts";
 
 const good: Situation = {
-  isLinked: true, state: { state: "ready", ready: true }, mayOperate: true, hasAnotherControl: false, partProblem: "none", hasRecipe: true,
+  isLinked: true, state: { state: "ready", ready: true }, mayOperate: true, mayTryStop: true, hasAnotherControl: false, partProblem: "none", hasRecipe: true,
 };
 const at = (change: Partial<Situation>) => oneButton({ ...good, ...change });
 
@@ -18,7 +18,8 @@ test("STOP while something is executed, whoever has control and whatever is type
   assert.deepEqual(at({ state }), { action: "stop", why: null });
   assert.deepEqual(at({ state, hasAnotherControl: true, partProblem: "long", hasRecipe: false }), { action: "stop", why: null });
   assert.deepEqual(at({ state, isLinked: false }), { action: "stop", why: null }, "a stop is tried without a stream of events too");
-  assert.deepEqual(at({ state, mayOperate: false }), { action: "stop", why: "no_role" });
+  assert.deepEqual(at({ state, mayOperate: false }), { action: "stop", why: null }, "who this tab is may not be known yet");
+  assert.deepEqual(at({ state, mayOperate: false, mayTryStop: false }), { action: "stop", why: "no_role" });
 });
 
 test("RESET in an error", () => {

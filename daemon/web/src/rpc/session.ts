@@ -10,6 +10,9 @@ export const session = createStore<{ who: string; role: Role }>({ who: "", role:
 
 export const mayAs = (role: Role, needed: Role): boolean => kOrder.indexOf(role) >= kOrder.indexOf(needed);
 
+// STOP is not tried by who surely only looks. Who this tab is may be unknown, where the daemon told nothing yet: it decides.
+export const mayTryStop = (role: Role): boolean => role !== "view";
+
 export async function lookWhoIAm(): Promise<void> {
   const asked = token.get();
   const { who, role } = await call("session.info", {});

@@ -8,6 +8,7 @@ export interface Situation {
   isLinked: boolean;
   state: { state: string; ready: boolean } | null;
   mayOperate: boolean;
+  mayTryStop: boolean;
   hasAnotherControl: boolean;
   partProblem: "none" | "empty" | "long" | "characters";
   hasRecipe: boolean;
@@ -22,7 +23,7 @@ export function oneButton(at: Situation): OneButton {
   const { state } = at;
   if (state?.state === "executing") {
     // A stop is tried even where nobody seems to listen.
-    return { action: "stop", why: at.mayOperate ? null : "no_role" };
+    return { action: "stop", why: at.mayTryStop ? null : "no_role" };
   }
   const action: ButtonAction = state?.state === "error" ? "reset" : "start";
   return { action, why: whyNot(at, action) };

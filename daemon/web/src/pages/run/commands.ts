@@ -4,7 +4,7 @@ import { topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { look } from "../../rpc/look.ts";
 import { call } from "../../rpc/rpc.ts";
-import { session } from "../../rpc/session.ts";
+import { mayTryStop, session } from "../../rpc/session.ts";
 import { stopPresses, stopStage } from "../../rpc/stop_stage.ts";
 import type { ButtonAction } from "../../run/button_rules.ts";
 import { nextPartId } from "../../run/part_ids.ts";
@@ -51,8 +51,7 @@ export const start = (part_id: string, recipe: string): Promise<void> => during(
 
 // The stage first, whatever has it; then the job, which may be computing without it.
 export const stop = (): Promise<void> => during("stop", async () => {
-  // Who this tab is may not be known yet: fvd knows.
-  if (session.get().role === "view") {
+  if (!mayTryStop(session.get().role)) {
     notice.set({ kind: "problem", text: t("run.why.no_role") });
     return;
   }

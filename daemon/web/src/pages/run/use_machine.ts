@@ -1,7 +1,7 @@
 // What this tab may do with the machine just now.
 import { useStore } from "../../lib/store.ts";
 import { link, topics } from "../../live/live.ts";
-import { mayAs, session } from "../../rpc/session.ts";
+import { mayAs, mayTryStop, session } from "../../rpc/session.ts";
 import { type OneButton, oneButton } from "../../run/button_rules.ts";
 import { partIdProblem } from "../../run/part_ids.ts";
 import { partId, recipeChoice, recipes } from "./run_state.ts";
@@ -26,6 +26,7 @@ export function buttonNow(): OneButton {
     isLinked: link.get().status === "open",
     state,
     mayOperate: mayAs(role, "operate"),
+    mayTryStop: mayTryStop(role),
     hasAnotherControl: control !== null && control.owner !== "" && control.who !== who,
     partProblem: partIdProblem(partId.get()),
     hasRecipe: recipeOf(recipeChoice.get(), recipes.get()) !== "",

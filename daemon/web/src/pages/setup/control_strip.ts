@@ -5,6 +5,7 @@ import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { giveControlBack, isHeldHere, takeControl } from "../../rpc/held_control.ts";
+import { mayTryStop } from "../../rpc/session.ts";
 import { stopStage } from "../../rpc/stop_stage.ts";
 import { isMine } from "./access_rules.ts";
 import { useRefusal, useSeen } from "./permission.ts";
@@ -43,7 +44,7 @@ export function ControlStrip() {
         : others
           ? html`<button type="button" disabled=${whyForce !== "" || change.running} onClick=${() => void change.run(() => takeControl(true))}>${t("setup.control.force")}</button>`
           : html`<button type="button" disabled=${why !== "" || change.running} onClick=${() => void change.run(() => takeControl(false))}>${t("setup.control.take")}</button>`}
-      <button type="button" class="main stop" disabled=${seen.role === "view"} onClick=${stop}>${t("setup.stop")}</button>
+      <button type="button" class="main stop" disabled=${!mayTryStop(seen.role)} onClick=${stop}>${t("setup.stop")}</button>
     </p>
     ${(why || (others && whyForce)) && html`<p class="help wide">${why || whyForce}</p>`}
     <p class="help wide">${t("setup.stop_is_no_safety")}</p>
