@@ -3,7 +3,7 @@ import test from "node:test";
 import { kViridisTable } from "../../../daemon/web/src/surface/colours.ts";
 import { meshOf, shade, slopesAt, trianglesOf } from "../../../daemon/web/src/surface/height_mesh.ts";
 import { reliefPixels } from "../../../daemon/web/src/surface/relief.ts";
-import { boundedLook, matrixOf, suggestedExaggeration } from "../../../daemon/web/src/surface/view_angles.ts";
+import { boundedLook, matrixOf, restAfter_ms, suggestedExaggeration } from "../../../daemon/web/src/surface/view_angles.ts";
 
 const tileOf = (mean: Float32Array, width: number, height: number, factor = 1, map_width = width * factor, map_height = height * factor) =>
   ({ kind: "height" as const, mean, lowest: mean, highest: mean, width, height, factor, map_width, map_height, window: { x: 0, y: 0, w: map_width, h: map_height } });
@@ -57,4 +57,8 @@ test("looks stay within bounds, exaggerations are round", () => {
   assert.equal(suggestedExaggeration(10, 480), 5);
   assert.equal(suggestedExaggeration(1000, 480), 1);
   assert.equal(suggestedExaggeration(0, 480), 1);
+});
+
+test("a view rests soon after its last step, later where the steps come slowly", () => {
+  assert.deepEqual([Infinity, 16, 50, 90, 400, 2000].map(restAfter_ms), [100, 100, 100, 180, 800, 100]);
 });

@@ -6,7 +6,7 @@ import { messageOf } from "../../parts/message_of.ts";
 import { percentileRange } from "../../surface/colour_range.ts";
 import { type Kind, fetchTile } from "../../surface/height_tile.ts";
 import { extent } from "../../surface/map_view.ts";
-import { type Look, boundedLook, kFirstLook, suggestedExaggeration } from "../../surface/view_angles.ts";
+import { type Look, boundedLook, kFirstLook, restAfter_ms, suggestedExaggeration } from "../../surface/view_angles.ts";
 import { NumberField } from "./number_field.ts";
 import type { ResultMap } from "./use_map.ts";
 import { useWidth } from "./use_size.ts";
@@ -14,7 +14,6 @@ import { type Layer, View3dCanvas } from "./view3d_canvas.ts";
 
 const kCoarse = 128;
 const kFine = 512;
-const kRest_ms = 150;
 
 async function load(job: string, byTexture: boolean, signal: AbortSignal): Promise<{ coarse: Layer; fine: Layer }> {
   const layer = async (most: number): Promise<Layer> => {
@@ -39,6 +38,7 @@ export function View3dPanel({ map, summary }: { map: ResultMap; summary: string 
   const [mode, setMode] = useState<"gl" | "relief">("gl");
   const held = useRef<{ x: number; y: number; look: Look } | null>(null);
   const rest = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
+  const turned_ms = useRef(-Infinity);
 
   useEffect(() => {
     const abort = new AbortController();
@@ -58,7 +58,9 @@ export function View3dPanel({ map, summary }: { map: ResultMap; summary: string 
     setLook((before) => boundedLook({ ...before, ...change }));
     setMoving(true);
     clearTimeout(rest.current);
-    rest.current = setTimeout(() => setMoving(false), kRest_ms);
+    const now_ms = performance.now();
+    rest.current = setTimeout(() => setMoving(false), restAfter_ms(now_ms - turned_ms.current));
+    turned_ms.current = now_ms;
   };
   useEffect(() => {
     const element = holder.current;
