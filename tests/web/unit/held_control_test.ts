@@ -72,6 +72,18 @@ test("a renewal that is refused is the last one", async () => {
   assert.equal(asked.length, 2);
 });
 
+test("also where a press since then took nothing", async () => {
+  await takeControl(false);
+  refusal = { code: 1013, message: "the daemon ends", data: { error: "shutting_down" } };
+  await assert.rejects(takeControl(true));
+  assert.equal(isHeldHere.get(), true);
+  await later();
+  assert.notEqual(renewalFault.get(), null);
+  refusal = { code: 1003, message: "somebody has control", data: { error: "no_control" } };
+  await later();
+  assert.equal(isHeldHere.get(), false);
+});
+
 test("a renewal that fails for another reason is told and tried again", async () => {
   await takeControl(false);
   refusal = { code: 1013, message: "the daemon ends", data: { error: "shutting_down" } };

@@ -76,7 +76,8 @@ export async function takeControl(force: boolean): Promise<void> {
       letGo();
       return;
     }
-    acquire(false, mine).then((counts) => {
+    // Of the newest press: one that took nothing, as where it was lost, must not hide what becomes of the renewals.
+    acquire(false, wish).then((counts) => {
       if (counts) renewalFault.set(null);
     }, (error: unknown) => {
       renewalFault.set(error);
