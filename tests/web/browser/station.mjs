@@ -32,7 +32,13 @@ function run(program, args, log) {
   const out = createWriteStream(log, { flags: "a" });
   child.stdout.pipe(out);
   child.stderr.pipe(out);
-  child.ended = new Promise((tell) => child.on("exit", tell));
+  child.ended = new Promise((tell) => {
+    child.on("exit", tell);
+    child.on("error", (error) => {  // it could not be started: there is no exit
+      console.error(error.message);
+      tell();
+    });
+  });
   return child;
 }
 
