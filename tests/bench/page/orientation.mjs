@@ -3,7 +3,7 @@ import { texts } from "../../web/browser/paths.mjs";
 import { scan } from "../../web/browser/station.mjs";
 import { openTab, settled, visit } from "../../web/browser/tab.mjs";
 import { mapPlace, typeLine } from "./map_place.mjs";
-import { kSoftwareWebGl, phase } from "./phase.mjs";
+import { kReadsPixels, kSoftwareWebGl, phase } from "./phase.mjs";
 import { greenOf } from "./pixels.mjs";
 
 // sim/worlds/letter_f.json: of 250 um in the middle of 480 x 360 um, 20 um high; strokes as left, top, width, height.
@@ -102,7 +102,7 @@ async function areProfilesRight(page) {
 
 await phase(async ({ browser, station, figures }) => {
   const [job] = await scan(station.call);
-  const { page, close } = await openTab(browser, station, figures);
+  const { page, close } = await openTab(browser, station, figures, kReadsPixels);
   await visit(page, station, `/jobs/${job}`);
   const line = { from: { x: 30, y: 340 }, to: { x: 450, y: 340 } };  // below the letter, as long as no other
   await typeLine(page, line);

@@ -4,8 +4,10 @@ import { openBrowser } from "../../web/browser/launch.mjs";
 import { startStation } from "../../web/browser/station.mjs";
 import { newFigures } from "../../web/browser/tab.mjs";
 
-// WebGL2 without a graphics card.
-export const kSoftwareWebGl = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"];
+// WebGL2 by a processor where there is no graphics card, and nothing else by it: a page that is composed by OpenGL, which
+// --use-angle=swiftshader makes of it, is a tenth as fast, and no browser does so by itself.
+export const kSoftwareWebGl = ["--enable-unsafe-swiftshader"];
+export const kReadsPixels = { mayWarn: /GPU stall due to ReadPixels/ };  // for openTab(): it is the measurement that reads
 
 // Else the program ends at once, and leaves what it has started.
 process.on("unhandledRejection", (error) => {

@@ -4,7 +4,7 @@ import { texts } from "../../web/browser/paths.mjs";
 import { openTab, visit } from "../../web/browser/tab.mjs";
 import { rounded, told } from "./clock.mjs";
 import { makeResults } from "./made_results.mjs";
-import { kSoftwareWebGl, phase, rounds } from "./phase.mjs";
+import { kReadsPixels, kSoftwareWebGl, phase, rounds } from "./phase.mjs";
 
 const kSide = 2048;
 const kTurn_ms = 3000;
@@ -65,7 +65,7 @@ async function turn(page) {
 
 await phase(async ({ browser, station, figures }) => {
   const { jobs } = await makeResults(station, { width: kSide, height: kSide });
-  const { page, close } = await openTab(browser, station, figures);
+  const { page, close } = await openTab(browser, station, figures, kReadsPixels);
   await page.addInitScript(watchDrawings);
   await visit(page, station, `/jobs/${jobs[0]}`);
   await page.getByRole("button", { name: "3D", exact: true }).click();

@@ -10,9 +10,10 @@ const kPatience_ms = 120000;  // on a busy machine; nothing is judged by it
 const kMoves = new Set(["job.start", "stage.move", "stage.home", "stage.jog", "stage.autofocus"]);
 
 // options: language, theme, token, viewport; scale: pixels of the screen a CSS pixel; clock_ms: this browser's clock is wrong by
-// so much; mayMove: a test that moves the stage on purpose; mayFail: one that cuts the line
+// so much; mayMove: a test that moves the stage on purpose; mayFail: one that cuts the line; mayWarn: what a test itself has
+// the browser warn of
 export async function openTab(browser, station, figures, { language = "en", theme = "light", token = station.token,
-  viewport = { width: 1280, height: 1024 }, scale = 1, clock_ms = 0, mayMove = false, mayFail = false } = {}) {
+  viewport = { width: 1280, height: 1024 }, scale = 1, clock_ms = 0, mayMove = false, mayFail = false, mayWarn = null } = {}) {
   const context = await browser.newContext({ viewport, deviceScaleFactor: scale, colorScheme: theme, locale: language === "de" ? "de-DE" : "en-GB" });
   if (clock_ms !== 0) await context.addInitScript(setClock, clock_ms);
   const tell = (what, text) => console.error(`${what}: ${text}`);
@@ -29,7 +30,7 @@ export async function openTab(browser, station, figures, { language = "en", them
   context.setDefaultTimeout(kPatience_ms);
   const page = await context.newPage();
   const failed = (text) => {
-    if (mayFail && /Failed to load resource|ERR_/.test(text)) return;
+    if (mayFail && /Failed to load resource|ERR_/.test(text) || mayWarn?.test(text)) return;
     ++figures.console_errors;
     tell("console", `${page.url()}: ${text}`);
   };
