@@ -6,11 +6,10 @@ import { html } from "../../../lib/html.ts";
 import { useStore } from "../../../lib/store.ts";
 import { shownUnit } from "../../../lib/units.ts";
 import { VerdictLabel } from "../../../parts/verdict_mark.ts";
-import { getAt } from "../../../recipe/document.ts";
 import { evaluateBy, keepForTrial } from "../../../recipe/try_recipe.ts";
 import { session } from "../../../rpc/session.ts";
 import { type Value, valuesOf } from "../../../results/values.ts";
-import { textOfValue, valueOfText } from "../fields/number_field.ts";
+import { NumberInput } from "../fields/number_input.ts";
 import { withUnits } from "../fields/names.ts";
 import type { StepProps } from "./assistant.ts";
 import { useRun } from "./run.ts";
@@ -27,12 +26,7 @@ export function LimitStep({ editor, newest }: StepProps) {
   };
   const limit = (value: Value, which: "lower" | "upper") => {
     const path = ["evaluation", "measurements", value.measurement, "limits", value.name, which];
-    return html`<input class="number limit" inputmode="decimal" aria-label=${t(`recipe.limit_${which}`, { value: `${value.measurement} ${value.name}` })}
-      value=${textOfValue(getAt(editor.document ?? undefined, path))} onChange=${(event: Event) => {
-        const next = valueOfText((event.target as HTMLInputElement).value);
-        if (next === undefined) editor.remove(path);
-        else editor.set(path, next);
-      }}/>`;
+    return html`<${NumberInput} narrow editor=${editor} path=${path} about=${{ "aria-label": t(`recipe.limit_${which}`, { value: `${value.measurement} ${value.name}` }) }}/>`;
   };
   return html`
     <p class="buttons"><button type="button" disabled=${whyNot !== ""} onClick=${() => run(t("recipe.trying"), evaluate)}>${t("recipe.values_now")}</button></p>

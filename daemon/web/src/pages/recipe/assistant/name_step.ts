@@ -15,9 +15,10 @@ import { useRun } from "./run.ts";
 
 export function NameStep({ editor, taken }: StepProps) {
   const { who } = useStore(session);
-  const [id, setId] = useState("");
+  const [typed, setTyped] = useState("");
   const [author, setAuthor] = useState<string | null>(null);
   const { why, run, view } = useRun();
+  const id = typed.trim();
   const name = author ?? who;
   const whyNot = why || (!editor.check?.accepted || !editor.isChecked ? t("recipe.save_refused")
     : !isId(id) ? t("recipe.bad_id") : taken.includes(id) ? t("recipe.id_taken", { id }) : name.trim() === "" ? t("recipe.needs_author") : "");
@@ -29,7 +30,7 @@ export function NameStep({ editor, taken }: StepProps) {
   return html`
     <${Field} editor=${editor} schema=${recipeSchema.properties?.["description"] ?? {}} path=${["description"]} required=${false}/>
     <div class="add">
-      <label>${t("recipe.name")} <input value=${id} maxlength="32" autocomplete="off" aria-describedby="name-why" onInput=${(event: Event) => setId((event.target as HTMLInputElement).value.trim())}/></label>
+      <label>${t("recipe.name")} <input value=${typed} maxlength="32" autocomplete="off" aria-describedby="name-why" onInput=${(event: Event) => setTyped((event.target as HTMLInputElement).value)}/></label>
       <label>${t("recipe.author")} <input value=${name} maxlength="64" autocomplete="name" onInput=${(event: Event) => setAuthor((event.target as HTMLInputElement).value)}/></label>
       <button type="button" class="main" disabled=${whyNot !== ""} onClick=${() => run(t("recipe.saving"), save)}>${t("recipe.save_new")}</button>
     </div>

@@ -16,14 +16,16 @@ function Entry({ editor, schema, path, fresh, renamed }: Omit<FieldProps, "requi
   const shape = schema.oneOf?.[shapeOf(schema.oneOf, value)];
   const wrong = problemsUnder(editor.problems, pointerOf(path)).length;
   const id = idOf(path);
+  const [typed, setTyped] = useState<string | null>(null);  // a name is one when it is done: half of it may be that of another
   const [open] = useState(fresh);  // from then on it is the reader's to fold
   return html`<details class="entry" open=${open}>
     <summary id=${schema.oneOf ? undefined : id}><strong>${name}</strong> ${shape && html`<span class="help">${nameOf(nameOfShape(shape))}</span>`}
       ${wrong > 0 && html`<span class="problem">⚠ ${t("recipe.problems", { count: wrong })}</span>`}</summary>
     <div class="field">
       <label for=${`${id}-name`}>${t("recipe.name")}</label>
-      <input id=${`${id}-name`} value=${name} autocomplete="off" onChange=${(event: Event) => {
+      <input id=${`${id}-name`} value=${typed ?? name} autocomplete="off" onInput=${(event: Event) => setTyped((event.target as HTMLInputElement).value)} onChange=${(event: Event) => {
         const wanted = (event.target as HTMLInputElement).value.trim();
+        setTyped(null);
         if (wanted === "" || wanted === name) return;
         renamed(wanted);
         editor.rename(path, wanted);

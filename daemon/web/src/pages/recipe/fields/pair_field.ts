@@ -2,11 +2,10 @@
 import { useState } from "preact/hooks";
 import { html } from "../../../lib/html.ts";
 import { getAt } from "../../../recipe/document.ts";
-import type { Json } from "../../../recipe/schema.ts";
 import { tWord } from "../../../i18n/i18n.ts";
 import type { FieldProps } from "./field.ts";
 import { FieldFrame, idOf } from "./field_frame.ts";
-import { textOfValue, valueOfText } from "./number_field.ts";
+import { pairWith, shownText } from "./typed_number.ts";
 
 export function PairField({ editor, schema, path, required }: FieldProps) {
   const value = getAt(editor.document ?? undefined, path);
@@ -16,15 +15,12 @@ export function PairField({ editor, schema, path, required }: FieldProps) {
   const isPoint = /^\d+$/.test(key) || ((key === "from_um" || key === "to_um") && schema.minItems === 2);
   const input = (i: 0 | 1, text: string): void => {
     setTyped(i === 0 ? [text, typed[1]] : [typed[0], text]);
-    const next: (Json | undefined)[] = [pair[0], pair[1]];
-    next[i] = valueOfText(text);
-    // One of two alone is no pair: the document then has one number, and the checker says so.
-    const given = next.filter((each): each is Json => each !== undefined);
+    // One of two alone is no pair; the checker says so.
+    const given = pairWith(pair, i, text);
     if (given.length === 0 && !required) editor.remove(path);
     else editor.set(path, given);
   };
-  const shown = (i: 0 | 1): string =>
-    pair[i] !== undefined && Object.is(valueOfText(typed[i]), pair[i]) ? typed[i] : textOfValue(pair[i]);
+  const shown = (i: 0 | 1): string => shownText(typed[i], pair[i]);
   const words = isPoint ? ["x", "y"] : ["from", "to"];
   return html`<${FieldFrame} editor=${editor} schema=${schema} path=${path} required=${required} group>
     <div class="pair">
