@@ -186,3 +186,17 @@ test("its end is the end", async () => {
   assert.equal(asked[0]?.signal.aborted, true);
   assert.equal(count("lost"), 0);
 });
+
+test("at rest there is no stream, and it is no loss; afterwards it goes on where it was", async () => {
+  read();
+  asked[0]?.send("id: 17-1\nevent: state\ndata: 1\n\n");
+  await until(() => count("state 1") === 1);
+  reader?.rest();
+  assert.equal(asked[0]?.signal.aborted, true);
+  await new Promise((done) => setImmediate(done));
+  assert.equal(asked.length, 1);
+  assert.equal(count("lost"), 0);
+  reader?.restart();
+  assert.equal(asked[1]?.headers["Last-Event-ID"], "17-1");
+  await until(() => count("open") === 2);
+});

@@ -38,7 +38,8 @@ const heldByAll = (): number => [...held].filter(([signal]) => !asked.some((each
 
 test("a hundred requests leave no more listeners than one", async () => {
   const end = watchPreview(() => undefined, (status) => told.push(status));
-  assert.equal(heldByAll(), 1);
+  const ofOne = heldByAll();
+  assert.ok(ofOne > 0);
   for (let i = 0; i < 100; ++i) {
     asked.at(-1)?.answer(204);
     await turns();
@@ -46,7 +47,7 @@ test("a hundred requests leave no more listeners than one", async () => {
     await turns();
   }
   assert.equal(asked.length, 101);
-  assert.equal(heldByAll(), 1);
+  assert.equal(heldByAll(), ofOne);
   end();
   await turns();
   assert.equal(heldByAll(), 0);

@@ -1,5 +1,6 @@
 // Pictures for the eye, one after another. Who operates has one taken; who looks on sees what the daemon shows anyhow.
 import { within } from "../lib/patience.ts";
+import { whileHere } from "../lib/visit.ts";
 import type { Methods } from "../rpc/methods.ts";
 import { ask, call } from "../rpc/rpc.ts";
 
@@ -31,7 +32,7 @@ export const takePicture = (params: PictureParams, outer: AbortSignal): Promise<
 }, outer);
 
 // Null: none within the daemon's patience.
-export const awaitPicture = (after: number, outer: AbortSignal): Promise<Picture | null> => within(kPatience_ms, async (signal) => {
+export const awaitPicture = (after: number, outer: AbortSignal): Promise<Picture | null> => within(kPatience_ms, (either) => whileHere(async (signal) => {
   const response = await ask(`/api/v1/preview.jpg?after=${after}`, { signal, cache: "no-store" });
   if (response.status === 204) return null;
   if (!response.ok) throw new Error(`HTTP ${response.status}`);
@@ -49,4 +50,4 @@ export const awaitPicture = (after: number, outer: AbortSignal): Promise<Picture
     focus: told("X-Fvd-Focus"),
     saturated_fraction: told("X-Fvd-Saturated-Fraction"),
   };
-}, outer);
+}, either), outer);

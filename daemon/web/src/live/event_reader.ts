@@ -7,6 +7,8 @@ export interface EventReader {
   restart(): void;
   // Waits no longer for the next attempt; leaves a stream alone.
   wake(): void;
+  // Has no stream until it is restarted or woken.
+  rest(): void;
   end(): void;
 }
 
@@ -92,17 +94,23 @@ export function readEvents(options: EventReaderOptions): EventReader {
     }
   };
 
+  const rest = (): void => {
+    clearTimeout(timer);
+    const mine = attempt;
+    attempt = null;
+    mine?.abort();
+  };
+
   open();
   return {
     restart: open,
     wake: () => {
       if (attempt === null) open();
     },
+    rest,
     end: () => {
       ended = true;
-      clearTimeout(timer);
-      attempt?.abort();
-      attempt = null;
+      rest();
     },
   };
 }

@@ -91,7 +91,9 @@ export function listen(): () => void {
     reader.restart();
   };
   const unsleep = onWake(anew);
-  // Back from the browser's memory of pages, where streams do not live on.
+  // In the browser's memory of pages a stream does not live on, but would keep its connection from the next page.
+  const hide = (): void => reader.rest();
+  addEventListener("pagehide", hide);
   const show = (event: PageTransitionEvent): void => {
     if (event.persisted) anew();
   };
@@ -101,6 +103,7 @@ export function listen(): () => void {
     unsleep();
     document.removeEventListener("visibilitychange", wake);
     removeEventListener("online", wake);
+    removeEventListener("pagehide", hide);
     removeEventListener("pageshow", show);
     reader.end();
   };

@@ -1,4 +1,5 @@
 // Calls that only look, put together: those of one moment go as one request.
+import { whileHere } from "../lib/visit.ts";
 import type { Methods } from "./methods.ts";
 import { RpcError, ask, call, kOffline } from "./rpc.ts";
 
@@ -40,15 +41,18 @@ function flush(): void {
 async function together(wanted: readonly Wanted[]): Promise<void> {
   try {
     const body = wanted.map(({ method, params }, id) => ({ jsonrpc: "2.0", id, method, params }));
-    const response = await ask("/api/jsonrpc", {
-      method: "POST",
-      headers: { "Content-Type": "application/json" },
-      body: JSON.stringify(body),
-      cache: "no-store",
+    const { response, answers } = await whileHere(async (signal) => {
+      const reply = await ask("/api/jsonrpc", {
+        method: "POST",
+        headers: { "Content-Type": "application/json" },
+        body: JSON.stringify(body),
+        cache: "no-store",
+        signal,
+      });
+      return { response: reply, answers: (await reply.json().catch(() => null)) as unknown };
     }).catch((error: unknown) => {
       throw new RpcError(kOffline, "offline", String(error));
     });
-    const answers = (await response.json().catch(() => null)) as unknown;
     if (!response.ok || !Array.isArray(answers)) throw new RpcError(response.status, "no_json", `HTTP ${response.status}`);
     settle(wanted, answers as Answer[]);
   } catch (error) {

@@ -1,5 +1,6 @@
 // Calls of the daemon: the same dispatcher, errors and audit as for every other client.
 import { createStore } from "../lib/store.ts";
+import { whileHere } from "../lib/visit.ts";
 import type { Methods } from "./methods.ts";
 
 export class RpcError extends Error {
@@ -38,6 +39,9 @@ export function refuseToken(given: string | null): void {
   tokenWasRefused.set(true);
 }
 
+// These are sent, and waited for, also as the page is left.
+const kAlways: ReadonlySet<string> = new Set(["stage.stop", "job.abort", "control.release"]);
+
 let lastId = 0;
 
 interface Reply {
@@ -64,9 +68,8 @@ export async function call<M extends keyof Methods>(
   options: { signal?: AbortSignal; keepalive?: boolean; token?: string } = {},
 ): Promise<Methods[M]["result"]> {
   const id = ++lastId;
-  let response: Response;
-  try {
-    response = await ask("/api/jsonrpc", {
+  const send = async (signal?: AbortSignal): Promise<{ response: Response; text: string }> => {
+    const response = await ask("/api/jsonrpc", {
       method: "POST",
       headers: {
         "Content-Type": "application/json",
@@ -74,14 +77,19 @@ export async function call<M extends keyof Methods>(
       },
       body: JSON.stringify({ jsonrpc: "2.0", id, method, params }),
       cache: "no-store",
-      ...(options.signal ? { signal: options.signal } : {}),
+      ...(signal ? { signal } : {}),
       ...(options.keepalive ? { keepalive: true } : {}),
     });
+    return { response, text: await response.text() };
+  };
+  let answer: Awaited<ReturnType<typeof send>>;
+  try {
+    answer = kAlways.has(method) ? await send(options.signal) : await whileHere(send, options.signal);
   } catch (error) {
     if (options.signal?.aborted) throw error;
     throw new RpcError(kOffline, "offline", String(error));
   }
-  const text = await response.text();
+  const { response, text } = answer;
   let reply: Reply & { error?: unknown; message?: unknown };
   try {
     reply = JSON.parse(text);

@@ -1,6 +1,7 @@
 // The live picture: one request at a time, each for a picture newer than the last.
 import { pause, within } from "../lib/patience.ts";
 import { createStore } from "../lib/store.ts";
+import { whileHere } from "../lib/visit.ts";
 import { ask } from "../rpc/rpc.ts";
 
 export interface Picture {
@@ -76,7 +77,7 @@ export function watchPreview(show: (picture: Picture) => void, tell: (status: Pr
     while (!abort.signal.aborted) {
       let pause_ms: number;
       try {
-        if (document.visibilityState === "visible") pause_ms = await within(kPatience_ms, once, abort.signal);
+        if (document.visibilityState === "visible") pause_ms = await within(kPatience_ms, (signal) => whileHere(once, signal), abort.signal);
         else pause_ms = kAfterFault_ms;
       } catch {
         if (abort.signal.aborted) return;

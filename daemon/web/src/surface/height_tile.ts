@@ -1,4 +1,5 @@
 // A piece of a job's map as the daemon sends it: a header of 32 bytes, then planes of float32, row by row from the top.
+import { whileHere } from "../lib/visit.ts";
 import { RpcError, ask, kOffline } from "../rpc/rpc.ts";
 
 export type Kind = "height" | "sigma" | "texture" | "reason";
@@ -61,15 +62,18 @@ export function tileAddress(job: string, kind: Kind, window: Window | null, most
 
 // most: no side of the reply is longer.
 export async function fetchTile(job: string, kind: Kind, window: Window | null, most: number, signal?: AbortSignal): Promise<Tile> {
-  let response: Response;
+  let told: { response: Response; bytes: ArrayBuffer | null };
   try {
-    response = await ask(tileAddress(job, kind, window, most), signal ? { signal } : {});
+    told = await whileHere(async (own) => {
+      const response = await ask(tileAddress(job, kind, window, most), { signal: own });
+      return { response, bytes: response.ok ? await response.arrayBuffer() : null };
+    }, signal);
   } catch (error) {
     if (signal?.aborted) throw error;
     throw new RpcError(kOffline, "offline", String(error));
   }
-  if (!response.ok) throw new RpcError(response.status, "no_map", await refusal(response));
-  return parseTile(await response.arrayBuffer(), kind, window ?? { x: 0, y: 0 });
+  if (told.bytes === null) throw new RpcError(told.response.status, "no_map", await refusal(told.response));
+  return parseTile(told.bytes, kind, window ?? { x: 0, y: 0 });
 }
 
 async function refusal(response: Response): Promise<string> {

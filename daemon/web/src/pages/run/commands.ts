@@ -1,5 +1,6 @@
 // What the one button and the keys do.
 import { t } from "../../i18n/i18n.ts";
+import { leavings } from "../../lib/visit.ts";
 import { topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { look } from "../../rpc/look.ts";
@@ -17,6 +18,7 @@ const starter = createStarter({
   wait: (duration_ms) => new Promise((resolve) => setTimeout(resolve, duration_ms)),
 }, newSession());
 stopPresses.watch(starter.cancel);  // wherever it was pressed
+leavings.watch(starter.cancel);  // who comes back has not pressed anything yet
 
 // Asks for the newest number ahead of the press that needs it.
 export function askNewest(): void {
