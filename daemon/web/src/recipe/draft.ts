@@ -2,6 +2,7 @@
 export interface Draft {
   text: string;
   base_version: number;  // the version that the change was made from
+  step?: number;         // of the assistant, where it was left
 }
 
 const keyOf = (id: string): string => `fvd.draft.${id}`;
@@ -9,7 +10,8 @@ const keyOf = (id: string): string => `fvd.draft.${id}`;
 export function readDraft(id: string): Draft | null {
   try {
     const value = JSON.parse(sessionStorage.getItem(keyOf(id)) ?? "null") as Draft | null;
-    return value && typeof value.text === "string" && Number.isInteger(value.base_version) ? value : null;
+    if (!value || typeof value.text !== "string" || !Number.isInteger(value.base_version)) return null;
+    return { text: value.text, base_version: value.base_version, ...(Number.isInteger(value.step) ? { step: value.step } : {}) } as Draft;
   } catch {
     return null;
   }

@@ -38,20 +38,24 @@ const kSteps = [
 export const kDraft = "new";
 
 export function Assistant({ taken }: { taken: readonly string[] }) {
-  const [initial] = useState(() => readDraft(kDraft)?.text ?? formatJson(kNewRecipe));
+  const [kept] = useState(() => readDraft(kDraft));
+  const initial = kept?.text ?? formatJson(kNewRecipe);
   const editor = useEditor(kDraft, initial);
   const newest = useNewestJob(tryId(kDraft));
-  const [step, setStep] = useState(0);
-  useEffect(() => keepDraft(kDraft, { text: editor.text, base_version: 0 }), [editor.text]);
+  const [step, setStep] = useState(() => Math.max(0, Math.min(kSteps.length - 1, kept?.step ?? 0)));
+  const [goesOn, setGoesOn] = useState(kept !== null && (kept.text !== formatJson(kNewRecipe) || step > 0));
+  useEffect(() => keepDraft(kDraft, { text: editor.text, base_version: 0, step }), [editor.text, step]);
   const current = kSteps[step] ?? kSteps[0];
   const go = (to: number): void => {
     setStep(to);
+    setGoesOn(false);
     // The heading tells where one is now.
     requestAnimationFrame(() => document.getElementById("assistant-step")?.focus());
   };
   return html`<div class="assistant">
     <h1>${t("recipe.assistant")}</h1>
     <p><a href="/recipes">${t("recipe.back")}</a></p>
+    ${goesOn && html`<p class="panel notice">${t("recipe.assistant_goes_on")}</p>`}
     <ol class="steps views">${kSteps.map(([name], i) => html`<li key=${name}>
       <button type="button" aria-current=${i === step ? "step" : undefined} aria-pressed=${i === step ? "true" : "false"} onClick=${() => go(i)}>
         ${i + 1}. ${t(`recipe.step_${name}` as TextKey)}</button></li>`)}</ol>

@@ -1,5 +1,6 @@
 // The range of z that is sharp, and from it range and step of the scan, with the reasons.
 import { useState } from "preact/hooks";
+import { asCommand } from "../../../camera/devices_turn.ts";
 import { number, t } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";
 import { readNumber } from "../../../lib/read_number.ts";
@@ -10,20 +11,25 @@ import { call } from "../../../rpc/rpc.ts";
 import { Field } from "../fields/field.ts";
 import type { StepProps } from "./assistant.ts";
 import { FocusCurvePicture } from "./focus_curve_picture.ts";
+import { Reference, isReferenceMissing } from "./reference.ts";
 import { useRun } from "./run.ts";
+import { StopButton } from "./stop_button.ts";
 
 export function FocusStep({ editor }: StepProps) {
   const [from, setFrom] = useState("0");
   const [to, setTo] = useState("200");
   const [found, setFound] = useState<{ points: CurvePoint[]; curve: FocusCurve | null; scan: Scan | null } | null>(null);
-  const { why, run, view } = useRun();
+  const [hasReference, setHasReference] = useState(false);
+  const seeking = useRun();
+  const { why, run, view } = seeking;
+  const isMissing = isReferenceMissing(seeking.error);
   const [low, high] = [readNumber(from), readNumber(to)];
   const whyNot = why || (low === null || high === null || low >= high ? t("recipe.range_wrong") : "");
   const exposure = getAt(editor.document ?? undefined, ["acquire", "camera", "exposure_us"]);
 
   const seek = async (): Promise<void> => {
     if (low === null || high === null) return;
-    const answer = await call("stage.autofocus", { from_um: low, to_um: high, ...(typeof exposure === "number" ? { exposure_us: exposure } : {}) });
+    const answer = await asCommand(() => call("stage.autofocus", { from_um: low, to_um: high, ...(typeof exposure === "number" ? { exposure_us: exposure } : {}) }));
     const points = answer.curve_um_focus as CurvePoint[];
     const curve = readCurve(points);
     const scan = curve && suggestScan(curve);
@@ -40,10 +46,15 @@ export function FocusStep({ editor }: StepProps) {
     <div class="add">
       <label>${t("recipe.seek_from")} <input class="number" inputmode="decimal" value=${from} onInput=${(event: Event) => setFrom((event.target as HTMLInputElement).value)}/></label>
       <label>${t("recipe.seek_to")} <input class="number" inputmode="decimal" value=${to} onInput=${(event: Event) => setTo((event.target as HTMLInputElement).value)}/></label>
-      <button type="button" disabled=${whyNot !== ""} onClick=${() => run(t("recipe.seeking_focus"), seek)}>${t("recipe.seek_focus")}</button>
+      <button type="button" disabled=${whyNot !== ""} onClick=${() => {
+        setHasReference(false);
+        run(t("recipe.seeking_focus"), seek);
+      }}>${t("recipe.seek_focus")}</button>
+      <${StopButton}/>
     </div>
     <p class="help">${t("recipe.moves_stage")} ${why === "" ? whyNot : ""}</p>
-    ${view}
+    ${isMissing ? html`<${Reference} seek=${seeking} onFound=${() => setHasReference(true)}/>` : view}
+    ${hasReference && html`<p aria-live="polite">${t("run.homed")} ${t("recipe.seek_now")}</p>`}
     ${found && html`<${FocusCurvePicture} points=${found.points} scan=${found.scan}/>`}
     ${found && !found.curve && html`<p class="problem">${t("recipe.no_peak")}</p>`}
     ${found?.curve && found.scan && html`<ul>
