@@ -9,7 +9,7 @@ import { watchLeaving } from "./lib/visit.ts";
 import { link, listen } from "./live/live.ts";
 import { watchControl } from "./rpc/held_control.ts";
 import { lookWhoIAm, watchRefusals } from "./rpc/session.ts";
-import { takeTokenFromAddress } from "./rpc/token_in_address.ts";
+import { takeTokenFromAddress, watchAddress } from "./rpc/token_in_address.ts";
 import "./style/main.css";
 
 takeTokenFromAddress();
@@ -19,6 +19,7 @@ watchLeaving();
 listen();
 rememberHealth();
 watchControl();
+watchAddress();
 watchRefusals();
 // Again after every reconnection: the daemon may have another file of tokens.
 const know = (): void => void lookWhoIAm().catch(() => undefined);

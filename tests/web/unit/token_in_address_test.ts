@@ -2,17 +2,26 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import "./browser_stand_in.ts";
 
-const { tokenIn, takeTokenFromAddress } = await import("../../../daemon/web/src/rpc/token_in_address.ts");
-const { token } = await import("../../../daemon/web/src/rpc/rpc.ts");
+// Of the page's own address, and what hears that it changed.
+const heard = new Map<string, () => void>();
+Object.assign(globalThis, {
+  addEventListener: (name: string, listener: () => void) => void heard.set(name, listener),
+  removeEventListener: (name: string) => void heard.delete(name),
+  location: { hash: "", pathname: "/jobs", search: "" },
+});
 
-const open = (hash: string): string[] => {
+const { addressFault, tokenIn, takeTokenFromAddress, watchAddress } = await import("../../../daemon/web/src/rpc/token_in_address.ts");
+const { setToken, token } = await import("../../../daemon/web/src/rpc/rpc.ts");
+const { session } = await import("../../../daemon/web/src/rpc/session.ts");
+
+const open = (hash: string, opened: () => void = takeTokenFromAddress): string[] => {
   const shown: string[] = [];
   Object.defineProperty(globalThis, "location", { value: { hash, pathname: "/jobs", search: "?a=1" }, configurable: true });
   Object.defineProperty(globalThis, "history", {
     value: { state: null, replaceState: (_state: unknown, _title: string, address: string) => shown.push(address) },
     configurable: true,
   });
-  takeTokenFromAddress();
+  opened();
   return shown;
 };
 
@@ -27,4 +36,41 @@ test("it is taken, and stands in no address any more", () => {
   assert.equal(token.get(), "fvd-0123");
   assert.deepEqual(open("#token="), []);
   assert.equal(token.get(), "fvd-0123");
+});
+
+test("put into an open page it is taken out at once, and logs in unless it is refused", async () => {
+  let answers: ((response: Response) => void)[] = [];
+  globalThis.fetch = (() => new Promise((resolve) => answers.push(resolve))) as unknown as typeof fetch;
+  const settled = () => new Promise((done) => setImmediate(done));
+  const good = (who: string): Response => new Response(JSON.stringify({ jsonrpc: "2.0", id: 1, result: { who, role: "operate" } }));
+  const refused = (): Response => new Response(JSON.stringify({ error: "unauthorized", message: "nobody has this token" }), { status: 401 });
+  const paste = (hash: string): string[] => open(hash, () => heard.get("hashchange")?.());
+  setToken("fvd-old");
+  session.set({ who: "token old", role: "view" });
+  const end = watchAddress();
+
+  assert.deepEqual(paste("#token=fvd-wrong"), ["/jobs?a=1"]);
+  answers.shift()?.(refused());
+  await settled();
+  assert.deepEqual([token.get(), session.get().who], ["fvd-old", "token old"]);
+  assert.notEqual(addressFault.get(), null);
+
+  assert.deepEqual(paste("#token=fvd-new"), ["/jobs?a=1"]);
+  assert.equal(addressFault.get(), null);
+  answers.shift()?.(good("token new"));
+  await settled();
+  assert.deepEqual([token.get(), session.get().who], ["fvd-new", "token new"]);
+
+  // Who logs out while it is asked for stays logged out.
+  paste("#token=fvd-old");
+  setToken(null);
+  answers.shift()?.(good("token old"));
+  await settled();
+  assert.equal(token.get(), null);
+
+  assert.deepEqual(paste("#elsewhere"), []);
+  assert.equal(answers.length, 0);
+  end();
+  assert.equal(heard.has("hashchange"), false);
+  answers = [];
 });

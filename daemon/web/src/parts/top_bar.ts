@@ -5,7 +5,9 @@ import { place } from "../lib/router.ts";
 import { useStore } from "../lib/store.ts";
 import { type Theme, setTheme, theme } from "../lib/theme.ts";
 import { link, topics } from "../live/live.ts";
-import { tokenWasRefused } from "../rpc/rpc.ts";
+import { RpcError, tokenWasRefused } from "../rpc/rpc.ts";
+import { addressFault } from "../rpc/token_in_address.ts";
+import { messageOf } from "./message_of.ts";
 import { SessionButton } from "./session_button.ts";
 
 const kPages = [
@@ -24,6 +26,7 @@ export function TopBar() {
   const { state } = useStore(topics);
   const colours = useStore(theme);
   const isRefused = useStore(tokenWasRefused);
+  const fault = useStore(addressFault);
   return html`<header class="top">
     <a class="skip" href="#main" onClick=${(event: Event) => {
       event.preventDefault();
@@ -32,6 +35,9 @@ export function TopBar() {
     ${state?.simulated && html`<p class="ribbon">${t("simulated")}</p>`}
     ${status !== "open" && html`<p class="link" role="alert">${t(status === "lost" ? "link.lost" : "link.never")}</p>`}
     ${isRefused && html`<p class="refused" role="alert">${t("session.refused")}</p>`}
+    ${fault !== null && html`<p class="refused" role="alert">${t("session.address_refused", {
+      why: fault instanceof RpcError && fault.code === 401 ? t("session.wrong") : messageOf(fault),
+    })}</p>`}
     <div class="bar">
       <nav aria-label=${t("nav.label")}>
         ${kPages.map(([page, key]) => html`<a href=${page} aria-current=${isAt(path, page) ? "page" : undefined}>${t(key)}</a>`)}

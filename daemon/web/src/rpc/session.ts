@@ -20,9 +20,11 @@ export async function lookWhoIAm(): Promise<void> {
 }
 
 // Throws RpcError with code 401 for a token that nobody has. After the signal's end the tab stays who it is, whatever comes.
-export async function logIn(text: string, signal: AbortSignal): Promise<void> {
+// before() is called while the tab is yet who it was.
+export async function logIn(text: string, signal: AbortSignal, before: () => void = () => undefined): Promise<void> {
   const { who, role } = await call("session.info", {}, { token: text, signal });
   signal.throwIfAborted();
+  before();
   setToken(text);
   session.set({ who, role: role as Role });
 }
