@@ -10,15 +10,24 @@ const regionsOf = (document: Json): string[] => {
   return isObject(regions) ? Object.keys(regions) : [];
 };
 
+export function hasMeasurements(document: Json): boolean {
+  const measurements = getAt(document, ["evaluation", "measurements"]);
+  return isObject(measurements) && Object.keys(measurements).length > 0;
+}
+
 // How many regions it needs that are not there yet.
 export function regionsMissing(kind: Measurement, document: Json): number {
   return kind === "step_between" ? Math.max(0, 2 - regionsOf(document).length) : 0;
 }
 
-export function newMeasurement(kind: Measurement, document: Json, size_um: { x: number; y: number }): { path: Path; value: JsonObject } {
+const kUnknown: ReadonlyMap<string, number> = new Map();
+
+// heights_um: of regions, where they are known; of two regions the lower one is the one that lies lower.
+export function newMeasurement(kind: Measurement, document: Json, size_um: { x: number; y: number }, heights_um = kUnknown): { path: Path; value: JsonObject } {
   const [first = "", second = ""] = regionsOf(document);
+  const [lower, upper] = (heights_um.get(first) ?? NaN) > (heights_um.get(second) ?? NaN) ? [second, first] : [first, second];
   const about: Record<Measurement, { name: string; value: JsonObject }> = {
-    step_between: { name: "step", value: { kind, lower: first, upper: second } },
+    step_between: { name: "step", value: { kind, lower, upper } },
     step_height: { name: "step", value: { kind, method: "iso5436_a1", across: "x" } },
     areal: { name: "roughness", value: { kind, ...(first ? { region: first } : {}), parameters: ["Sa", "Sq", "Sz"] } },
     profile: {

@@ -1,32 +1,20 @@
 // The recipe's regions and profiles on the newest map: seen, dragged, moved by keys, added.
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { number, t, type TextKey } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
-import { messageOf } from "../../parts/message_of.ts";
 import { freeName, getAt } from "../../recipe/document.ts";
 import { type Drawn, type Edit, drawingsOf, dragged, moved, newShape } from "../../recipe/drawing.ts";
-import { type Tile, fetchTile } from "../../surface/height_tile.ts";
 import type { Editor } from "./editor.ts";
 import { JobChoice } from "./job_choice.ts";
 import { MapCanvas } from "./map_canvas.ts";
 import { type Newest, pitchOf } from "./newest_job.ts";
+import { useHeights } from "./use_heights.ts";
 
 const kArrows: Record<string, readonly [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export function RegionMap({ editor, newest }: { editor: Editor; newest: Newest }) {
-  const [heights, setHeights] = useState<Tile | null>(null);
-  const [problem, setProblem] = useState("");
+  const { heights, problem } = useHeights(newest);
   const [selected, setSelected] = useState("");
-  useEffect(() => {
-    setHeights(null);
-    setProblem("");
-    if (!newest.job_id || !newest.result) return;
-    const ending = new AbortController();
-    fetchTile(newest.job_id, "height", null, 512, ending.signal).then(setHeights, (error) => {
-      if (!ending.signal.aborted) setProblem(messageOf(error));
-    });
-    return () => ending.abort();
-  }, [newest.job_id, newest.result !== null]);
 
   const shapes = editor.document === null ? [] : drawingsOf(editor.document);
   const pitch = pitchOf(newest.result) ?? { x: 1, y: 1 };

@@ -7,6 +7,7 @@ import { topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
 import { tryId } from "../../recipe/ids.ts";
+import { hasMeasurements } from "../../recipe/kinds.ts";
 import { evaluateBy, keepForTrial, scanBy } from "../../recipe/try_recipe.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { type Value, valuesOf } from "../../results/values.ts";
@@ -33,7 +34,8 @@ export function TryPanel({ editor, newest }: { editor: Editor; newest: Newest })
   const why = !mayAs(role, "set_up") ? t("recipe.needs_set_up")
     : !editor.isChecked ? t("recipe.checking")
     : !editor.check?.accepted ? t("recipe.save_refused") : "";
-  const whyNotEvaluate = why || (newest.result === null ? t("recipe.no_job") : "");
+  const whyNotEvaluate = why || (newest.result === null ? t("recipe.no_job")
+    : editor.document !== null && !hasMeasurements(editor.document) ? t("recipe.measurement_first") : "");
   const whyNotScan = why || (state !== null && !state.ready ? t("recipe.not_ready", { state: state.state ?? "" }) : "");
 
   // What the draft's values are set beside: the result's own where it was measured by this recipe, else what the saved recipe makes of it.
