@@ -13,7 +13,7 @@ import { kClient } from "../../run/start_job.ts";
 import { askNewest, home } from "./commands.ts";
 import { OneButton } from "./one_button.ts";
 import { countsOn, notice, partId, recipeChoice, recipes, setCountsOn } from "./run_state.ts";
-import { useKeys } from "./use_keys.ts";
+import { focusIfFree, useKeys } from "./use_keys.ts";
 import { useRecipeId } from "./use_machine.ts";
 
 function useRecipeList(): string {
@@ -54,6 +54,12 @@ function PartField() {
     notice.set(null);
   }, []);
   useKeys(taken);
+  // As the page opens, and once somebody has logged in: the dialog that had the focus is gone. Who only looks names no part.
+  const { who, role } = useStore(session);
+  const names = mayAs(role, "operate");
+  useEffect(() => {
+    if (names) focusIfFree(input.current);
+  }, [who, names]);
   const problem = id === "" ? "none" : partIdProblem(id);
   const submit = (event: Event): void => {
     // A scanner ends with Enter: the id is taken, and nothing moves before the button is pressed.

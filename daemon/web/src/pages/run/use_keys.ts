@@ -1,6 +1,7 @@
 // Keys that work wherever the focus is: F9 starts, F10 stops; a scanner's code becomes the part id.
 import { useEffect } from "preact/hooks";
 import { kNoScan, takeKey } from "../../run/scanner.ts";
+import { type Focused, takesKeys, takesText } from "../../run/typing.ts";
 import { stop } from "./commands.ts";
 import { press } from "./one_button.ts";
 import { awaited, partId } from "./run_state.ts";
@@ -9,9 +10,11 @@ import { buttonNow } from "./use_machine.ts";
 // All of this page's dialogs are modal; not every browser knows "dialog:modal".
 const isModalOpen = (): boolean => document.querySelector("dialog[open]") !== null;
 
-// Text that is typed belongs to the field that it is typed into.
-const takesText = (target: EventTarget | null): boolean =>
-  target instanceof HTMLTextAreaElement || target instanceof HTMLInputElement && !["checkbox", "radio", "button"].includes(target.type);
+// Gives the field the focus, unless a dialog or what can be typed into has it. A scanner may be slower than what is told from
+// a person's typing, and its code would be lost.
+export function focusIfFree(field: HTMLElement | null): void {
+  if (!isModalOpen() && !takesKeys(document.activeElement as Focused | null)) field?.focus({ preventScroll: true });
+}
 
 export function useKeys(scanned: (code: string) => void): void {
   useEffect(() => {
@@ -28,7 +31,7 @@ export function useKeys(scanned: (code: string) => void): void {
         if (!event.repeat && !isModalOpen() && awaited.get() !== "start" && buttonNow().action === "start") press();
         return;
       }
-      if (isModalOpen() || takesText(event.target) || event.ctrlKey || event.metaKey || event.altKey) {
+      if (isModalOpen() || event.target instanceof HTMLElement && takesText(event.target) || event.ctrlKey || event.metaKey || event.altKey) {
         scan = kNoScan;
         return;
       }
