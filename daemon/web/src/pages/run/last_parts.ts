@@ -8,6 +8,7 @@ import { messageOf } from "../../parts/message_of.ts";
 import { VerdictMark, verdictWord } from "../../parts/verdict_mark.ts";
 import type { JobRow } from "../../rpc/listed.ts";
 import { look } from "../../rpc/look.ts";
+import { recentRecipes } from "./run_state.ts";
 
 const kMost = 20;
 
@@ -30,7 +31,9 @@ function useStrip(): Strip {
     // One more than is shown: the newest may be running yet.
     look("job.list", { most: kMost + 1 }).then(({ jobs }) => {
       const parts = jobs.filter(({ state }) => state !== "processing").slice(0, kMost);
-      if (!isOver) setStrip({ isTold: true, parts, problem: "" });
+      if (isOver) return;
+      setStrip({ isTold: true, parts, problem: "" });
+      recentRecipes.set(parts.map(({ recipe }) => recipe));
     }, (error: unknown) => {
       if (!isOver) setStrip((before) => ({ ...before, problem: messageOf(error) }));
     });

@@ -5,6 +5,7 @@ import type { ButtonAction } from "../../run/button_rules.ts";
 export const partId = createStore("");
 export const recipeChoice = createStore<string | null>(null);  // null = nobody chose: the prepared one, or the last
 export const recipes = createStore<readonly string[] | null>(null);  // null = not told yet
+export const recentRecipes = createStore<readonly string[]>([]);  // of the last parts, the newest first
 
 const kCountsOn = "fvd.run.counts_on";
 export const countsOn = createStore(localStorage.getItem(kCountsOn) === "yes");

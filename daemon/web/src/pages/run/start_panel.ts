@@ -9,6 +9,7 @@ import { isTryId } from "../../recipe/ids.ts";
 import { look } from "../../rpc/look.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { kMostPartId, nextPartId, partIdProblem } from "../../run/part_ids.ts";
+import { offered } from "../../run/recipe_choice.ts";
 import { kClient } from "../../run/start_job.ts";
 import { askNewest, home } from "./commands.ts";
 import { OneButton } from "./one_button.ts";
@@ -36,7 +37,8 @@ function RecipeChoice() {
   const problem = useRecipeList();
   return html`<label class="field">${t("run.recipe")}
       <select value=${id} onChange=${(event: Event) => recipeChoice.set((event.target as HTMLSelectElement).value)}>
-        ${(known ?? []).map((each) => html`<option key=${each} value=${each}>${each}${isTryId(each) && ` – ${t("recipe.kind_try")}`}</option>`)}
+        ${id === "" && html`<option value="" disabled></option>`}
+        ${offered(known ?? []).map((each) => html`<option key=${each} value=${each}>${each}${isTryId(each) && ` – ${t("recipe.kind_try")}`}</option>`)}
       </select>
     </label>
     ${known?.length === 0 && html`<p class="help">${t("run.no_recipes")}</p>`}

@@ -4,17 +4,17 @@ import { link, topics } from "../../live/live.ts";
 import { mayAs, mayTryStop, session } from "../../rpc/session.ts";
 import { type OneButton, oneButton } from "../../run/button_rules.ts";
 import { partIdProblem } from "../../run/part_ids.ts";
-import { partId, recipeChoice, recipes } from "./run_state.ts";
+import { recipeToStart } from "../../run/recipe_choice.ts";
+import { partId, recentRecipes, recipeChoice, recipes } from "./run_state.ts";
 
-// The recipe that a start would name: what was chosen, else the prepared one, else that of the latest job.
 export function recipeOf(choice: string | null, known: readonly string[] | null): string {
   const { state, job } = topics.get();
-  const wanted = [choice, state?.recipe, job?.recipe].filter((id): id is string => Boolean(id));
-  return wanted.find((id) => known === null || known.includes(id)) ?? known?.[0] ?? "";
+  return recipeToStart({ choice, prepared: state?.recipe, measured: [job?.recipe ?? "", ...recentRecipes.get()], known });
 }
 
 export function useRecipeId(): string {
   useStore(topics);
+  useStore(recentRecipes);
   return recipeOf(useStore(recipeChoice), useStore(recipes));
 }
 
@@ -40,5 +40,6 @@ export function useButton(): OneButton {
   useStore(partId);
   useStore(recipeChoice);
   useStore(recipes);
+  useStore(recentRecipes);
   return buttonNow();
 }
