@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { setAt } from "../../../daemon/web/src/recipe/document.ts";
-import { contains, dragged, drawingsOf, handleAt, moved, newShape } from "../../../daemon/web/src/recipe/drawing.ts";
+import { contains, dragged, drawingsOf, handleAt, moved, newShape, rectangleBetween, spanned } from "../../../daemon/web/src/recipe/drawing.ts";
 import type { Json } from "../../../daemon/web/src/recipe/schema.ts";
 
 const document: Json = {
@@ -52,4 +52,20 @@ test("what the pointer is on", () => {
 test("new shapes lie inside the map", () => {
   assert.deepEqual(newShape("rectangle", 400, 200), { rectangle_um: { x: 150, y: 75, width: 100, height: 50 } });
   assert.deepEqual(newShape("circle", 400, 200), { circle_um: { x: 200, y: 100, radius: 25 } });
+});
+
+test("a rectangle is drawn in all directions, and stays in the map", () => {
+  const size = { x: 200, y: 100 };
+  assert.deepEqual(rectangleBetween({ x: 50, y: 60 }, { x: 20, y: 10 }, size), { x: 20, y: 10, width: 30, height: 50 });
+  assert.deepEqual(rectangleBetween({ x: 150, y: 60 }, { x: 500, y: -10 }, size), { x: 150, y: 0, width: 50, height: 60 });
+});
+
+test("a corner that is dragged over the other one and back ends where the pointer is", () => {
+  let now = setAt({}, ["evaluation", "regions", "a"], { rectangle_um: { x: 10, y: 10, width: 40, height: 40 } });
+  const fixed = { x: 10, y: 10 };
+  for (const to of [{ x: 20, y: 20 }, { x: 4, y: 2 }, { x: 60, y: 70 }]) {
+    const [shape] = drawingsOf(now);
+    for (const { path, value } of spanned(shape ?? assert.fail(), fixed, to)) now = setAt(now, path, value);
+  }
+  assert.deepEqual(now, { evaluation: { regions: { a: { rectangle_um: { x: 10, y: 10, width: 50, height: 60 } } } } });
 });

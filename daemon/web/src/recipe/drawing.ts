@@ -94,6 +94,16 @@ export function dragged(shape: Drawn, handle: number, to: Point): Edit[] {
   return editsOf(shape, shape.handles.map((point, i) => (i === handle ? to : point)));
 }
 
+// A shape of two handles, from one place to another: also where the drag goes back over its beginning.
+export const spanned = (shape: Drawn, from: Point, to: Point): Edit[] => editsOf(shape, [from, to]);
+
+// A rectangle that is drawn from a place in a map of this size, wherever the pointer went.
+export function rectangleBetween(from: Point, to: Point, size_um: Point): Json {
+  const within = (point: Point): Point => ({ x: Math.min(size_um.x, Math.max(0, point.x)), y: Math.min(size_um.y, Math.max(0, point.y)) });
+  const [edit] = editsOf({ path: [], name: "", kind: "rectangle", handles: [], width_um: 0 }, [within(from), within(to)]);
+  return edit?.value ?? null;
+}
+
 // The handle within reach of a point; -1 where there is none.
 export function handleAt(shape: Drawn, at: Point, reach: number): number {
   const far = shape.handles.map((point) => Math.hypot(point.x - at.x, point.y - at.y));

@@ -1,7 +1,7 @@
 // The picture of a map with shapes on it that the pointer drags.
 import { useEffect, useRef } from "preact/hooks";
 import { html } from "../../lib/html.ts";
-import { type Drawn, type Edit, type Point, contains, dragged, handleAt, moved } from "../../recipe/drawing.ts";
+import { type Drawn, type Edit, type Point, contains, dragged, handleAt, moved, spanned } from "../../recipe/drawing.ts";
 import { percentileRange } from "../../surface/colour_range.ts";
 import { kViridisTable } from "../../surface/colours.ts";
 import type { Tile } from "../../surface/height_tile.ts";
@@ -9,6 +9,7 @@ import { pictureOf } from "../../surface/paint.ts";
 
 const kReach_px = 22;  // of a finger
 const kWidth_px = 800;
+const kDraws_px = 8;  // a press moves less by itself
 
 interface Props {
   heights: Tile;
@@ -19,6 +20,7 @@ interface Props {
   keyOf: (shape: Drawn) => string;
   onSelect: (key: string) => void;
   onEdit: (edits: readonly Edit[]) => void;
+  onDraw: (from: Point, to: Point) => string;  // a new rectangle; its key
 }
 
 function outline(context: CanvasRenderingContext2D, shape: Drawn, at: (point: Point) => Point, scale: number): void {
@@ -40,10 +42,10 @@ function outline(context: CanvasRenderingContext2D, shape: Drawn, at: (point: Po
   }
 }
 
-export function MapCanvas({ heights, size, shapes, selected, label, keyOf, onSelect, onEdit }: Props) {
+export function MapCanvas({ heights, size, shapes, selected, label, keyOf, onSelect, onEdit, onDraw }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const picture = useRef<HTMLCanvasElement | null>(null);
-  const drag = useRef<{ key: string; handle: number; last: Point } | null>(null);
+  const drag = useRef<{ key: string; handle: number; last: Point; from: Point | null } | null>(null);
   const height_px = Math.max(1, Math.round((kWidth_px * size.y) / size.x));
   const scale = kWidth_px / size.x;  // px per um
 
@@ -98,16 +100,25 @@ export function MapCanvas({ heights, size, shapes, selected, label, keyOf, onSel
     const order = [...shapes].sort((a, b) => Number(keyOf(b) === selected) - Number(keyOf(a) === selected));
     const hit = order.find((shape) => handleAt(shape, at, reach) >= 0) ?? order.find((shape) => contains(shape, at, reach));
     onSelect(hit ? keyOf(hit) : "");
-    if (!hit) return;
-    drag.current = { key: keyOf(hit), handle: handleAt(hit, at, reach), last: at };
+    const handle = hit ? handleAt(hit, at, reach) : -1;
+    // Of a rectangle the other corner stays where it is.
+    const from = !hit ? at : hit.kind === "rectangle" && handle >= 0 ? hit.handles[1 - handle] ?? null : null;
+    drag.current = { key: hit ? keyOf(hit) : "", handle, last: at, from };
     (event.currentTarget as HTMLElement).setPointerCapture(event.pointerId);
   };
   const move = (event: PointerEvent): void => {
     const doing = drag.current;
-    const shape = doing && shapes.find((each) => keyOf(each) === doing.key);
-    if (!doing || !shape) return;
+    if (!doing) return;
     const at = pointAt(event);
-    onEdit(doing.handle >= 0 ? dragged(shape, doing.handle, at) : moved(shape, at.x - doing.last.x, at.y - doing.last.y));
+    if (doing.key === "" && doing.from) {
+      const um_per_px = size.x / (event.currentTarget as HTMLElement).getBoundingClientRect().width;
+      if (Math.hypot(at.x - doing.from.x, at.y - doing.from.y) > kDraws_px * um_per_px) doing.key = onDraw(doing.from, at);
+      return;
+    }
+    const shape = shapes.find((each) => keyOf(each) === doing.key);
+    if (!shape) return;
+    const inside = { x: Math.min(size.x, Math.max(0, at.x)), y: Math.min(size.y, Math.max(0, at.y)) };
+    onEdit(doing.from ? spanned(shape, doing.from, inside) : doing.handle >= 0 ? dragged(shape, doing.handle, at) : moved(shape, at.x - doing.last.x, at.y - doing.last.y));
     doing.last = at;
   };
   const up = (): void => { drag.current = null; };

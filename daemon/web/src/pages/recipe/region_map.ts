@@ -3,11 +3,12 @@ import { useState } from "preact/hooks";
 import { number, t, type TextKey } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { freeName, getAt } from "../../recipe/document.ts";
-import { type Drawn, type Edit, drawingsOf, dragged, moved, newShape } from "../../recipe/drawing.ts";
+import { type Drawn, type Edit, type Point, drawingsOf, dragged, moved, newShape, rectangleBetween } from "../../recipe/drawing.ts";
 import type { Editor } from "./editor.ts";
 import { JobChoice } from "./job_choice.ts";
 import { MapCanvas } from "./map_canvas.ts";
 import { type Newest, pitchOf } from "./newest_job.ts";
+import { ShapeEntry } from "./shape_entry.ts";
 import { useHeights } from "./use_heights.ts";
 
 const kArrows: Record<string, readonly [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
@@ -22,13 +23,16 @@ export function RegionMap({ editor, newest }: { editor: Editor; newest: Newest }
   const apply = (edits: readonly Edit[]): void => edits.forEach(({ path, value }) => editor.set(path, value));
   const keyOf = (shape: Drawn): string => shape.path.join("/");
 
-  const add = (kind: Drawn["kind"]): void => {
+  const add = (kind: Drawn["kind"], value = newShape(kind, size?.x ?? 100, size?.y ?? 100)): string => {
     const section = kind === "line" ? "measurements" : "regions";
     const name = freeName(getAt(editor.document ?? undefined, ["evaluation", section]), kind === "line" ? "profile" : "region");
-    editor.set(["evaluation", section, name], newShape(kind, size?.x ?? 100, size?.y ?? 100));
     const path = ["evaluation", section, name];
-    setSelected((kind === "line" ? path : [...path, `${kind}_um`]).join("/"));
+    editor.set(path, value);
+    const added = (kind === "line" ? path : [...path, `${kind}_um`]).join("/");
+    setSelected(added);
+    return added;
   };
+  const draw = (from: Point, to: Point): string => add("rectangle", { rectangle_um: rectangleBetween(from, to, size ?? to) });
   const key = (event: KeyboardEvent, shape: Drawn): void => {
     const way = kArrows[event.key];
     if (!way) return;
@@ -44,14 +48,11 @@ export function RegionMap({ editor, newest }: { editor: Editor; newest: Newest }
     ${problem && html`<p role="alert" class="problem">${problem}</p>`}
     ${heights && size && html`<${MapCanvas} heights=${heights} size=${size} shapes=${shapes} selected=${selected}
       label=${t("recipe.map_label", { width: number(size.x, 0), height: number(size.y, 0), count: shapes.length })}
-      keyOf=${keyOf} onSelect=${setSelected} onEdit=${apply}/>`}
+      keyOf=${keyOf} onSelect=${setSelected} onEdit=${apply} onDraw=${draw}/>`}
     <p class="buttons">${(["rectangle", "circle", "polygon", "line"] as const).map((kind) => html`
       <button type="button" disabled=${editor.document === null} onClick=${() => add(kind)}>${t(`recipe.add_${kind}` as TextKey)}</button>`)}</p>
     <p class="help" id="shape-help">${t("recipe.shape_keys")}</p>
-    <ul class="shapes">${shapes.map((shape) => html`<li key=${keyOf(shape)}>
-      <button type="button" aria-pressed=${selected === keyOf(shape) ? "true" : "false"} aria-describedby="shape-help"
-        onClick=${() => setSelected(keyOf(shape))} onKeyDown=${(event: KeyboardEvent) => key(event, shape)}>
-        ${shape.name} (${t(`recipe.shape_${shape.kind}` as TextKey)})</button>
-      <span class="help">${shape.handles.slice(0, 4).map((point) => `${number(point.x)}; ${number(point.y)}`).join(" → ")} µm</span>
-    </li>`)}</ul>`;
+    <ul class="shapes">${shapes.map((shape) => html`<${ShapeEntry} key=${keyOf(shape)} shape=${shape} selected=${selected === keyOf(shape)}
+      onSelect=${() => setSelected(keyOf(shape))} onKey=${(event: KeyboardEvent) => key(event, shape)}
+      onRename=${(name: string) => editor.rename(shape.path.slice(0, 3), name)} onRemove=${() => editor.remove(shape.path.slice(0, 3))}/>`)}</ul>`;
 }
