@@ -9,7 +9,7 @@ import { loadTexts } from "../../../daemon/web/src/i18n/i18n.ts";
 import { html } from "../../../daemon/web/src/lib/html.ts";
 import { topics } from "../../../daemon/web/src/live/live.ts";
 import { AlarmsPanel } from "../../../daemon/web/src/pages/run/alarms_panel.ts";
-import { errorCodeIn } from "../../../daemon/web/src/run/error_in_text.ts";
+import { errorCodeIn, saidOnce } from "../../../daemon/web/src/run/error_in_text.ts";
 
 declare const WEB_DIR: string;
 const { "x-errors": errors } = JSON.parse(readFileSync(join(WEB_DIR, "openrpc.json"), "utf8")) as { "x-errors": { code: number; name: string }[] };
@@ -36,4 +36,20 @@ test("an alarm says what to do about its error, another one what its level asks 
   const [newest, older] = drawn(html`<${AlarmsPanel}/>`).all("li");
   assert.ok(newest?.text.includes(en["run.alarm_todo.error"]));
   assert.ok(older?.text.includes(en["run.todo.1115"]));
+});
+
+test("a stop that somebody pressed is a notice, and says its word once", () => {
+  assert.equal(saidOnce("job J aborted: aborted: the axis was asked to stop"), "job J aborted: the axis was asked to stop");
+  assert.equal(saidOnce("job J failed: stage_alarm: alarm 7"), "job J failed: stage_alarm: alarm 7");
+  const alarm = (text: string) => ({ number: 1, time_utc: "2026-11-30T10:00:00.000Z", last_utc: "2026-11-30T10:00:00.000Z", level: "error" as const, text, count: 1, acknowledged: false });
+  const draw = (text: string) => {
+    topics.update((all) => ({ ...all, alarms: [alarm(text)] }));
+    return drawn(html`<${AlarmsPanel}/>`);
+  };
+  const wanted = draw("job J aborted: aborted: the axis was asked to stop");
+  assert.equal(wanted.all(".alarm-notice").length, 1);
+  assert.ok(wanted.text.includes(en["run.alarm_level.notice"]) && !wanted.text.includes("aborted: aborted"));
+  assert.equal(wanted.all(".waiting").length, 0);
+  const fault = draw("job J failed: stage_alarm: alarm 7");
+  assert.deepEqual([fault.all(".alarm-error").length, fault.all(".waiting").length], [1, 1]);
 });

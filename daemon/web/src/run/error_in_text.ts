@@ -9,6 +9,12 @@ const kCodes: Record<string, number> = {
   region_outside: 1142, objective_mismatch: 1146, memory_budget: 1203,
 };
 
+// "job J aborted: aborted: why": the state has the error's name, which is said once.
+export const saidOnce = (text: string): string => text.replace(/(^| )([a-z_]+): \2: /, "$1$2: ");
+
+// What somebody wanted is no fault, though the log has it beside those.
+export const isWanted = (text: string): boolean => errorCodeIn(text) === kCodes["aborted"];
+
 // 0 = none of them.
 export function errorCodeIn(text: string): number {
   for (const [, name = ""] of text.matchAll(/(?:^| )([a-z_]+)(?=: )/g)) if (Object.hasOwn(kCodes, name)) return kCodes[name] ?? 0;
