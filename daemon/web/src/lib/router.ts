@@ -14,6 +14,8 @@ export function go(address: string, options: { replace?: boolean } = {}): void {
   if (options.replace) history.replaceState(null, "", address);
   else history.pushState(null, "", address);
   place.set(here());
+  // A new page begins at its top; where one was on a page before, the browser knows for its Back button.
+  if (!options.replace) scrollTo(0, 0);
 }
 
 export function followLinks(): void {
