@@ -24,38 +24,53 @@ std::string settings_of(const Recipe& recipe) {
   return text.str();
 }
 
-std::optional<LearntWidth> learnt_in(const Database& database, const Recipe& recipe) {
+LearntWidth learnt_width(std::int64_t width_nm, std::int64_t scans, std::int64_t most_bin_slices) {
+  return {static_cast<double>(width_nm) / kNanometresPerUm, static_cast<int>(scans), static_cast<int>(most_bin_slices)};
+}
+
+std::optional<LearntWidth> learnt_in(const Database& database, const std::string& recipe, const std::string& settings) {
   Statement rows(database,
                  "SELECT width_nm, scans, most_bin_slices FROM curve_widths WHERE recipe = ? AND settings = ?");
-  rows.bind(recipe.id).bind(settings_of(recipe));
+  rows.bind(recipe).bind(settings);
   if (!rows.step()) return std::nullopt;
-  return LearntWidth{static_cast<double>(rows.integer(0)) / kNanometresPerUm, static_cast<int>(rows.integer(1)),
-                     static_cast<int>(rows.integer(2))};
+  return learnt_width(rows.integer(0), rows.integer(1), rows.integer(2));
 }
 
 }  // namespace
 
 std::optional<LearntWidth> CurveWidthTable::find(const Recipe& recipe) const {
-  const MutexLock lock(reader_.mutex);
-  return learnt_in(reader_.database, recipe);
+  const std::string settings = settings_of(recipe);
+  // Held while the row is read: what is learnt meanwhile is remembered afterwards.
+  const MutexLock lock(known_mutex_);
+  const auto known = known_.find(recipe.id);
+  if (known != known_.end() && known->second.settings == settings) return known->second.learnt;
+  const MutexLock reading(reader_.mutex);
+  const auto learnt = learnt_in(reader_.database, recipe.id, settings);
+  known_[recipe.id] = {settings, learnt};
+  return learnt;
 }
 
 void CurveWidthTable::learn(const Recipe& recipe, double width_um, int most_bin_slices) {
+  const std::string settings = settings_of(recipe);
   const MutexLock lock(writer_.mutex);
   Transaction transaction(writer_.database);
-  const LearntWidth before = learnt_in(writer_.database, recipe).value_or(LearntWidth{});
+  const LearntWidth before = learnt_in(writer_.database, recipe.id, settings).value_or(LearntWidth{});
   const int scans = std::min(before.scans + 1, kRememberedScans);
   const double mean_um = before.width_um + (width_um - before.width_um) / scans;
+  const auto width_nm = static_cast<std::int64_t>(mean_um * kNanometresPerUm + 0.5);
+  const int most = std::min(before.most_bin_slices, most_bin_slices);
   Statement(writer_.database,
             "INSERT OR REPLACE INTO curve_widths (recipe, settings, width_nm, scans, most_bin_slices) "
             "VALUES (?, ?, ?, ?, ?)")
       .bind(recipe.id)
-      .bind(settings_of(recipe))
-      .bind(static_cast<std::int64_t>(mean_um * kNanometresPerUm + 0.5))
+      .bind(settings)
+      .bind(width_nm)
       .bind(std::int64_t{scans})
-      .bind(std::int64_t{std::min(before.most_bin_slices, most_bin_slices)})
+      .bind(std::int64_t{most})
       .run();
   transaction.commit();
+  const MutexLock remembering(known_mutex_);
+  known_[recipe.id] = {settings, learnt_width(width_nm, scans, most)};
 }
 
 }  // namespace fvd

@@ -2,6 +2,7 @@
 
 /// The width of the focus curve as the last good scans of each recipe told it, in the job database.
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -12,8 +13,9 @@
 namespace fvd {
 
 /// One row a recipe: a width belongs to the settings that it was measured with, and another recipe document of the same
-/// name that changes one of them starts anew.
-/// context: thread-safe; a reader waits for other readers, never for a commit.
+/// name that changes one of them starts anew. What was found or learnt is remembered: a job asks between its trigger
+/// and the first motion, and does not wait for the readers of rows. context: thread-safe; a reader waits for other
+/// readers, never for a commit.
 class CurveWidthTable {
  public:
   struct Connection {
@@ -30,8 +32,15 @@ class CurveWidthTable {
   void learn(const Recipe& recipe, double width_um, int most_bin_slices);
 
  private:
+  struct Known {
+    std::string settings;
+    std::optional<LearntWidth> learnt;
+  };
+
   const Connection writer_;
   const Connection reader_;
+  mutable Mutex known_mutex_;  // taken before the reader's and behind the writer's
+  mutable std::map<std::string, Known> known_ FVD_GUARDED_BY(known_mutex_);  // by recipe
 };
 
 }  // namespace fvd

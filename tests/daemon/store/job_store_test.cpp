@@ -349,51 +349,6 @@ TEST_F(AJobStore, KeepsNoReaderWaitingForACommit) {
   EXPECT_EQ(store_->find(ClientSeq{1}).status.state, JobState::kCompleted);
 }
 
-TEST_F(AJobStore, RemembersTheWidthOfARecipesFocusCurve) {
-  Recipe recipe;
-  recipe.id = "part";
-  recipe.step_um = 4.0;
-  {
-    CurveWidthTable& widths = store_->curve_widths();
-    EXPECT_FALSE(widths.find(recipe).has_value());
-    widths.learn(recipe, 40.0, 7);
-    widths.learn(recipe, 43.0, 2);
-    const auto learnt = widths.find(recipe);
-    ASSERT_TRUE(learnt.has_value());
-    EXPECT_EQ(learnt->scans, 2);
-    EXPECT_NEAR(learnt->width_um, 41.5, 1e-3);
-    for (int i = 0; i < 40; ++i) widths.learn(recipe, 30.0, 64);
-    EXPECT_NEAR(widths.find(recipe)->width_um, 30.0, 0.01) << "a microscope changes";
-  }
-  reopen();
-  const auto kept = store_->curve_widths().find(recipe);
-  ASSERT_TRUE(kept.has_value());
-  EXPECT_EQ(kept->scans, 5);
-  EXPECT_EQ(kept->most_bin_slices, 2) << "one of the scans had heights near the ends";
-}
-
-TEST_F(AJobStore, ForgetsAWidthWhoseSettingsHaveChanged) {
-  Recipe recipe;
-  recipe.id = "part";
-  const auto after = [&](const std::function<void(Recipe&)>& change) {
-    store_->curve_widths().learn(recipe, 40.0, 64);
-    Recipe changed = recipe;
-    change(changed);
-    return store_->curve_widths().find(changed).has_value();
-  };
-  EXPECT_TRUE(after([](Recipe& changed) { changed.focus.min_prominence = 0.2; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.id = "other"; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.step_um = 5.0; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.start_um = -20.0; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.slices = 31; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.focus.window_px = 11; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.focus.window = FocusWindow::kBox; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.focus.distance_px = 3; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.focus.focus_operator = FocusOperator::kTenengrad; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.camera.offset_x = 8; }));
-  EXPECT_FALSE(after([](Recipe& changed) { changed.camera.width = 100; }));
-}
-
 TEST_F(AJobStore, TakesJobsFromSeveralThreads) {
   {
     std::vector<std::jthread> threads;
