@@ -43,17 +43,19 @@ export function t(key: TextKey, values: Record<string, string | number> = {}): s
 }
 
 // Text of a key that is put together, e.g. of a state; the word itself where nobody wrote a text for it.
-export function tWord(prefix: string, word: string): string {
+export function tWord(prefix: string, word: string, values: Record<string, string | number> = {}): string {
   const key = `${prefix}.${word}`;
-  return key in texts ? t(key as TextKey) : word;
+  return key in texts ? t(key as TextKey, values) : word;
 }
 
 // A number for people: the decimal sign is the language's, the digits are those of the value.
 export function number(value: number, digits?: number): string {
   if (!Number.isFinite(value)) return "–";
+  // Nothing is left of it but its sign.
+  const shown = value === 0 || digits !== undefined && Number(value.toFixed(digits)) === 0 ? 0 : value;
   return new Intl.NumberFormat(language.get(), digits === undefined
     ? { maximumFractionDigits: 20, useGrouping: false }
-    : { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false }).format(value);
+    : { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false }).format(shown);
 }
 
 // Draws the component anew when the language changes.

@@ -3,6 +3,7 @@ import { t, tWord } from "../../i18n/i18n.ts";
 import { csvOf } from "../../history/csv.ts";
 import { download } from "../../lib/download.ts";
 import { html } from "../../lib/html.ts";
+import { utcText } from "../../lib/utc_text.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
 import type { JobRow } from "../../rpc/listed.ts";
 
@@ -15,8 +16,8 @@ export function JobTable({ rows, chosen, onChoose }: { rows: readonly JobRow[]; 
         <th>${t("history.verdict")}</th><th>${t("history.state")}</th><th>${t("history.job")}</th></tr></thead>
       <tbody>${rows.map((row) => html`<tr key=${row.job_id}>
         <td><input type="checkbox" checked=${chosen.includes(row.job_id)} aria-label=${t("history.choose", { job: row.job_id })} onChange=${() => onChoose(row.job_id)}/></td>
-        <td class="time">${row.ended_utc.replace("T", " ").replace(/\.\d+Z$/, "Z")}</td>
-        <td class="id"><bdi>${row.part_id}</bdi></td>
+        <td class="time">${utcText(row.ended_utc)}</td>
+        <td class="id"><a class="row-link" href=${`/jobs/${encodeURIComponent(row.job_id)}`}><bdi>${row.part_id}</bdi></a></td>
         <td class="id"><a href=${`/recipes/${encodeURIComponent(row.recipe)}`}>${row.recipe}</a></td>
         <td><${VerdictLabel} verdict=${row.verdict}/></td>
         <td>${tWord("history.state", row.state)}${row.error && html`<br/><span class="help">${row.error}</span>`}</td>

@@ -4,6 +4,7 @@ import { number, t } from "../../i18n/i18n.ts";
 import type { Mark } from "../../history/control_rules.ts";
 import { digitsOf } from "../../lib/digits.ts";
 import { html } from "../../lib/html.ts";
+import { utcText } from "../../lib/utc_text.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
 import type { ValuePoint } from "../../rpc/listed.ts";
 
@@ -18,7 +19,7 @@ export function RunTable({ points, marks, unit }: { points: readonly ValuePoint[
       <tbody>${points.map((point, i) => {
         const digits = point.value === null ? 0 : digitsOf(point.value, point.U);
         return html`<tr key=${point.job_id}>
-          <td><a class="row-link" href=${`/jobs/${encodeURIComponent(point.job_id)}`}>${point.ended_utc}</a></td><td class="id"><bdi>${point.part_id}</bdi></td>
+          <td><a class="row-link" href=${`/jobs/${encodeURIComponent(point.job_id)}`}>${utcText(point.ended_utc)}</a></td><td class="id"><bdi>${point.part_id}</bdi></td>
           <td class="number">${point.value === null ? "–" : number(point.value, digits)}</td>
           <td class="number">${point.U === null ? "–" : number(point.U, digits)}</td>
           <td class="number">${limit(point.lower)}</td><td class="number">${limit(point.upper)}</td>

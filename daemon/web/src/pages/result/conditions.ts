@@ -1,6 +1,7 @@
 // Under which conditions the result came about.
 import { number, t, tWord } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
+import { utcText } from "../../lib/utc_text.ts";
 import type { ResultJson } from "../../result/result_json.ts";
 
 export function Conditions({ result }: { result: ResultJson }) {
@@ -8,7 +9,7 @@ export function Conditions({ result }: { result: ResultJson }) {
   const unknown = t("result.unknown");
   const rows: [string, string][] = [
     [t("result.cond.recipe"), result.job.recipe],
-    [t("result.cond.created"), provenance?.created ?? unknown],
+    [t("result.cond.created"), provenance?.created ? utcText(provenance.created) : unknown],
     [t("result.cond.objective"), objective || unknown],
     [t("result.cond.temperature"), temperature?.celsius === undefined ? unknown : `${number(temperature.celsius, 1)} °C`],
     [t("result.cond.calibration"), tWord("result.calibration", evaluation?.calibration ?? (result.calibration ? "in_force" : "none"))],

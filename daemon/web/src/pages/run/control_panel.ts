@@ -52,7 +52,7 @@ export function ControlPanel() {
   return html`<section class="panel control" aria-labelledby="control-title">
     <h2 id="control-title">${t("run.control")}</h2>
     <p role="status">${!isTaken ? t("run.control_nobody") : t(isOurs ? "run.control_yours" : "run.control_other", names)}</p>
-    ${isTaken && html`<p class="help">${t("run.control_left", { seconds: number(Math.ceil(left_s), 0) })}</p>`}
+    ${isTaken && html`<p class="help">${isOurs && isHere ? t("run.control_kept") : t("run.control_left", { seconds: number(Math.ceil(left_s), 0) })}</p>`}
     <p class="buttons">
       ${isOurs
         ? html`<button type="button" onClick=${() => run(giveControlBack())}>${t("run.control_release")}</button>`

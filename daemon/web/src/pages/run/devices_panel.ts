@@ -50,8 +50,8 @@ function Light({ kind }: { kind: "good" | "warn" | "bad" }) {
 
 function DeviceRow({ name, device }: { name: string; device: Device | null }) {
   const more = device === null ? [] : [
-    ...(device.lost > 0 ? [t("run.device_lost", { count: device.lost })] : []),
-    ...device.faults.map((fault) => `${tWord("run.fault", fault.name)}: ${number(fault.count)}`),
+    ...(device.lost > 0 ? [device.lost === 1 ? t("run.device_lost_once") : t("run.device_lost", { count: device.lost })] : []),
+    ...device.faults.map((fault) => tWord("run.fault", fault.name, { count: fault.count })),
     ...device.temperatures_c.map(({ name: where, celsius }) => `${where} ${number(celsius, 1)} °C`),
   ];
   return html`<dt>${name}</dt><dd>

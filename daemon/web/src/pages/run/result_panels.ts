@@ -51,7 +51,7 @@ function Title({ id, text, shown }: { id: string; text: string; shown: ShownResu
   const { job } = useStore(topics);
   const isPrevious = job !== null && !job.done && shown.status !== null;
   return html`<h2 id=${id}>${text} ${shown.status && html`<bdi class="part-id">${shown.status.part_id}</bdi>`}
-    ${isPrevious && html` <span class="tag">${t("run.previous_part")}</span>`}</h2>`;
+    ${isPrevious && html` <span class="tag">${t(shown.status?.part_id === job.part_id ? "run.previous_scan" : "run.previous_part")}</span>`}</h2>`;
 }
 
 export function MapPanel({ shown }: { shown: ShownResult }) {
