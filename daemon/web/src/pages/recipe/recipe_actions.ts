@@ -4,43 +4,28 @@ import { t } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { go } from "../../lib/router.ts";
 import { useStore } from "../../lib/store.ts";
-import { topics } from "../../live/live.ts";
 import { messageOf } from "../../parts/message_of.ts";
 import { freeId, isId } from "../../recipe/ids.ts";
 import { call } from "../../rpc/rpc.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { download } from "../../lib/download.ts";
 import type { Editor } from "./editor.ts";
+import { justSaved } from "./just_saved.ts";
+import { PrepareButton } from "./prepare_button.ts";
 
 export function RecipeActions({ editor, version, isChanged }: { editor: Editor; version: number; isChanged: boolean }) {
   const { who, role } = useStore(session);
-  const { state } = useStore(topics);
-  const [said, setSaid] = useState("");
   const [problem, setProblem] = useState("");
   const [copy, setCopy] = useState("");
-  const whyNotPrepare = !mayAs(role, "operate") ? t("recipe.needs_operate") : state?.busy ? t("recipe.busy") : "";
 
-  const run = async (what: () => Promise<string>): Promise<void> => {
-    setProblem("");
-    setSaid("");
-    try {
-      setSaid(await what());
-    } catch (error) {
-      setProblem(messageOf(error));
-    }
-  };
-  const prepare = async (): Promise<string> => {
-    const { recipe } = await call("recipe.prepare", { id: editor.id });
-    return t("recipe.prepared", { id: recipe });
-  };
-  const duplicate = async (): Promise<string> => {
+  const duplicate = async (): Promise<void> => {
     const list = (await call("recipe.list", {})).recipes as string[];
     const id = copy.trim() || freeId(editor.id, list);
     if (!isId(id)) throw new Error(t("recipe.bad_id"));
     if (list.includes(id)) throw new Error(t("recipe.id_taken", { id }));
-    await call("recipe.save", { id, text: editor.text, base_version: 0, author: who, comment: t("recipe.copied_from", { id: editor.id, version }) });
+    const saved = await call("recipe.save", { id, text: editor.text, base_version: 0, author: who, comment: t("recipe.copied_from", { id: editor.id, version }) });
+    justSaved.set({ id, version: saved.version });
     go(`/recipes/${encodeURIComponent(id)}`);
-    return "";
   };
   const take = async (event: Event): Promise<void> => {
     const input = event.target as HTMLInputElement;
@@ -50,17 +35,18 @@ export function RecipeActions({ editor, version, isChanged }: { editor: Editor; 
   };
   return html`<section class="panel" aria-labelledby="recipe-actions">
     <h2 id="recipe-actions">${t("recipe.actions")}</h2>
+    <p class="buttons"><${PrepareButton} id=${editor.id} help=${t(isChanged ? "recipe.prepare_saved" : "recipe.prepare_help")}/></p>
     <p class="buttons">
-      <button type="button" disabled=${whyNotPrepare !== ""} aria-describedby="prepare-why" onClick=${() => void run(prepare)}>${t("recipe.prepare")}</button>
       <button type="button" onClick=${() => download(`${editor.id}.json`, "application/json", editor.text)}>${t("recipe.export")}</button>
       <label class="button">${t("recipe.import_here")} <input type="file" accept=".json,application/json" onChange=${(event: Event) => void take(event)}/></label>
     </p>
-    <p id="prepare-why" class="help">${whyNotPrepare || (isChanged ? t("recipe.prepare_saved") : t("recipe.prepare_help"))}</p>
     <p class="add">
       <label>${t("recipe.copy_id")} <input value=${copy} maxlength="32" autocomplete="off" onInput=${(event: Event) => setCopy((event.target as HTMLInputElement).value)}/></label>
-      <button type="button" disabled=${!mayAs(role, "set_up") || !editor.check?.accepted} onClick=${() => void run(duplicate)}>${t("recipe.duplicate")}</button>
+      <button type="button" disabled=${!mayAs(role, "set_up") || !editor.check?.accepted} onClick=${() => {
+        setProblem("");
+        duplicate().catch((error: unknown) => setProblem(messageOf(error)));
+      }}>${t("recipe.duplicate")}</button>
     </p>
-    <p aria-live="polite">${said}</p>
     ${problem && html`<p role="alert" class="problem">${problem}</p>`}
   </section>`;
 }

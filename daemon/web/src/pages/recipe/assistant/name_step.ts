@@ -9,6 +9,7 @@ import { isId } from "../../../recipe/ids.ts";
 import { recipeSchema } from "../../../recipe/schema.ts";
 import { call } from "../../../rpc/rpc.ts";
 import { session } from "../../../rpc/session.ts";
+import { justSaved } from "../just_saved.ts";
 import { Field } from "../fields/field.ts";
 import { type StepProps, kDraft } from "./assistant.ts";
 import { useRun } from "./run.ts";
@@ -23,8 +24,9 @@ export function NameStep({ editor, taken }: StepProps) {
   const whyNot = why || (!editor.check?.accepted || !editor.isChecked ? t("recipe.save_refused")
     : !isId(id) ? t("recipe.bad_id") : taken.includes(id) ? t("recipe.id_taken", { id }) : name.trim() === "" ? t("recipe.needs_author") : "");
   const save = async (): Promise<void> => {
-    await call("recipe.save", { id, text: editor.text, base_version: 0, author: name.trim(), comment: t("recipe.made_by_assistant") });
+    const { version } = await call("recipe.save", { id, text: editor.text, base_version: 0, author: name.trim(), comment: t("recipe.made_by_assistant") });
     dropDraft(kDraft);
+    justSaved.set({ id, version });
     go(`/recipes/${encodeURIComponent(id)}`);
   };
   return html`
