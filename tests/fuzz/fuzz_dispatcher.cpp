@@ -37,7 +37,10 @@ void check_reply(const std::string& line) {
 }
 
 void handle(const Dispatcher& dispatcher, std::string_view line, Caller& caller) {
-  if (const auto urgent = dispatcher.try_urgent(line, caller); urgent && urgent->reply) check_reply(*urgent->reply);
+  // What may pass others is a single request, and no log-in passes as one that reads much.
+  if (const Method* const method = dispatcher.overtaker(line))
+    (void)Dispatcher::may_overtake(*method, caller, Dispatcher::Behind::kWait);
+  require(!(dispatcher.is_log_in(line) && dispatcher.is_long(line)));
   auto handled = dispatcher.try_handle(line, caller);
   if (!handled) handled = dispatcher.handle(line, caller);
   if (handled->reply) check_reply(*handled->reply);

@@ -2,6 +2,7 @@
 /// of the input say how the rest is cut, and whether a very long line is in it.
 
 #include <array>
+#include <chrono>
 #include <memory>
 
 #include <boost/asio/io_context.hpp>
@@ -70,8 +71,12 @@ class Connection {
   /// All replies, up to the close that follows the end of what the client sends.
   std::string finish() {
     ::shutdown(own_, SHUT_WR);
-    for (int turn = 0; turn < 1000 && !closed_; ++turn) let_it_work();
-    require(closed_);
+    constexpr std::chrono::seconds kLongest{20};  // what comes after a refusal is dropped at a pace
+    for (const auto begun = std::chrono::steady_clock::now(); !closed_;) {
+      require(std::chrono::steady_clock::now() - begun < kLongest);
+      let_it_work();
+      if (!closed_) context_.run_one_for(std::chrono::milliseconds(20));
+    }
     let_it_work();
     return std::move(replies_);
   }

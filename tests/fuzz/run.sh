@@ -18,7 +18,7 @@ mkdir -p "$FVD_BUILD"
 fvd_say "building in $FVD_BUILD (the first time takes some minutes)"
 configure() {
   cmake -S "$FVD_ROOT" -B "$FVD_BUILD" -G Ninja -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_CXX_COMPILER_LAUNCHER=ccache \
-    -DFVD_FUZZ=ON -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="-O1 -g1"
+    -DFVD_FUZZ=ON -DFVD_UNITY=ON -DFVD_UNITY_LIBRARIES=ON -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="-O1 -g1"
 }
 fvd_locked configure
 fvd_locked cmake --build "$FVD_BUILD" --target write_seeds "${@/#/fuzz_}"
