@@ -61,7 +61,10 @@ async function lookAt(browser, station, figures, state, { language, theme, all, 
   try {
     await state.before?.(station);
     const { viewport, scale, clock_ms, mayFail = false } = state;
-    tab = await openTab(browser, station, figures, { language, theme, token: tokenOf(state, station), mayFail, viewport, scale, clock_ms });
+    tab = await openTab(browser, station, figures, {
+      language, theme, token: tokenOf(state, station), mayFail, viewport, scale, clock_ms,
+      mayWarn: /GPU stall due to ReadPixels/,  // it is the photograph that reads
+    });
     await inState(tab, station, state);
     await examine(tab, name, state, sums);
     for (const file of filesOf(state, { language, theme }, all)) await photograph(tab, state, file, kPicture);

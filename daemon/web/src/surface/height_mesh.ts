@@ -15,7 +15,9 @@ export interface MeshScale {
   pitch_y: number;
 }
 
-// Corners of a square are a b / c d. A square with one hole keeps the triangle of the other three.
+const kStripe = 16;  // squares: the corners of a row are still at hand as the next one is drawn
+
+// In stripes from top to bottom. Corners of a square are a b / c d. A square with one hole keeps the triangle of the other three.
 export function trianglesOf(heights: Float32Array, columns: number, rows: number): Uint32Array {
   const found = new Uint32Array(Math.max(0, 6 * (columns - 1) * (rows - 1)));
   let at = 0;
@@ -25,19 +27,22 @@ export function trianglesOf(heights: Float32Array, columns: number, rows: number
     found[at++] = b;
     found[at++] = c;
   };
-  for (let row = 0; row + 1 < rows; ++row) {
-    for (let column = 0; column + 1 < columns; ++column) {
-      const a = row * columns + column;
-      const b = a + 1;
-      const c = a + columns;
-      const d = c + 1;
-      const [va, vb, vc, vd] = [valid(a), valid(b), valid(c), valid(d)];
-      if (va && vd) {
-        if (vb) add(a, d, b);
-        if (vc) add(a, c, d);
-      } else if (vb && vc) {
-        if (va) add(a, c, b);
-        if (vd) add(b, c, d);
+  for (let left = 0; left + 1 < columns; left += kStripe) {
+    const right = Math.min(left + kStripe, columns - 1);
+    for (let row = 0; row + 1 < rows; ++row) {
+      for (let column = left; column < right; ++column) {
+        const a = row * columns + column;
+        const b = a + 1;
+        const c = a + columns;
+        const d = c + 1;
+        const [va, vb, vc, vd] = [valid(a), valid(b), valid(c), valid(d)];
+        if (va && vd) {
+          if (vb) add(a, d, b);
+          if (vc) add(a, c, d);
+        } else if (vb && vc) {
+          if (va) add(a, c, b);
+          if (vd) add(b, c, d);
+        }
       }
     }
   }

@@ -17,12 +17,12 @@ export function boundedLook(look: Look): Look {
   };
 }
 
-const kRest_ms = 100;
+const kRest_ms = 60;
 const kHand_ms = 500;  // steps further apart are no turn
 
 // How long after a step of a turn the view rests, by how long the step before was ago: a machine that draws slowly brings
 // the hand's steps late, and would be slower still if it drew the fine picture between them.
-export const restAfter_ms = (since_ms: number): number => (since_ms < kHand_ms ? Math.max(kRest_ms, 2 * since_ms) : kRest_ms);
+export const restAfter_ms = (since_ms: number): number => (since_ms < kHand_ms ? Math.max(kRest_ms, 1.5 * since_ms) : kRest_ms);
 
 // So that the heights take up about a fifth of the width; 1 where they do by themselves.
 export function suggestedExaggeration(height_um: number, width_um: number): number {
