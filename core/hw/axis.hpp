@@ -126,6 +126,10 @@ class Axis {
   /// context: any thread.
   [[nodiscard]] virtual std::optional<StageStatus> last_seen() const { return std::nullopt; }
 
+  /// Tells the drive to end its alarm, and returns when it has: it does where the cause is gone. Nothing moves. No
+  /// effect without an alarm. Throws Error kStageAlarm (it stands), kStageDisconnected, kAborted.
+  virtual void reset_alarm(std::stop_token /*stop*/) {}
+
   /// Enables the drive and finds the reference; returns when homed and at rest.
   /// Throws Error kStageDisconnected, kStageAlarm, kTimeout, kAborted.
   virtual void home(std::stop_token stop) = 0;

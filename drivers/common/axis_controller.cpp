@@ -25,6 +25,7 @@ constexpr milliseconds kSampleAge{50};
 /// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
 constexpr Micrometers kSweepWindow{5.0};
 constexpr milliseconds kSweepGrace{3000};
+constexpr milliseconds kAlarmEnds{2000};  // after the command
 /// How often a motion is asked for of a drive that says "later"; each time it is looked at first.
 constexpr int kBusyAttempts = 6;
 
@@ -58,6 +59,27 @@ class AxisController final : public Axis {
     auto stats = port_->link_stats();
     if (stats) stats->implausible = poller_.implausible();
     return stats;
+  }
+
+  void reset_alarm(std::stop_token stop) override {
+    const AxisSample before = poller_.sample_after(HostClock::now(), stop);
+    if (!before.alarm) return;
+    CommandResult sent;
+    poller_.pause([&] { sent = port_->reset_alarm(stop); });
+    require_wanted(stop);
+    const HostTime started = HostClock::now();
+    for (HostTime last = started;;) {
+      const AxisSample sample = poller_.sample_after(last, stop);
+      if (!sample.alarm) return;
+      last = sample.begun;
+      const bool was_told = sent.outcome == CommandOutcome::kDone;
+      if (was_told && sample.time - started < kAlarmEnds) continue;
+      throw Error(
+          ErrorCode::kStageAlarm,
+          "the drive at " + traits_.address + " keeps its " + port_->alarm_text(sample.alarm_code) +
+              (was_told ? " although it was told to end it" : ", and could not be told to end it: " + sent.error) +
+              "; see to the cause by its manual, then reset again, or switch it off and on");
+    }
   }
 
   void home(std::stop_token stop) override {

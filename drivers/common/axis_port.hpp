@@ -79,6 +79,11 @@ class AxisPort {
   /// Torque on; not asked for where it is on. The axis rests.
   [[nodiscard]] virtual CommandResult enable(const MotionLimits& limits, std::stop_token stop) = 0;
 
+  /// Tells the controller to end its alarm, which it does where the cause is gone; the samples tell. Moves nothing.
+  [[nodiscard]] virtual CommandResult reset_alarm(std::stop_token /*stop*/) {
+    return {.outcome = CommandOutcome::kRefused, .error = "it has no command for that"};
+  }
+
   /// Starts the search for the reference. May return before it has ended; the samples tell.
   [[nodiscard]] virtual CommandResult home(const MotionLimits& limits, std::stop_token stop) = 0;
 

@@ -135,6 +135,9 @@ class GcsPort final : public AxisPort {
     return run("SVO", "1");
   }
 
+  /// An alarm switches the servo off; who switches it on has seen to the cause.
+  [[nodiscard]] CommandResult reset_alarm(std::stop_token /*stop*/) override { return run("SVO", "1"); }
+
   [[nodiscard]] CommandResult home(const MotionLimits& limits, std::stop_token /*stop*/) override {
     const CommandResult set = set_speed(limits.speed_um_per_s);
     return set.outcome == CommandOutcome::kDone ? run("FRF", "") : set;

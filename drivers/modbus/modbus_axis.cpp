@@ -115,6 +115,10 @@ class ModbusPort final : public AxisPort {
     return run(profile_.enable, values({}, limits), std::move(stop));
   }
 
+  [[nodiscard]] CommandResult reset_alarm(std::stop_token stop) override {
+    return run(profile_.alarm_reset, {}, std::move(stop));
+  }
+
   [[nodiscard]] CommandResult home(const MotionLimits& limits, std::stop_token stop) override {
     return begin(profile_.home, values({}, limits), std::move(stop));
   }

@@ -38,6 +38,9 @@ class SimDrive : public RegisterBank, public DriveFaults {
   /// The drive is set up to give and take the low word of 32-bit values first; to be called before its first request.
   void set_low_word_first();
 
+  /// Whatever raises an alarm stands from now on: a reset does not end it.
+  void keep_alarms() { keeps_alarms_ = true; }
+
   [[nodiscard]] int moves() const noexcept { return moves_; }  ///< moves to a target executed so far
 
  protected:
@@ -73,7 +76,7 @@ class SimDrive : public RegisterBank, public DriveFaults {
   }
   void set_alarm(int code) {
     mutex_.assert_held();
-    alarm_ = code;
+    if (code != 0 || !keeps_alarms_) alarm_ = code;
   }
 
   // What the drive reports: a fault may hold it.
@@ -106,6 +109,7 @@ class SimDrive : public RegisterBank, public DriveFaults {
   RegisterImage image_ FVD_GUARDED_BY(mutex_);
   bool low_word_first_ FVD_GUARDED_BY(mutex_) = false;
   int alarm_ FVD_GUARDED_BY(mutex_) = 0;
+  std::atomic<bool> keeps_alarms_{false};
   int refused_starts_ FVD_GUARDED_BY(mutex_) = 0;
   std::int64_t offset_ FVD_GUARDED_BY(mutex_) = 0;  // what the drive calls a position, minus what the axis calls it
   HostTime held_until_ FVD_GUARDED_BY(mutex_) = HostTime::min();

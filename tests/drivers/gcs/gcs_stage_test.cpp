@@ -154,6 +154,8 @@ TEST_F(AGcsAxis, ReportsAnAlarmInMotionAndKeepsIt) {
                [&] { stage->move_to(Micrometers{1400.0}, criterion_, {}); });
   EXPECT_TRUE(stage->status().alarm) << "ERR? tells it once, the stage as long as it lasts";
   expect_error(ErrorCode::kStageAlarm, {"-1024"}, [&] { stage->move_to(Micrometers{10.0}, criterion_, {}); });
+  stage->reset_alarm({});
+  EXPECT_FALSE(stage->status().alarm);
 }
 
 TEST_F(AGcsAxis, SaysThatStandstillWasNotConfirmedOnALineThatFallsSilent) {

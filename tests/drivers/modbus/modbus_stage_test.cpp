@@ -121,6 +121,27 @@ TEST_F(AModbusStage, ReportsAnAlarmWithItsText) {
   EXPECT_NE(message.find("0x30: overload"), std::string::npos) << message;
 }
 
+TEST_F(AModbusStage, EndsAnAlarmWhenItIsTold) {
+  auto stage = open_homed();
+  stage->reset_alarm({});  // there is none
+  drive_.raise_alarm(0x30);
+  EXPECT_EQ(error_of([&] { stage->move_to(Micrometers{1.0}, criterion_, {}); }), ErrorCode::kStageAlarm);
+  const int moves = drive_.moves();
+  stage->reset_alarm({});
+  EXPECT_FALSE(stage->status().alarm);
+  EXPECT_EQ(drive_.moves(), moves) << "a reset moves nothing";
+}
+
+TEST_F(AModbusStage, SaysThatAnAlarmStandsWhoseCauseStands) {
+  auto stage = open_homed();
+  drive_.keep_alarms();
+  drive_.raise_alarm(0x30);
+  std::string message;
+  EXPECT_EQ(error_of([&] { stage->reset_alarm({}); }, &message), ErrorCode::kStageAlarm);
+  EXPECT_NE(message.find("0x30: overload"), std::string::npos) << message;
+  EXPECT_TRUE(stage->status().alarm);
+}
+
 TEST_F(AModbusStage, ReportsAnAlarmThatComesInMotion) {
   auto stage = open_homed();
   std::jthread fault([this] {
