@@ -49,8 +49,8 @@ await phase(async ({ browser, station, figures }) => {
   let begun = null;
   for (let seq = 1; seq <= kWarm + jobs; ++seq) {
     const part = await runJob(station, seq);
-    // Each is shown: else nothing would be kept that could pile up.
-    await page.waitForFunction((wanted) => document.querySelector("section.map h2 .part-id")?.textContent === wanted && document.querySelector(".height-map canvas"), part);
+    // Each is shown: else nothing would be kept that could pile up. What tells so is no element: a handle would keep it.
+    await page.waitForFunction((wanted) => document.querySelector("section.map h2 .part-id")?.textContent === wanted && document.querySelector(".height-map canvas") !== null, part);
     if (seq === kWarm) begun = await memoryOf(browser, page);
     if (seq % 100 === 0) console.error(`${seq} jobs: ${JSON.stringify(await memoryOf(browser, page))}`);
   }
