@@ -90,7 +90,7 @@ std::string_view device_meaning(ErrorCode code) noexcept {
     case ErrorCode::kStagePosition:
       return "the axis did not settle at its target: look for what blocks it, or allow it more time";
     case ErrorCode::kStageAlarm:
-      return "the drive raised an alarm: see its manual, clear it, then home";
+      return "the drive raised an alarm: see its manual, see to the cause, then error.reset and stage.home";
     case ErrorCode::kStageTaken:
       return "another program or another master has the drive: end it, see to the part, then measure again";
     case ErrorCode::kBadSlice:

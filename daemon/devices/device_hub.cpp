@@ -59,6 +59,19 @@ std::optional<DeviceFailure> DeviceHub::failure() {
   return restless_;
 }
 
+std::optional<DeviceFailure> DeviceHub::alarm() const {
+  if (!axis_.connected()) return std::nullopt;
+  const std::optional<StageStatus> seen = axis_.get().last_seen();
+  if (!seen || (!seen->alarm && seen->state != AxisState::kAlarm)) return std::nullopt;
+  if (!seen->alarm) {
+    return DeviceFailure{ErrorCode::kStageAlarm,
+                         "the drive's emergency stop is on; release it, then error.reset and stage.home"};
+  }
+  return DeviceFailure{ErrorCode::kStageAlarm, "the drive has " + seen->alarm_text +
+                                                   "; see to the cause, then error.reset, which tells it to end the "
+                                                   "alarm, and stage.home"};
+}
+
 void DeviceHub::confirm_rest() { (void)measure_standstill(); }
 
 std::optional<DeviceFailure> DeviceHub::after_failure(ErrorCode code, const std::string& message) {

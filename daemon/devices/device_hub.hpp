@@ -42,6 +42,9 @@ class DeviceHub {
   /// measured and was not.
   [[nodiscard]] std::optional<DeviceFailure> failure();
 
+  /// The alarm of the drive, as its newest sample says; it is not asked. Nothing without one, or without an axis.
+  [[nodiscard]] std::optional<DeviceFailure> alarm() const;
+
   /// Measures that the axis stands still after a motion that was commanded; at_rest() and failure() tell. Drops
   /// nothing: whoever commanded the motion may still hold the axis.
   void confirm_rest();

@@ -179,11 +179,12 @@ DeviceTask::Work home_work() {
 }
 
 DeviceTask::Work reset_work() {
-  return [](const Devices& devices, const std::stop_token&) {
+  return [](const Devices& devices, const std::stop_token& stop) {
+    devices.stage.reset_alarm(stop);
     const StageStatus stage = devices.stage.status();
-    if (stage.alarm) {
-      throw Error(ErrorCode::kStageAlarm,
-                  "the drive still has its alarm: " + stage.alarm_text + "; see its manual, clear it, then home");
+    if (stage.alarm || stage.state == AxisState::kAlarm) {
+      throw Error(ErrorCode::kStageAlarm, stage.alarm ? "the drive still has its alarm: " + stage.alarm_text
+                                                      : "the drive's emergency stop is on: release it, then reset");
     }
     return ordered_json{{"z_um", stage.position.value}, {"homed", stage.homed}}.dump();
   };

@@ -25,7 +25,7 @@ namespace fvd {
 [[nodiscard]] DeviceTask::Work autofocus_work(const CameraSettings& settings, const AutofocusPlan& plan);
 
 [[nodiscard]] DeviceTask::Work home_work();
-/// Asks the drive: throws Error kStageAlarm while it has an alarm, kStageDisconnected.
+/// Tells the drive to end its alarm: throws Error kStageAlarm while it keeps it, kStageDisconnected.
 [[nodiscard]] DeviceTask::Work reset_work();
 [[nodiscard]] DeviceTask::Work move_work(Micrometers target);
 

@@ -246,12 +246,16 @@ void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
     ended.not_durable = failure.what();
     storage = StorageProblem{failure.code(), deps_.store.kept_end()};
   }
+  const std::optional<DeviceFailure> alarm = end.used_devices ? deps_.hub.alarm() : std::nullopt;
   deps_.board.update([&](MachineRecord& machine) {
     if (machine.job) ended.acknowledged = machine.job->acknowledged;  // by a client that saw the row
     machine.job = ended;
     machine.apply(MachineEvent::kJobEnded);
     if (storage) machine.set_storage(storage);
-    if (end.used_devices) machine.set_devices(end.failure);
+    if (end.used_devices) {
+      machine.set_devices(end.failure);
+      machine.set_alarm(alarm);
+    }
     machine.apply(MachineEvent::kRecipePrepared);  // by the job, on the way
   });
 }

@@ -16,6 +16,11 @@ void MachineRecord::set_devices(const std::optional<DeviceFailure>& why_not) {
   failure = why_not;
 }
 
+void MachineRecord::set_alarm(const std::optional<DeviceFailure>& seen) {
+  apply(seen ? MachineEvent::kAlarmSeen : MachineEvent::kAlarmGone);
+  alarm = seen;
+}
+
 void MachineRecord::set_storage(const std::optional<StorageProblem>& why_not) {
   apply(why_not ? MachineEvent::kStorageBad : MachineEvent::kStorageGood);
   storage = why_not;
@@ -52,6 +57,8 @@ void MachineRecord::require(Command command) const {
                     : Error(ErrorCode::kStorageWrite, "results cannot be kept");
     case Refusal::kDeviceMissing:
       throw Error(ErrorCode::kNotReady, failure ? failure->message : "a device is missing");
+    case Refusal::kAlarm:
+      throw Error(ErrorCode::kNotReady, alarm ? alarm->message : "the drive has an alarm");
   }
 }
 
@@ -159,6 +166,9 @@ void MachineBoard::publish_locked() {
   if (record_.failure) {
     status->error = record_.failure->code;
     status->error_message = record_.failure->message;
+  } else if (record_.alarm) {
+    status->error = record_.alarm->code;
+    status->error_message = record_.alarm->message;
   } else if (record_.storage) {
     status->error = record_.storage->code;
     status->error_message = record_.storage->message;

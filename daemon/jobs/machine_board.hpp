@@ -26,6 +26,7 @@ struct MachineRecord {
   std::string recipe;                     ///< prepared recipe, empty = none
   std::optional<JobStatus> job;           ///< the running or the latest job
   std::optional<DeviceFailure> failure;   ///< why the devices cannot be used
+  std::optional<DeviceFailure> alarm;     ///< of the drive
   std::optional<StorageProblem> storage;  ///< why results cannot be kept
   std::optional<DeviceFacts> devices;     ///< of the devices when they were opened last
   std::string objective;                  ///< that was confirmed, empty = none
@@ -37,6 +38,8 @@ struct MachineRecord {
   void apply(MachineEvent event);
   /// DevicesDown for the reason, or DevicesUp for nothing.
   void set_devices(const std::optional<DeviceFailure>& why_not);
+  /// AlarmSeen for the alarm, or AlarmGone for nothing.
+  void set_alarm(const std::optional<DeviceFailure>& seen);
   /// StorageBad for the reason, or StorageGood for nothing.
   void set_storage(const std::optional<StorageProblem>& why_not);
   /// Throws Error kShuttingDown, kBusy, kNotReady, and of a problem of the storage.

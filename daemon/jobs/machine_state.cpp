@@ -31,6 +31,8 @@ bool is_allowed(const MachineState& machine, MachineEvent event) noexcept {
     case MachineEvent::kMotionSeen:
     case MachineEvent::kStorageGood:
     case MachineEvent::kStorageBad:
+    case MachineEvent::kAlarmGone:
+    case MachineEvent::kAlarmSeen:
     case MachineEvent::kHalt:
       return true;
     case MachineEvent::kRecipePrepared:
@@ -102,6 +104,12 @@ std::optional<MachineState> after(MachineState machine, MachineEvent event) noex
       break;
     case MachineEvent::kStorageBad:
       machine.storable = false;
+      break;
+    case MachineEvent::kAlarmGone:
+      machine.alarmed = false;
+      break;
+    case MachineEvent::kAlarmSeen:
+      machine.alarmed = true;
       break;
     case MachineEvent::kHalt:
       machine.halted = true;

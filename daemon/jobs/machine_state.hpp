@@ -28,6 +28,7 @@ struct MachineState {
   TaskState task = TaskState::kNone;
   JobStage job = JobStage::kNone;
   bool storable = true;  ///< results can be kept
+  bool alarmed = false;  ///< the drive has an alarm: nothing is measured until it ends
 
   bool operator==(const MachineState&) const = default;
 };
@@ -48,6 +49,8 @@ enum class MachineEvent {
   kTaskEnded,
   kStorageGood,
   kStorageBad,
+  kAlarmGone,
+  kAlarmSeen,
   kHalt
 };
 inline constexpr std::array kAllMachineEvents{
@@ -56,7 +59,7 @@ inline constexpr std::array kAllMachineEvents{
     MachineEvent::kJobRefused, MachineEvent::kJobAccepted, MachineEvent::kJobAcquired,
     MachineEvent::kJobEnded,   MachineEvent::kLookStarted, MachineEvent::kMotionStarted,
     MachineEvent::kTaskEnded,  MachineEvent::kStorageGood, MachineEvent::kStorageBad,
-    MachineEvent::kHalt};
+    MachineEvent::kAlarmGone,  MachineEvent::kAlarmSeen,   MachineEvent::kHalt};
 
 /// The first row that fits:
 ///
@@ -64,6 +67,7 @@ inline constexpr std::array kAllMachineEvents{
 ///   job accepted, or a command that moves       -> executing
 ///   devices not opened yet                      -> preoperational
 ///   devices down                                -> error
+///   the drive has an alarm                      -> error
 ///   results cannot be kept                      -> error
 ///   devices up, recipe prepared                 -> ready
 ///   devices up                                  -> initialized
@@ -72,7 +76,7 @@ inline constexpr std::array kAllMachineEvents{
   if (machine.job == JobStage::kHoldsPart || machine.job == JobStage::kAcquired) return ScanState::kExecuting;
   if (machine.task == TaskState::kMoves) return ScanState::kExecuting;
   if (machine.devices == DevicesState::kUnknown) return ScanState::kPreoperational;
-  if (machine.devices == DevicesState::kDown || !machine.storable) return ScanState::kError;
+  if (machine.devices == DevicesState::kDown || machine.alarmed || !machine.storable) return ScanState::kError;
   return machine.prepared ? ScanState::kReady : ScanState::kInitialized;
 }
 
@@ -99,7 +103,17 @@ struct Signals {
 enum class Command { kStartJob, kRunTask, kPrepareRecipe };
 inline constexpr std::array kAllCommands{Command::kStartJob, Command::kRunTask, Command::kPrepareRecipe};
 
-enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOpening, kDeviceMissing, kStorage };
+enum class Refusal {
+  kNone,
+  kShuttingDown,
+  kJobRuns,
+  kJobOffered,
+  kTaskRuns,
+  kOpening,
+  kDeviceMissing,
+  kStorage,
+  kAlarm
+};
 
 /// Why the machine does not take the command now; the first row that fits:
 ///
@@ -112,6 +126,7 @@ enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOp
 ///   a command moves      | taken: a job ends it | task runs | taken
 ///   devices not opened   | opening for all
 ///   devices down         | device missing for all
+///   the drive's alarm    | alarm       | -: it is reset, and the axis homed | -
 ///   else                 | taken
 [[nodiscard]] constexpr Refusal refusal(const MachineState& machine, Command command) noexcept {
   if (machine.halted) return Refusal::kShuttingDown;
@@ -122,6 +137,7 @@ enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOp
   if (machine.task == TaskState::kMoves) return Refusal::kNone;
   if (machine.devices == DevicesState::kUnknown) return Refusal::kOpening;
   if (machine.devices == DevicesState::kDown) return Refusal::kDeviceMissing;
+  if (machine.alarmed && command == Command::kStartJob) return Refusal::kAlarm;
   return Refusal::kNone;
 }
 
@@ -143,6 +159,8 @@ enum class Refusal { kNone, kShuttingDown, kJobRuns, kJobOffered, kTaskRuns, kOp
 ///   TaskEnded          | a command                  | no command
 ///   StorageGood        | always                     | results can be kept
 ///   StorageBad         | always                     | results cannot be kept
+///   AlarmGone          | always                     | no alarm
+///   AlarmSeen          | always                     | the drive has an alarm
 ///   Halt               | always                     | halted
 ///
 /// A job or a command that ends because a device is lost ends by its own event and DevicesDown, told as one change: the

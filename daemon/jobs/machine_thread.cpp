@@ -55,13 +55,17 @@ void MachineThread::run(std::stop_token stop) {
 
 bool MachineThread::look_after_devices() {
   const std::optional<DeviceFailure> failure = hub_.open();
+  const std::optional<DeviceFailure> alarm = hub_.alarm();
   const MachineRecord known = board_.read();
+  if (alarm && alarm != known.alarm) spdlog::error("no job is taken: {}: {}", error_name(alarm->code), alarm->message);
+  if (!alarm && known.alarm && !failure) spdlog::info("the drive's alarm has ended");
   if (failure && failure != known.failure) spdlog::warn("{}: {}", error_name(failure->code), failure->message);
   const DevicesState now = failure ? DevicesState::kDown : DevicesState::kUp;
   const bool reopened = std::exchange(known_openings_, hub_.openings()) != hub_.openings();
-  if (known.failure == failure && known.state.devices == now && !reopened) return !failure;
+  if (known.failure == failure && known.alarm == alarm && known.state.devices == now && !reopened) return !failure;
   board_.update([&](MachineRecord& machine) {
     machine.set_devices(failure);
+    machine.set_alarm(alarm);
     machine.devices = failure ? std::nullopt : std::optional(hub_.facts());
   });
   return !failure;

@@ -87,10 +87,14 @@ void TaskRunner::run(DeviceTask& task, const std::stop_token& stop) {
     if (!outcome.error && task.moves()) deps_.hub.confirm_rest();
     failure = outcome.error ? deps_.hub.after_failure(*outcome.error, outcome.message) : deps_.hub.failure();
   }
+  const std::optional<DeviceFailure> alarm = deps_.hub.alarm();
   task.foretell(outcome);  // a repeated jog finds why it ended before it could begin anew
   deps_.board.update([&](MachineRecord& machine) {
     machine.apply(MachineEvent::kTaskEnded);
-    if (begins) machine.set_devices(failure);
+    if (begins) {
+      machine.set_devices(failure);
+      machine.set_alarm(alarm);
+    }
   });
   task.end(std::move(outcome));               // whoever reads it finds the devices free
   deps_.board.update([](MachineRecord&) {});  // its caller is told

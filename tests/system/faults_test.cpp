@@ -55,6 +55,24 @@ TEST_F(AMicroscope, ReportsAnAlarmOfTheDrive) {
   const json ended = await_end(1);
   EXPECT_EQ(ended["error"], "stage_alarm") << ended.dump();
   EXPECT_NE(ended["error_message"].get<std::string>().find("overload"), std::string::npos);
+  // No further part is lost to it: the machine is in error until the drive has ended the alarm.
+  const json state = ask("system.state", json::object());
+  EXPECT_EQ(state["state"], "error") << state.dump();
+  EXPECT_EQ(state["error_code"], 1115);
+  EXPECT_FALSE(state["ready"]);
+  EXPECT_EQ(begin(2)["code"], 1001);
+  EXPECT_TRUE(ask("error.reset", json::object()).contains("z_um"));
+  EXPECT_TRUE(wait_until_ready());
+  begin(3);
+  EXPECT_EQ(await_end(3)["state"], "completed");
+}
+
+TEST_F(AMicroscope, StaysInErrorWithAnAlarmWhoseCauseStands) {
+  start();
+  plant_->drive().keep_alarms();
+  plant_->drive().raise_alarm(0x30);
+  EXPECT_EQ(ask("error.reset", json::object())["code"], 1115);
+  EXPECT_EQ(ask("system.state", json::object())["state"], "error");
 }
 
 TEST_F(AMicroscope, AbortsAJobOnRequestAndTakesTheNext) {

@@ -105,7 +105,8 @@ void add_system_methods(MethodTable& methods, const Services& services, std::chr
                                            params.form.form(), call.envelope_bytes));
       })};
   MethodDescription reset = task_description(
-      "Asks the devices whether the cause of an error is gone; an error ends with its cause, and with nothing else",
+      "Tells the drive to end its alarm; an error ends with its cause, and with nothing else: a drive keeps an alarm "
+      "whose cause stands",
       Role::kOperate, described<NoParams>(), describe_reset, {ErrorCode::kStageAlarm, ErrorCode::kStageDisconnected},
       TaskMotion::kNone);
   reset.is_audited = true;

@@ -21,7 +21,9 @@ std::vector<MachineState> all_states() {
           for (const auto task : {TaskState::kNone, TaskState::kLooks, TaskState::kMoves}) {
             for (const auto job : {JobStage::kNone, JobStage::kOffered, JobStage::kHoldsPart, JobStage::kAcquired}) {
               for (const bool storable : {false, true}) {
-                states.push_back({halted, at_rest, prepared, devices, task, job, storable});
+                for (const bool alarmed : {false, true}) {
+                  states.push_back({halted, at_rest, prepared, devices, task, job, storable, alarmed});
+                }
               }
             }
           }
@@ -34,9 +36,10 @@ std::vector<MachineState> all_states() {
 
 std::string text(const MachineState& machine) {
   return std::string(machine.halted ? "halted " : "") + (machine.at_rest ? "at_rest " : "") +
-         (machine.storable ? "" : "not storable ") + (machine.prepared ? "prepared " : "") + "devices " +
-         std::to_string(static_cast<int>(machine.devices)) + " task " + std::to_string(static_cast<int>(machine.task)) +
-         " job " + std::to_string(static_cast<int>(machine.job));
+         (machine.storable ? "" : "not storable ") + (machine.alarmed ? "alarmed " : "") +
+         (machine.prepared ? "prepared " : "") + "devices " + std::to_string(static_cast<int>(machine.devices)) +
+         " task " + std::to_string(static_cast<int>(machine.task)) + " job " +
+         std::to_string(static_cast<int>(machine.job));
 }
 
 bool has_job(const MachineState& m) { return m.job == JobStage::kHoldsPart || m.job == JobStage::kAcquired; }
@@ -53,6 +56,7 @@ const std::vector<StateRow> kStateRows{
     {moves, S::kExecuting},
     {[](const MachineState& m) { return m.devices == DevicesState::kUnknown; }, S::kPreoperational},
     {[](const MachineState& m) { return m.devices == DevicesState::kDown; }, S::kError},
+    {[](const MachineState& m) { return m.alarmed; }, S::kError},
     {[](const MachineState& m) { return !m.storable; }, S::kError},
     {[](const MachineState& m) { return m.prepared; }, S::kReady},
     {[](const MachineState&) { return true; }, S::kInitialized},
@@ -77,6 +81,7 @@ const std::vector<RefusalRow> kRefusalRows{
      Refusal::kOpening},
     {[](const MachineState& m) { return m.devices == DevicesState::kDown; }, Refusal::kDeviceMissing,
      Refusal::kDeviceMissing, Refusal::kDeviceMissing},
+    {[](const MachineState& m) { return m.alarmed; }, Refusal::kAlarm, Refusal::kNone, Refusal::kNone},
     {[](const MachineState&) { return true; }, Refusal::kNone, Refusal::kNone, Refusal::kNone},
 };
 
@@ -123,6 +128,8 @@ const std::vector<EventRow> kEventRows{
      [](MachineState& m) { m.task = TaskState::kNone; }},
     {E::kStorageGood, always, [](MachineState& m) { m.storable = true; }},
     {E::kStorageBad, always, [](MachineState& m) { m.storable = false; }},
+    {E::kAlarmGone, always, [](MachineState& m) { m.alarmed = false; }},
+    {E::kAlarmSeen, always, [](MachineState& m) { m.alarmed = true; }},
     {E::kHalt, always, [](MachineState& m) { m.halted = true; }},
 };
 
