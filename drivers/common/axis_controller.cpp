@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/scan/settle_detector.hpp"
+#include "drivers/common/alarm_reset.hpp"
 #include "drivers/common/axis_poller.hpp"
 #include "drivers/common/axis_stopper.hpp"
 #include "drivers/common/commanded.hpp"
@@ -25,7 +26,6 @@ constexpr milliseconds kSampleAge{50};
 /// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
 constexpr Micrometers kSweepWindow{5.0};
 constexpr milliseconds kSweepGrace{3000};
-constexpr milliseconds kAlarmEnds{2000};  // after the command
 /// How often a motion is asked for of a drive that says "later"; each time it is looked at first.
 constexpr int kBusyAttempts = 6;
 
@@ -34,7 +34,7 @@ class AxisController final : public Axis {
   AxisController(std::unique_ptr<AxisPort> port, const AxisSettings& settings)
       : settings_(settings),
         port_(std::move(port)),
-        traits_(checked(port_->traits(), settings)),
+        traits_(require_limits_inside(port_->traits(), settings)),
         poller_(*port_, settings.limits.speed_um_per_s, settings.min, settings.max),
         stopper_(*port_, poller_, settings.limits) {
     come_to_rest();
@@ -61,26 +61,7 @@ class AxisController final : public Axis {
     return stats;
   }
 
-  void reset_alarm(std::stop_token stop) override {
-    const AxisSample before = poller_.sample_after(HostClock::now(), stop);
-    if (!before.alarm) return;
-    CommandResult sent;
-    poller_.pause([&] { sent = port_->reset_alarm(stop); });
-    require_wanted(stop);
-    const HostTime started = HostClock::now();
-    for (HostTime last = started;;) {
-      const AxisSample sample = poller_.sample_after(last, stop);
-      if (!sample.alarm) return;
-      last = sample.begun;
-      const bool was_told = sent.outcome == CommandOutcome::kDone;
-      if (was_told && sample.time - started < kAlarmEnds) continue;
-      throw Error(
-          ErrorCode::kStageAlarm,
-          "the drive at " + traits_.address + " keeps its " + port_->alarm_text(sample.alarm_code) +
-              (was_told ? " although it was told to end it" : ", and could not be told to end it: " + sent.error) +
-              "; see to the cause by its manual, then reset again, or switch it off and on");
-    }
-  }
+  void reset_alarm(std::stop_token stop) override { end_alarm(*port_, poller_, stop); }
 
   void home(std::stop_token stop) override {
     const AxisSample before = poller_.sample_after(HostClock::now(), stop);
@@ -136,11 +117,6 @@ class AxisController final : public Axis {
   [[nodiscard]] bool connected() const noexcept override { return poller_.connected(); }
 
  private:
-  static const AxisTraits& checked(const AxisTraits& traits, const AxisSettings& settings) {
-    require_limits_inside(traits, settings);
-    return traits;
-  }
-
   /// Whoever set it in motion is gone.
   void come_to_rest() {
     if (stopper_.rests()) return;

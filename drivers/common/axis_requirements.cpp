@@ -136,10 +136,10 @@ void require_near(const AxisTraits& traits, HostTime time) {
                                                 " ms ahead; is the camera's clock right?");
 }
 
-void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings) {
-  if (!traits.limits) return;
+const AxisTraits& require_limits_inside(const AxisTraits& traits, const AxisSettings& settings) {
+  if (!traits.limits) return traits;
   const auto& [lower, upper] = *traits.limits;
-  if (settings.min >= lower && settings.max <= upper) return;
+  if (settings.min >= lower && settings.max <= upper) return traits;
   std::ostringstream message;
   message << "the configured limits of " << settings.min.value << ".." << settings.max.value
           << " um reach beyond the drive's own, " << lower.value << ".." << upper.value

@@ -47,8 +47,8 @@ void require_agreement(AxisPort& port, const std::stop_token& stop);
 /// Throws Error kCameraFramesLost for a time more than two seconds ahead: times of exposures are told by the camera's
 /// clock, and nobody can end a wait for them.
 void require_near(const AxisTraits& traits, HostTime time);
-/// Throws Error kStageLimit if the configured limits reach beyond the controller's own.
-void require_limits_inside(const AxisTraits& traits, const AxisSettings& settings);
+/// The traits. Throws Error kStageLimit if the configured limits reach beyond the controller's own.
+const AxisTraits& require_limits_inside(const AxisTraits& traits, const AxisSettings& settings);
 /// Throws Error kStageLimit if the target is beyond the controller's counter.
 [[nodiscard]] StageCounts quantise(const AxisTraits& traits, Micrometers target);
 /// Throws Error kStageLimit for a target outside min..max.
