@@ -94,8 +94,8 @@ void describe(StoreConfig& store, Fields& fields) {
   fields.integer("keep_gib", store.keep_gib, {0, 1048576},
                  "the oldest acknowledged results go when all take more; 0 = never");
   fields.integer("keep_free_gib", store.keep_free_gib, {0, 1048576},
-                 "likewise when the disk has less free; where it never has so much, all acknowledged results go; "
-                 "0 = never");
+                 "likewise when the disk has less free; where it never has so much, all acknowledged results go, but "
+                 "none where the whole disk is smaller; 0 = never");
 }
 
 void describe(ObjectiveConfig& objective, Fields& fields) {

@@ -168,7 +168,10 @@ void Retention::make_room(const std::stop_token& stop) {
   std::error_code error;
   const fs::space_info disk = fs::space(results_, error);
   if (error) throw std::system_error(error, results_.string());
-  for (const RetentionStep& step : retention_plan(results, limits_of(config()), disk.available)) {
+  RetentionLimits limits = limits_of(config());
+  // No disk is freer than it is large: a digit too many would remove whatever was measured.
+  if (limits.least_free_bytes > disk.capacity) limits.least_free_bytes = {};
+  for (const RetentionStep& step : retention_plan(results, limits, disk.available)) {
     if (stop.stop_requested()) return;
     ticks_.tick(HostClock::now());
     const StoredJob& job = jobs[step.result];
@@ -182,22 +185,20 @@ void Retention::note_shortage() {
   const int wanted_gib = config().keep_free_gib;
   const fs::space_info disk = fs::space(results_);
   const auto free_gib = static_cast<double>(disk.available) / kGib;
+  const auto whole_gib = static_cast<double>(disk.capacity) / kGib;
   const auto may_go = [](const StoredJob& job) { return job.status.acknowledged && !job.files_pending; };
   const auto any_may_go = [&] {  // what was freed by the last steps may be less than was counted: the next look goes on
     const std::vector<StoredJob> left = store_.results().on_disk();
     return std::any_of(left.begin(), left.end(), may_go);
   };
-  const bool is_short = wanted_gib > 0 && free_gib < wanted_gib && !any_may_go();
+  const bool is_short = wanted_gib > 0 && free_gib < wanted_gib && (whole_gib < wanted_gib || !any_may_go());
   const bool was_short = std::exchange(is_short_, is_short);
   if (!is_short_ || was_short) return;
-  const auto whole_gib = static_cast<double>(disk.capacity) / kGib;
-  spdlog::warn(
-      "store.keep_free_gib: {} GiB are to be free, {:.1f} of the disk's {:.1f} are, and no acknowledged result is left "
-      "to remove: {}",
-      wanted_gib, free_gib, whole_gib,
-      whole_gib < wanted_gib ? "the disk is smaller than that, and every result is removed once it is acknowledged: "
-                               "give less"
-                             : "acknowledge results, or make room on the disk");
+  spdlog::warn("store.keep_free_gib: {} GiB are to be free, {:.1f} of the disk's {:.1f} are{}", wanted_gib, free_gib,
+               whole_gib,
+               whole_gib < wanted_gib ? ": the disk is smaller than that, and nothing is removed for it: give less"
+                                      : ", and no acknowledged result is left to remove: acknowledge results, or make "
+                                        "room on the disk");
 }
 
 void Retention::remove_slices(const StoredJob& job) {

@@ -133,10 +133,13 @@ TEST_F(ARetention, NeverMarksAResultThatIsNotAcknowledged) {
   EXPECT_EQ(store_.find(waiting).result_json, "{}");
 }
 
+/// As much as the disk has, in whole GiB: it is never so free.
+int whole_disk_gib(const fs::path& folder) { return static_cast<int>(fs::space(folder).capacity >> 30U); }
+
 TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
   const std::string old = add(1, true, kLongAgo);
   const std::string waiting = add(2, false, kLongAgo);
-  Retention retention(store_, {.keep_free_gib = 1048576}, results_);
+  Retention retention(store_, {.keep_free_gib = whole_disk_gib(results_)}, results_);
   retention.start();
   retention.finish();
   retention.run_once();
@@ -147,13 +150,21 @@ TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
 TEST_F(ARetention, SaysOnceThatTheDiskIsNotFreeEnoughThoughAllIsRemoved) {
   add(1, true, kLongAgo);
   const test::CapturedLog log;
-  Retention never(store_, {.keep_free_gib = 1048576}, results_);
+  Retention never(store_, {.keep_free_gib = whole_disk_gib(results_)}, results_);
   for (int i = 0; i < 2; ++i) never.run_once();
-  EXPECT_EQ(log.lines_with("store.keep_free_gib: 1048576 GiB are to be free"), 1U) << log.text();
-  EXPECT_EQ(log.lines_with("the disk is smaller than that"), 1U) << log.text();
+  EXPECT_EQ(log.lines_with("no acknowledged result is left to remove"), 1U) << log.text();
   Retention without(store_, {}, results_);
   without.run_once();
   EXPECT_EQ(log.lines_with("store.keep_free_gib"), 1U);
+}
+
+TEST_F(ARetention, RemovesNothingForMoreThanTheDiskHas) {
+  const std::string old = add(1, true, kLongAgo);
+  const test::CapturedLog log;
+  Retention mistyped(store_, {.keep_free_gib = 1048576}, results_);
+  for (int i = 0; i < 2; ++i) mistyped.run_once();
+  EXPECT_TRUE(fs::exists(results_ / old));
+  EXPECT_EQ(log.lines_with("the disk is smaller than that, and nothing is removed for it"), 1U) << log.text();
 }
 
 TEST_F(ARetention, GoesOnAtTheStartWithARemovalThatWasCutOffWhateverTheLimitsAre) {
