@@ -61,6 +61,21 @@ std::vector<std::string> copy_all(const InstrumentPaths& instrument, const fs::p
   return missing;
 }
 
+/// Of a disk that is not mounted the mount point may be missing: a folder made there would be on the system's disk.
+void require_place(const fs::path& backup, const fs::path& state_dir) {
+  const fs::path parent = backup.parent_path();
+  if (std::error_code error; !fs::is_directory(parent, error)) {
+    throw Error(ErrorCode::kBadInput, "there is no folder " + parent.string() +
+                                          " to keep the backup in: is its disk mounted? Make it, or give another");
+  }
+  const fs::path inside = fs::canonical(parent).lexically_relative(fs::weakly_canonical(state_dir));
+  if (!inside.empty() && *inside.begin() != "..") {
+    throw Error(ErrorCode::kBadInput,
+                backup.string() + " is inside of the state folder " + state_dir.string() +
+                    ", with which it would be lost: give a folder elsewhere, best on another disk");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs::path& folder, bool with_results) {
@@ -70,7 +85,7 @@ std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs
     throw Error(ErrorCode::kBadInput, final_dir.string() + " exists already: give another name, or move it away");
   }
   const fs::path temporary = final_dir.string() + ".tmp";
-  (void)make_directories(final_dir.parent_path());
+  require_place(final_dir, instrument.state_dir);
   if (file_calls().make_directory(temporary) != 0) {
     if (errno != EEXIST) throw storage_error(errno, "create directory", temporary);
     throw Error(ErrorCode::kBadInput, temporary.string() +

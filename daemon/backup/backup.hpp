@@ -17,10 +17,10 @@ struct InstrumentPaths {
   std::filesystem::path token_file = {};
 };
 
-/// Makes `folder`, which must not exist, as FOLDER.tmp must not, with the copy; whole or not at all. The daemon may run
-/// and measure meanwhile. with_results: also the folders of all results that the copied database knows. Returns the
-/// results whose folders are not there, also those that were removed to make room meanwhile. Throws Error kBadInput,
-/// kDatabase, kStorageFull, kStorageWrite.
+/// Makes `folder`, which must not exist, as FOLDER.tmp must not, in one that exists outside of the state folder, with
+/// the copy; whole or not at all. The daemon may run and measure meanwhile. with_results: also the folders of all
+/// results that the copied database knows. Returns the results whose folders are not there, also those that were
+/// removed to make room meanwhile. Throws Error kBadInput, kDatabase, kStorageFull, kStorageWrite.
 std::vector<std::string> make_backup(const InstrumentPaths& instrument, const std::filesystem::path& folder,
                                      bool with_results);
 

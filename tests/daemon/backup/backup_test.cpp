@@ -93,6 +93,15 @@ TEST_F(AnInstrument, IsBackedUpWhileItMeasures) {
   FVD_EXPECT_ERROR_SAYING(kBadInput, (void)make_backup(paths_, backup_, false), HasSubstr("exists already"));
 }
 
+TEST_F(AnInstrument, IsBackedUpWhereAFolderIsAndNotIntoItself) {
+  const fs::path unmounted = backup_.parent_path() / "no-disk" / "backup";
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)make_backup(paths_, unmounted, false), HasSubstr("is its disk mounted?"));
+  EXPECT_FALSE(fs::exists(unmounted.parent_path()));
+  const fs::path inside = paths_.state_dir / "backup";
+  FVD_EXPECT_ERROR_SAYING(kBadInput, (void)make_backup(paths_, inside, false), HasSubstr("inside of the state folder"));
+  EXPECT_FALSE(fs::exists(inside));
+}
+
 TEST_F(AnInstrument, LeavesNoHalfBackup) {
   fs::remove_all(paths_.recipe_dir);
   fs::create_symlink(folder_ / "nowhere", folder_ / "dangling");

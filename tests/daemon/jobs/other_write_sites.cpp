@@ -135,7 +135,9 @@ struct Instrument {
 
 class ABackup final : public WriteSite {
  public:
-  explicit ABackup(const fs::path& folder) : instrument_(folder / "instrument"), to_(folder / "backup" / "today") {}
+  explicit ABackup(const fs::path& folder) : instrument_(folder / "instrument"), to_(folder / "backup" / "today") {
+    fs::create_directories(to_.parent_path());
+  }
   void work() override {
     refused_ = true;
     (void)make_backup(instrument_.paths, to_, true);
