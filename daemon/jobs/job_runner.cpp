@@ -221,9 +221,9 @@ MeasurementObserver JobRunner::observer() {
 
 void JobRunner::end(const AcceptedJob& job, const JobEnd& end) {
   if (end.error) {
-    // What somebody asked for is no error.
-    spdlog::log(end.state == JobState::kAborted ? spdlog::level::warn : spdlog::level::err, "job {} {}: {}: {}",
-                job.status.job_id, job_state_name(end.state), error_name(*end.error), end.message);
+    // What somebody asked for is no error, unless the stage did not come to rest.
+    spdlog::log(end.state == JobState::kAborted && !end.failure ? spdlog::level::warn : spdlog::level::err,
+                "job {} {}: {}: {}", job.status.job_id, job_state_name(end.state), error_name(*end.error), end.message);
   } else {
     spdlog::info("job {} completed: {}", job.status.job_id, end.result.directory);
   }

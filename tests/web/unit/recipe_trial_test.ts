@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import "./browser_stand_in.ts";
 
-const { scanBy } = await import("../../../daemon/web/src/recipe/try_recipe.ts");
+const { pressed, scanBy } = await import("../../../daemon/web/src/recipe/try_recipe.ts");
 
 let asked: { method: string; params: Record<string, unknown> }[] = [];
 let waits: Record<string, unknown>[] = [];
@@ -29,7 +29,7 @@ beforeEach(() => {
 test("a trial scan is followed to its end, and its result acknowledged", async () => {
   waits = [{ progress: 0.5, done: false }, { progress: 1, done: true, state: "completed" }];
   const told: number[] = [];
-  assert.deepEqual(await scanBy("try_r", "trial", (progress) => told.push(progress)), { id: "J7", result: { verdict: "pass" } });
+  assert.deepEqual(await scanBy("try_r", "trial", pressed(), (progress) => told.push(progress)), { id: "J7", result: { verdict: "pass" } });
   assert.deepEqual(told, [0.5, 1]);
   assert.deepEqual(of("job.start"), [{ seq: 7, part_id: "trial", recipe: "try_r", client: "page" }]);
   assert.deepEqual(of("result.ack"), [{ job_id: "J7" }]);
@@ -37,12 +37,12 @@ test("a trial scan is followed to its end, and its result acknowledged", async (
 
 test("so is one that failed, whose reason is told", async () => {
   waits = [{ progress: 0.2, done: true, state: "failed", error: "stage_lost", error_message: "the stage is gone" }];
-  await assert.rejects(scanBy("try_r", "trial", () => undefined), /stage_lost: the stage is gone/);
+  await assert.rejects(scanBy("try_r", "trial", pressed(), () => undefined), /stage_lost: the stage is gone/);
   assert.deepEqual(of("result.ack"), [{ job_id: "J7" }]);
 });
 
 test("an acknowledgement that is refused takes nothing from the trial", async () => {
   mayAcknowledge = false;
   waits = [{ progress: 1, done: true, state: "completed" }];
-  assert.equal((await scanBy("try_r", "trial", () => undefined)).id, "J7");
+  assert.equal((await scanBy("try_r", "trial", pressed(), () => undefined)).id, "J7");
 });

@@ -41,15 +41,17 @@ test("an alarm says what to do about its error, another one what its level asks 
 test("a stop that somebody pressed is a notice, and says its word once", () => {
   assert.equal(saidOnce("job J aborted: aborted: the axis was asked to stop"), "job J aborted: the axis was asked to stop");
   assert.equal(saidOnce("job J failed: stage_alarm: alarm 7"), "job J failed: stage_alarm: alarm 7");
-  const alarm = (text: string) => ({ number: 1, time_utc: "2026-11-30T10:00:00.000Z", last_utc: "2026-11-30T10:00:00.000Z", level: "error" as const, text, count: 1, acknowledged: false });
-  const draw = (text: string) => {
-    topics.update((all) => ({ ...all, alarms: [alarm(text)] }));
+  const alarm = (text: string, level: "warning" | "error") => ({ number: 1, time_utc: "2026-11-30T10:00:00.000Z", last_utc: "2026-11-30T10:00:00.000Z", level, text, count: 1, acknowledged: false });
+  const draw = (text: string, level: "warning" | "error") => {
+    topics.update((all) => ({ ...all, alarms: [alarm(text, level)] }));
     return drawn(html`<${AlarmsPanel}/>`);
   };
-  const wanted = draw("job J aborted: aborted: the axis was asked to stop");
+  const wanted = draw("job J aborted: aborted: the axis was asked to stop", "warning");
   assert.equal(wanted.all(".alarm-notice").length, 1);
   assert.ok(wanted.text.includes(en["run.alarm_level.notice"]) && !wanted.text.includes("aborted: aborted"));
   assert.equal(wanted.all(".waiting").length, 0);
-  const fault = draw("job J failed: stage_alarm: alarm 7");
-  assert.deepEqual([fault.all(".alarm-error").length, fault.all(".waiting").length], [1, 1]);
+  for (const text of ["job J failed: stage_alarm: alarm 7", "job J aborted: aborted: the axis was asked to stop; standstill was not confirmed"]) {
+    const fault = draw(text, "error");
+    assert.deepEqual([fault.all(".alarm-error").length, fault.all(".waiting").length], [1, 1], text);
+  }
 });

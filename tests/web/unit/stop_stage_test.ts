@@ -9,7 +9,7 @@ import { html } from "../../../daemon/web/src/lib/html.ts";
 import { link } from "../../../daemon/web/src/live/live.ts";
 import { askNewest, start, stop } from "../../../daemon/web/src/pages/run/commands.ts";
 import { ControlStrip } from "../../../daemon/web/src/pages/setup/control_strip.ts";
-import { scanBy } from "../../../daemon/web/src/recipe/try_recipe.ts";
+import { pressed, scanBy } from "../../../daemon/web/src/recipe/try_recipe.ts";
 import { kOffline } from "../../../daemon/web/src/rpc/rpc.ts";
 import { type Role, session } from "../../../daemon/web/src/rpc/session.ts";
 import { stopStage } from "../../../daemon/web/src/rpc/stop_stage.ts";
@@ -123,14 +123,20 @@ test("a start that asks for its number is not sent after a stop of the set-up pa
 
 test("nor is a trial scan; and one that was under way is ended", async () => {
   answers = { "stage.stop": kStopped, "job.abort": {}, "result.ack": {}, "job.wait": { done: true, state: "aborted" } };
-  const waiting = assert.rejects(scanBy("r", "p", () => undefined), { error: "aborted" });
+  const waiting = assert.rejects(scanBy("r", "p", pressed(), () => undefined), { error: "aborted" });
   await stopStage();
   of("job.latest")[0]?.answer({ newest_seq: 1 });
   await waiting;
   assert.equal(of("job.start").length, 0);
 
+  // Nor one whose draft was still being saved as STOP was pressed.
+  const press = pressed();
+  await stopStage();
   answers["job.latest"] = { newest_seq: 1 };
-  const sent = assert.rejects(scanBy("r", "p", () => undefined));
+  await assert.rejects(scanBy("r", "p", press, () => undefined), { error: "aborted" });
+  assert.equal(of("job.start").length, 0);
+
+  const sent = assert.rejects(scanBy("r", "p", pressed(), () => undefined));
   while (of("job.start").length === 0) await turns();
   await stopStage();
   of("job.start")[0]?.answer(kStarted);

@@ -30,15 +30,16 @@ export async function evaluateBy(job_id: string, recipe: string): Promise<{ id: 
   return { id, result: await resultOf(id) };
 }
 
+// What a stop after the press is seen by; taken as the button is pressed, before anything is waited for.
+export const pressed = () => ({ stops: stopPresses.get(), mayBegin: sincePress() });
+
 // Waits for the scan's end; told() hears how far it is.
-export async function scanBy(recipe: string, part_id: string, told: (progress: number) => void): Promise<{ id: string; result: unknown }> {
-  const before = stopPresses.get();
-  const mayBegin = sincePress();
+export async function scanBy(recipe: string, part_id: string, { stops, mayBegin }: ReturnType<typeof pressed>, told: (progress: number) => void): Promise<{ id: string; result: unknown }> {
   const { newest_seq } = await call("job.latest", { client: kClient });
   if (!mayBegin()) throw tooLate();
   const { job_id } = await call("job.start", { seq: newest_seq + 1, part_id, recipe, client: kClient });
   // On its way it may have been overtaken by a stop, which then found nothing.
-  if (stopPresses.get() !== before) await call("job.abort", { job_id });
+  if (stopPresses.get() !== stops) await call("job.abort", { job_id });
   for (;;) {
     const status = await call("job.wait", { job_id, until: "done", timeout_ms: 1000 });
     told(status.progress ?? 0);

@@ -13,7 +13,8 @@ const kCodes: Record<string, number> = {
 export const saidOnce = (text: string): string => text.replace(/(^| )([a-z_]+): \2: /, "$1$2: ");
 
 // What somebody wanted is no fault, though the log has it beside those.
-export const isWanted = (text: string): boolean => errorCodeIn(text) === kCodes["aborted"];
+// An end that was not only wanted, as of a stage that did not come to rest, is an error by its level.
+export const isWanted = ({ level, text }: { level: string; text: string }): boolean => level === "warning" && errorCodeIn(text) === kCodes["aborted"];
 
 // 0 = none of them.
 export function errorCodeIn(text: string): number {

@@ -8,10 +8,11 @@ import { messageOf } from "../../parts/message_of.ts";
 import { VerdictLabel } from "../../parts/verdict_mark.ts";
 import { tryId } from "../../recipe/ids.ts";
 import { hasMeasurements } from "../../recipe/kinds.ts";
-import { evaluateBy, keepForTrial, scanBy } from "../../recipe/try_recipe.ts";
+import { evaluateBy, keepForTrial, pressed, scanBy } from "../../recipe/try_recipe.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { type Value, valuesOf } from "../../results/values.ts";
 import type { Editor } from "./editor.ts";
+import { StopButton } from "./assistant/stop_button.ts";
 import { JobChoice } from "./job_choice.ts";
 import type { Newest } from "./newest_job.ts";
 import { ValuePairs } from "./value_pairs.ts";
@@ -44,13 +45,14 @@ export function TryPanel({ editor, newest }: { editor: Editor; newest: Newest })
     if (newest.recipe === editor.id) return valuesOf(newest.result);
     return evaluateBy(newest.job_id, editor.id).then(({ result }) => valuesOf(result), () => valuesOf(newest.result));
   };
-  const run = async (what: (recipe: string) => Promise<{ id: string; result: unknown }>): Promise<void> => {
+  const run = async (what: (recipe: string, press: ReturnType<typeof pressed>) => Promise<{ id: string; result: unknown }>): Promise<void> => {
+    const press = pressed();
     const { text } = editor;
     setBusy(t("recipe.trying"));
     setProblem("");
     try {
       const before = trial && trial.job_id === newest.job_id ? trial.before : await old();
-      const { id, result } = await what(await keepForTrial(editor.id, text, who));
+      const { id, result } = await what(await keepForTrial(editor.id, text, who), press);
       const verdict = (result as { verdict?: unknown } | null)?.verdict;
       setTrial({ id, job_id: newest.job_id, text, before, values: valuesOf(result), verdict: typeof verdict === "string" ? verdict : null });
     } catch (error) {
@@ -65,7 +67,7 @@ export function TryPanel({ editor, newest }: { editor: Editor; newest: Newest })
       <button type="button" class="main" disabled=${busy !== "" || whyNotEvaluate !== ""} aria-describedby="try-why"
         onClick=${() => void run((recipe) => evaluateBy(newest.job_id, recipe))}>${t("recipe.try_evaluate")}</button>
       <button type="button" disabled=${busy !== "" || whyNotScan !== ""} aria-describedby="try-why"
-        onClick=${() => void run((recipe) => scanBy(recipe, "trial", (progress) => setBusy(t("recipe.scanning", { percent: Math.round(100 * progress) }))))}>${t("recipe.try_scan")}</button>
+        onClick=${() => void run((recipe, press) => scanBy(recipe, "trial", press, (progress) => setBusy(t("recipe.scanning", { percent: Math.round(100 * progress) }))))}>${t("recipe.try_scan")}</button> <${StopButton}/>
     </p>
     <p id="try-why" class="help">${whyNotEvaluate}${whyNotScan !== whyNotEvaluate ? ` ${whyNotScan}` : ""}</p>
     <p aria-live="polite">${busy}</p>

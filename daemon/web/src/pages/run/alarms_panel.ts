@@ -26,7 +26,7 @@ function AlarmRow({ alarm, mayAcknowledge, acknowledge }: { alarm: Alarm; mayAck
   const language = useLanguage();
   const todo = whatToDo(errorCodeIn(alarm.text)) || tWord("run.alarm_todo", alarm.level);
   const text = saidOnce(alarm.text);
-  const look: Look = isWanted(alarm.text) ? "notice" : alarm.level;
+  const look: Look = isWanted(alarm) ? "notice" : alarm.level;
   return html`<li class=${`alarm alarm-${look} ${alarm.acknowledged ? "seen" : ""}`}>
     <svg width="24" height="24" viewBox="0 0 24 24" fill="currentColor" aria-hidden="true"><path d=${kShapes[look] ?? kShapes.error}/></svg>
     <div>
@@ -52,7 +52,7 @@ export function AlarmsPanel() {
   };
   const list = ordered(alarms ?? []);
   const waiting = list.filter(({ acknowledged }) => !acknowledged).length;
-  const warns = list.some(({ acknowledged, text }) => !acknowledged && !isWanted(text));
+  const warns = list.some((alarm) => !alarm.acknowledged && !isWanted(alarm));
   return html`<section class=${`panel alarms ${warns ? "waiting" : ""}`} aria-labelledby="alarms-title">
     <h2 id="alarms-title">${t("run.alarms")} ${waiting > 0 && html`<span class="tag">${t("run.alarms_waiting", { count: waiting })}</span>`}</h2>
     ${list.length === 0 && html`<p class="help">${t("run.no_alarms")}</p>`}

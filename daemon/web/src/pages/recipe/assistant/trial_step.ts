@@ -5,7 +5,7 @@ import { useStore } from "../../../lib/store.ts";
 import { getAt } from "../../../recipe/document.ts";
 import { type JsonObject, isObject } from "../../../recipe/schema.ts";
 import { suggestWindow } from "../../../recipe/suggest.ts";
-import { keepForTrial, scanBy } from "../../../recipe/try_recipe.ts";
+import { keepForTrial, pressed, scanBy } from "../../../recipe/try_recipe.ts";
 import { session } from "../../../rpc/session.ts";
 import type { StepProps } from "./assistant.ts";
 import { useRun } from "./run.ts";
@@ -35,8 +35,9 @@ export function TrialStep({ editor, newest }: StepProps) {
   const { why, run, view } = useRun();
   const whyNot = why || (!editor.check?.accepted || !editor.isChecked ? t("recipe.save_refused") : "");
   const scan = async (say: (text: string) => void): Promise<void> => {
+    const press = pressed();
     const trial = await keepForTrial(editor.id, editor.text, who);
-    const { id } = await scanBy(trial, "trial", (progress) => say(t("recipe.scanning", { percent: Math.round(100 * progress) })));
+    const { id } = await scanBy(trial, "trial", press, (progress) => say(t("recipe.scanning", { percent: Math.round(100 * progress) })));
     newest.choose(id);
   };
   return html`
