@@ -63,9 +63,31 @@ void tell_unknown(const std::vector<std::string>& names, const Terminal& termina
   if (names.size() > kNamed) terminal.out << "  and " << names.size() - kNamed << " more\n";
 }
 
+/// Without a configuration of its own the target is the one of the backup, and that may be an instrument in use: a
+/// name that was mistyped must not replace what it knows.
+void require_meant_target(const fs::path& config, const fs::path& folder, const fs::path& state_dir) {
+  std::error_code error;
+  if (fs::exists(config, error) || !fs::exists(state_dir / "fvd.sqlite", error)) return;
+  throw Error(ErrorCode::kBadConfig,
+              "there is no " + config.string() + ", and the configuration of the backup names the state folder " +
+                  state_dir.string() +
+                  ", which holds a database: nothing was restored. To replace what is there, copy " +
+                  (folder / "fvd.json").string() + " to " + config.string() +
+                  " first, and the backup's conf.d beside it if it has one; to restore elsewhere, write a "
+                  "configuration with another paths.state_dir there");
+}
+
 int restore(const BackupArguments& arguments, const Terminal& terminal) {
   const fs::path folder = arguments.folder;
-  const Restored restored = restore_backup(folder, paths_of(arguments.config, folder));
+  const InstrumentPaths target = paths_of(arguments.config, folder);
+  std::error_code error;
+  terminal.out << "target: state folder " << target.state_dir.string() << ", configuration "
+               << target.config_file.string()
+               << (fs::exists(target.config_file, error) ? "" : ", which is not there: the backup's is put there")
+               << "\n"
+               << std::flush;
+  require_meant_target(target.config_file, folder, target.state_dir);
+  const Restored restored = restore_backup(folder, target);
   terminal.out << "restored; the next epoch is " << restored.epoch + 1 << ", " << restored.results
                << " results were added\n";
   if (!restored.replaced.empty()) terminal.out << "what was there before is in " << restored.replaced.string() << "\n";

@@ -37,12 +37,38 @@ TEST_F(BackupCommands, CopyAndPutBack) {
     EXPECT_EQ(refused.code, ctl::kExitUnavailable) << "the daemon runs, which is no bug";
     EXPECT_THAT(refused.err, HasSubstr("Stop it first"));
   }
+  const auto replaced = run_command({"restore", backup_, "--config", config_});
+  ASSERT_EQ(replaced.code, ctl::kExitOk) << replaced.err;
+  EXPECT_THAT(replaced.out, HasSubstr("replaced-1"));
+  fs::remove_all(folder_ / "state");
   fs::remove(config_);
   const auto restored = run_command({"restore", backup_, "--config", config_});
   ASSERT_EQ(restored.code, ctl::kExitOk) << restored.err;
-  EXPECT_THAT(restored.out, HasSubstr("replaced-1"));
   EXPECT_TRUE(fs::exists(config_));
   EXPECT_EQ(JobStore(folder_ / "state" / "fvd.sqlite").find(ClientSeq{1}).status.error, ErrorCode::kInterrupted);
+}
+
+TEST_F(BackupCommands, SayTheirTargetAndReplaceNoDatabaseThatNoConfigurationNames) {
+  const fs::path state = folder_ / "state";
+  (void)JobStore(state / "fvd.sqlite").accept({1, "part", "chapter"});
+  ASSERT_EQ(run_command({"backup", backup_, "--config", config_}).code, ctl::kExitOk);
+  (void)JobStore(state / "fvd.sqlite").accept({2, "part", "chapter"});
+  const std::string mistyped = (folder_ / "fdv.json").string();
+
+  const auto refused = run_command({"restore", backup_, "--config", mistyped});
+
+  EXPECT_EQ(refused.code, ctl::kExitBadData);
+  EXPECT_THAT(refused.out, ::testing::AllOf(HasSubstr("state folder " + state.string()), HasSubstr(mistyped)));
+  EXPECT_THAT(refused.err, ::testing::AllOf(HasSubstr("nothing was restored"), HasSubstr(state.string()),
+                                            HasSubstr("copy " + backup_ + "/fvd.json to " + mistyped)));
+  EXPECT_FALSE(fs::exists(state / "replaced-1"));
+  EXPECT_FALSE(fs::exists(mistyped));
+  EXPECT_EQ(JobStore(state / "fvd.sqlite").find(ClientSeq{2}).status.request.seq, 2) << "newer than the backup";
+
+  fs::copy_file(backup_ + "/fvd.json", mistyped);
+  const auto meant = run_command({"restore", backup_, "--config", mistyped});
+  EXPECT_EQ(meant.code, ctl::kExitOk) << "as the refusal says: " << meant.err;
+  EXPECT_TRUE(fs::exists(state / "replaced-1"));
 }
 
 TEST_F(BackupCommands, FollowTheFilesOfConfD) {
