@@ -10,6 +10,7 @@
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
 #include "daemon/store/database_copy.hpp"
+#include "daemon/store/job_status.hpp"
 
 namespace fvd {
 
@@ -45,6 +46,10 @@ bool copy_result(const fs::path& from, const fs::path& to) {
 
 std::vector<std::string> copy_all(const InstrumentPaths& instrument, const fs::path& to, bool with_results) {
   copy_database_in_use(instrument.state_dir / kDatabaseFile, to / kDatabaseFile);
+  {
+    Database copy(to / kDatabaseFile);
+    note_running_jobs(copy, utc_now());
+  }
   for (const char* name : kStateFiles) copy_durably(instrument.state_dir / name, to / "state" / name);
   copy_durably(instrument.recipe_dir, to / "recipes");
   copy_durably(instrument.config_file, to / kConfigFile);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,13 +11,20 @@
 #include <system_error>
 #include <utility>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include "core/base/error.hpp"
+#include "core/base/mutex.hpp"
+#include "daemon/access/role.hpp"
 #include "daemon/backup/copied_files.hpp"
 #include "daemon/backup/state_files.hpp"
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
+#include "daemon/store/audit_table.hpp"
 #include "daemon/store/database_copy.hpp"
+#include "daemon/store/job_status.hpp"
 #include "daemon/store/migrations.hpp"
 #include "daemon/store/store_marker.hpp"
 
@@ -77,6 +85,31 @@ Incoming known_to_the_incoming(const Database& database) {
   return incoming;
 }
 
+/// Damage that copying does not meet. It is the backup's: the copy is not what somebody has to look after.
+void require_undamaged(const Database& copy, const fs::path& from) {
+  const auto first_damage = [&copy]() -> std::string {
+    try {
+      Statement check(copy, "PRAGMA quick_check(1)");
+      std::string found = check.step() ? check.text(0) : "";
+      std::replace(found.begin(), found.end(), '\n', ' ');
+      if (found != "ok") return found;
+    } catch (const Error&) {
+      return sqlite3_errmsg(copy.handle());
+    }
+    return schema_version(copy) == 0 ? "it has no tables" : "";
+  };
+  const std::string damage = first_damage();
+  if (damage.empty()) return;
+  throw Error(ErrorCode::kDatabase, "the backup's database " + from.string() + " is damaged: " + damage +
+                                        "; nothing was changed, restore another backup");
+}
+
+std::string last_written_utc(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return utc_now();
+  return utc_text(std::chrono::system_clock::from_time_t(status.st_mtime));
+}
+
 /// The backup's database as this version reads it, with the results where they are here.
 Incoming prepare_database(const fs::path& from, const fs::path& copy, const fs::path& results) {
   for (const char* log : {"-wal", "-shm"}) {  // of a restoration that was cut off
@@ -84,9 +117,16 @@ Incoming prepare_database(const fs::path& from, const fs::path& copy, const fs::
   }
   copy_database(Database(from), copy);
   Database database(copy);
+  try {
+    require_undamaged(database, from);
+  } catch (...) {
+    remove_file(copy);
+    throw;
+  }
   const fs::path older = copy.string() + ".v" + std::to_string(schema_version(database));
   migrate(database);
-  remove_file(older);  // the backup has it
+  note_running_jobs(database, last_written_utc(from));  // a backup of an earlier version did not
+  remove_file(older);                                   // the backup has it
   Transaction transaction(database);
   Statement(database, "UPDATE jobs SET result_dir = ? || '/' || job_id WHERE result_dir <> ''")
       .bind(results.string())
@@ -95,6 +135,23 @@ Incoming prepare_database(const fs::path& from, const fs::path& copy, const fs::
   transaction.commit();
   database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
   return known_to_the_incoming(database);
+}
+
+/// Who put the backup back, in the database that is about to take the other one's place.
+void note_restoration(const fs::path& incoming, const fs::path& folder, std::int64_t epoch) {
+  AuditEntry entry;
+  entry.time_utc = utc_now();
+  entry.who = "uid " + std::to_string(::getuid());
+  entry.role = role_name(Role::kAdminister);
+  entry.client = "fvdctl";
+  entry.what = "restore";
+  entry.detail =
+      "from " + fs::absolute(folder).lexically_normal().string() + "; the next epoch is " + std::to_string(epoch + 1);
+  entry.outcome = "ok";
+  Database database(incoming);
+  Mutex mutex;
+  AuditTable({database, mutex}, {database, mutex}).add({entry});
+  database.execute("PRAGMA wal_checkpoint(TRUNCATE)");  // the file alone takes the place
 }
 
 void move(const fs::path& from, const fs::path& to) {
@@ -254,6 +311,7 @@ Restored restore_backup(const fs::path& folder, const InstrumentPaths& instrumen
   }
   marker.margin = restored.margin;
   restored.epoch = marker.epoch;
+  note_restoration(incoming, folder, restored.epoch);
   write_marker(file, marker);  // first: whatever happens from here on, it is not forgotten which numbers may be used
 
   const fs::path aside = unused_folder(state);

@@ -9,6 +9,7 @@
 #include "daemon/export/durable_file.hpp"
 #include "daemon/export/file_calls.hpp"
 #include "daemon/export/storage_error.hpp"
+#include "daemon/store/job_status.hpp"
 
 namespace fvd {
 
@@ -34,6 +35,10 @@ void copy_pages(sqlite3* source, Database& copy) {
     std::this_thread::sleep_for(kBusyPause);  // until a checkpoint of its writer is done
   }
   backup.reset();
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
+    throw Error(ErrorCode::kDatabase, std::string("the database ") + sqlite3_db_filename(source, "main") +
+                                          " cannot be copied, it is damaged: " + sqlite3_errstr(code));
+  }
   if (code != SQLITE_DONE) {
     throw Error(code == SQLITE_FULL ? ErrorCode::kStorageFull : ErrorCode::kDatabase,
                 "cannot copy the database to " + copy.file().string() + ": " + sqlite3_errstr(code));
@@ -74,6 +79,16 @@ void copy_database_in_use(const fs::path& source, const fs::path& copy) {
                                           ": is it there, and may you read and write it?");
   }
   copy_to(copy, handle.get());
+}
+
+void note_running_jobs(Database& copy, const std::string& copied_utc) {
+  Statement(copy, "UPDATE jobs SET error_message = ?, ended_utc = ? WHERE state = ? AND error_message = ''")
+      .bind(
+          "the backup was made while the job ran, and does not have its result: measure the part again with a new "
+          "sequence number")
+      .bind(copied_utc)
+      .bind(job_state_name(JobState::kProcessing))
+      .run();
 }
 
 }  // namespace fvd

@@ -108,7 +108,11 @@ void JobStore::Impl::count_start() {
   Statement running(database, "SELECT job_id FROM jobs WHERE state = ?");
   running.bind(job_state_name(JobState::kProcessing));
   while (running.step()) interrupted.push_back(running.text(0));
-  Statement(database, "UPDATE jobs SET state = ?, error = ?, error_message = ?, ended_utc = ? WHERE state = ?")
+  // A backup tells why, and when, of the jobs that it found running.
+  Statement(database,
+            "UPDATE jobs SET state = ?, error = ?, "
+            "error_message = CASE error_message WHEN '' THEN ? ELSE error_message END, "
+            "ended_utc = CASE ended_utc WHEN '' THEN ? ELSE ended_utc END WHERE state = ?")
       .bind(job_state_name(JobState::kFailed))
       .bind(error_name(ErrorCode::kInterrupted))
       .bind("the daemon stopped while the job ran: measure the part again with a new sequence number")

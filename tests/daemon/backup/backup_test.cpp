@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/backup/restore.hpp"
 #include "daemon/base/unique_fd.hpp"
@@ -297,6 +298,73 @@ TEST_F(AnInstrument, KeepsNoCopyOfAnOlderBackupsDatabase) {
     EXPECT_THAT(entry.path().filename().string(), testing::Not(testing::StartsWith("fvd.restored")));
   }
   EXPECT_NO_THROW(open());
+}
+
+TEST_F(AnInstrument, SaysOfAJobThatRanThatTheBackupLacksItsResult) {
+  (void)store_->accept({1, "part", "chapter"});
+  const std::string before = utc_now();
+  (void)make_backup(paths_, backup_, false);
+  const std::string after = utc_now();
+  store_.reset();
+  (void)restore_backup(backup_, paths_);
+  open();
+
+  const JobStatus job = store_->find(ClientSeq{1}).status;
+  EXPECT_EQ(job.error, ErrorCode::kInterrupted);
+  EXPECT_THAT(job.error_message, HasSubstr("the backup was made while the job ran"));
+  EXPECT_GE(job.ended_utc, before);
+  EXPECT_LE(job.ended_utc, after);
+  EXPECT_EQ(store_->interrupted_by_start(), std::vector{job.job_id}) << "a whole result of it that is here is its own";
+}
+
+TEST_F(AnInstrument, SaysSoOfABackupThatAnEarlierVersionMade) {
+  (void)store_->accept({1, "part", "chapter"});
+  (void)make_backup(paths_, backup_, false);
+  Database(backup_ / "fvd.sqlite").execute("UPDATE jobs SET error_message = '', ended_utc = ''");
+  const timespec times[] = {{1'700'000'000, 0}, {1'700'000'000, 0}};
+  ASSERT_EQ(::utimensat(AT_FDCWD, (backup_ / "fvd.sqlite").c_str(), times, 0), 0);
+  store_.reset();
+  (void)restore_backup(backup_, paths_);
+  open();
+
+  EXPECT_EQ(store_->find(ClientSeq{1}).status.ended_utc, "2023-11-14T22:13:20.000Z");
+  EXPECT_THAT(store_->find(ClientSeq{1}).status.error_message, HasSubstr("the backup was made while the job ran"));
+}
+
+TEST_F(AnInstrument, WritesDownWhoRestoredItFromWhere) {
+  (void)make_backup(paths_, backup_, false);
+  store_.reset();
+  const std::string before = utc_now();
+  const Restored restored = restore_backup(backup_, paths_);
+  open();
+
+  const std::vector<AuditEntry> entries = store_->audit().newest(10);
+  ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0].what, "restore");
+  EXPECT_EQ(entries[0].who, "uid " + std::to_string(::getuid()));
+  EXPECT_EQ(entries[0].outcome, "ok");
+  EXPECT_GE(entries[0].time_utc, before);
+  EXPECT_EQ(entries[0].detail,
+            "from " + backup_.string() + "; the next epoch is " + std::to_string(restored.epoch + 1));
+  EXPECT_EQ(store_->epoch(), restored.epoch + 1);
+}
+
+TEST_F(AnInstrument, NamesTheDamagedFileOfABackupAndTouchesNothing) {
+  for (std::int64_t seq = 1; seq <= 200; ++seq) measure(seq);
+  (void)make_backup(paths_, backup_, false);
+  store_.reset();
+  const std::string whole = test::read_text(backup_ / "fvd.sqlite");
+  const std::string torn = whole.substr(0, 8192) + std::string(whole.size() - 8192, '\xff');
+  for (const std::string& damaged : {std::string(4096, 'x'), std::string(), torn}) {
+    test::write_text(backup_ / "fvd.sqlite", damaged);
+    FVD_EXPECT_ERROR_SAYING(
+        kDatabase, (void)restore_backup(backup_, paths_),
+        testing::AllOf(HasSubstr((backup_ / "fvd.sqlite").string()), HasSubstr("damaged"),
+                       testing::Not(HasSubstr("fvd.restored")), testing::Not(HasSubstr("start anew"))));
+    EXPECT_FALSE(fs::exists(paths_.state_dir / "fvd.restored"));
+  }
+  open();
+  EXPECT_EQ(newest(), 200);
 }
 
 TEST_F(AnInstrument, IsNotRestoredFromAFolderThatIsNoBackup) {
