@@ -32,7 +32,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, std::ostream& out
   app.add_flag(
       "--check-config", options.check_config,
       "say every problem of the configuration, its drive profile, its recipes and its folders on stderr and exit: "
-      "0 = none, 78 = some");
+      "0 = none but warnings, 78 = some");
   app.add_option("--check-recipe", options.check_recipe,
                  "say every problem of a recipe on stderr and exit: 0 = none, 78 = some; with --config or --set the "
                  "limits of that configuration's stage count too")
@@ -92,8 +92,12 @@ StartUp start_up(const Options& options, std::ostream& out, std::ostream& err) {
     return result;
   }
   if (options.check_config) {
-    if (const Problems problems = check_station(loaded.config); !problems.empty()) {
-      err << to_text(problems, options.config_file.string()) << std::endl;
+    const StationCheck station = check_station(loaded.config);
+    if (!station.warnings.empty()) {
+      err << to_text(station.warnings, options.config_file.string() + ": warning") << std::endl;
+    }
+    if (!station.problems.empty()) {
+      err << to_text(station.problems, options.config_file.string()) << std::endl;
       result.exit = exit_code::kConfig;
       return result;
     }

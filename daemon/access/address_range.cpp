@@ -71,6 +71,10 @@ std::optional<AddressRange> AddressRange::parse(std::string_view text) {
   return range;
 }
 
+bool AddressRange::is_everybody() const noexcept {
+  return prefix_bits_ == 0 || (prefix_bits_ == kBitsBeforeIpv4 && is_ipv4(first_));
+}
+
 bool AddressRange::contains(const AddressBytes& address) const noexcept {
   return first_of(address, prefix_bits_) == first_;
 }

@@ -26,6 +26,8 @@ class AddressRange {
   [[nodiscard]] static std::optional<AddressRange> parse(std::string_view text);
 
   [[nodiscard]] bool contains(const AddressBytes& address) const noexcept;
+  /// All addresses of IPv4, or all there are.
+  [[nodiscard]] bool is_everybody() const noexcept;
   /// Of 128; an IPv4 prefix counts 96 more.
   [[nodiscard]] int prefix_bits() const noexcept { return prefix_bits_; }
 

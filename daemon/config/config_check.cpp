@@ -161,6 +161,12 @@ class ConfigCheck {
                     "prefix");
       report_if(range && std::find(ranges.begin(), ranges.end(), range) != ranges.end(), pointer, {},
                 "'" + access.allow[i].address + "' stands there already: which role does it have?");
+      const Role role = access.allow[i].role;
+      report_if(
+          range && range->is_everybody() && role > Role::kOperate, pointer,
+          {"/rpc/allow/" + std::to_string(i) + "/role"},
+          "'" + access.allow[i].address + "' is everybody who reaches the port, and " + std::string(role_name(role)) +
+              " changes recipes or constants; name the addresses that may, or give them tokens (/rpc/token_file)");
       ranges.push_back(range);
     }
   }

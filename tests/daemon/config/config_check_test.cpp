@@ -69,6 +69,19 @@ TEST_F(AUsableConfig, NeedsToKnowWhoMayWhatFromTheNetwork) {
   }
 }
 
+TEST_F(AUsableConfig, GivesNobodyRecipesOrConstantsByAnAddressThatIsEverybodys) {
+  for (const char* address : {"0.0.0.0/0", "::/0", "::ffff:0:0/96"}) {
+    for (const Role role : {Role::kSetUp, Role::kAdminister}) {
+      config_.rpc.access.allow = {{address, role}};
+      EXPECT_THAT(check_config(config_), ElementsAre(problem("/rpc/allow/0/address", "everybody"))) << address;
+    }
+    config_.rpc.access.allow = {{address, Role::kOperate}};
+    EXPECT_THAT(check_config(config_), IsEmpty()) << address;
+  }
+  config_.rpc.access.allow = {{"10.0.0.0/8", Role::kAdminister}, {"::", Role::kAdminister}};
+  EXPECT_THAT(check_config(config_), IsEmpty()) << "a network, and one address";
+}
+
 TEST_F(AUsableConfig, NeedsTokensForHttpFromTheNetwork) {
   for (const char* address : {"0.0.0.0", "::", "192.168.1.5"}) {
     config_.http.address = address;

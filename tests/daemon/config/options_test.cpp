@@ -172,6 +172,34 @@ TEST_F(FvdWithAFile, ChecksRecipesAndFoldersToo) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "not")) << "nothing is made";
 }
 
+TEST_F(FvdWithAFile, ChecksThatFoldersAreNoneOfTheKernel) {
+  for (const char* folder : {"/proc/fvd", "/sys/fvd"}) {
+    err_.str("");
+    const std::string state = std::string("paths.state_dir=") + folder;
+    EXPECT_EQ(start(kGood, asking_for(&Options::check_config, {state})).exit, 78);
+    EXPECT_THAT(err_.str(), AllOf(HasSubstr("/paths/state_dir: '"), HasSubstr("is of the kernel")));
+  }
+}
+
+TEST_F(FvdWithAFile, WarnsOfWhatIsNotThereYetOrIsEverybodysAndTakesIt) {
+  const Overrides missing{
+      R"(rpc.groups=[{"group": "fvd", "role": "view"}, {"group": "no-such-group", "role": "view"}])",
+      R"(rpc.allow=[{"address": "0.0.0.0/0", "role": "operate"}])",
+      "temperature.file=/nowhere/temp",
+      "stage.transport=rtu",
+      "stage.serial_device=/dev/no-such",
+      "stage.serial_baud=115200"};
+
+  EXPECT_EQ(start(kGood, asking_for(&Options::check_config, missing)).exit, exit_code::kOk);
+
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("fvd.json: warning: /rpc/groups/1/group: there is no group 'no-such-group'"),
+                    ::testing::Not(HasSubstr("/rpc/groups/0")),
+                    HasSubstr("fvd.json: warning: /rpc/allow/0/address: '0.0.0.0/0' gives the role operate"),
+                    HasSubstr("fvd.json: warning: /temperature/file: there is no '/nowhere/temp'"),
+                    HasSubstr("fvd.json: warning: /stage/serial_device: there is no '/dev/no-such'")));
+}
+
 TEST_F(FvdWithAFile, DumpsTheConfigurationInForce) {
   EXPECT_EQ(start(kGood, asking_for(&Options::dump_config, {"rpc.port=77"})).exit, exit_code::kOk);
   EXPECT_THAT(out_.str(),
