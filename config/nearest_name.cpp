@@ -27,6 +27,18 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// What ends where the words of these names go on: "max" of "max_um", "serial" of "serial_baud" and "serial_device".
+std::vector<std::string> longer_names(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kMost = 3;
+  const std::string beginning = std::string(name) + "_";
+  std::vector<std::string> longer;
+  for (const std::string& one : known) {
+    if (name.empty() || longer.size() == kMost || !one.starts_with(beginning)) continue;
+    longer.push_back(one);
+  }
+  return longer;
+}
+
 }  // namespace
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
@@ -39,7 +51,12 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
     fewer_than = distance;
     nearest = &one;
   }
-  return nearest == nullptr ? "" : "; did you mean '" + *nearest + "'?";
+  if (nearest != nullptr) return "; did you mean '" + *nearest + "'?";
+  std::string text;
+  for (const std::string& longer : longer_names(name, known)) {
+    text += (text.empty() ? "; did you mean '" : " or '") + longer + "'";
+  }
+  return text.empty() ? "" : text + "?";
 }
 
 }  // namespace fvd
