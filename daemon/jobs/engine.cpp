@@ -24,14 +24,15 @@ int thread_count(int configured) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-MachineBoard::Constants constants(const Config& config, const JobStore& store, std::function<bool()> axis_stands) {
+MachineBoard::Constants constants(const Config& config, JobStore& store, std::function<bool()> axis_stands) {
   return {config.camera.simulated || config.stage.simulated,
           store.epoch(),
           [&store] { return store.unacknowledged_count(); },
           [&store] { return store.unacknowledged_results(); },
           [&store] { return store.newest_seqs(); },
           config.rpc.fifo_results,
-          std::move(axis_stands)};
+          std::move(axis_stands),
+          store.results().count_of_interrupted()};
 }
 
 std::size_t memory_budget_bytes(const Config& config) {

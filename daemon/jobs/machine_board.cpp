@@ -89,6 +89,7 @@ void count_end(JobState how, JobCounts& ended) {
 MachineBoard::MachineBoard(Constants constants, std::optional<JobStatus> latest_job)
     : constants_(std::move(constants)) {
   const MutexLock lock(mutex_);
+  ended_.interrupted = constants_.jobs_interrupted;
   record_.job = std::move(latest_job);
   if (record_.job && record_.job->state == JobState::kCompleted) completed_job_ = record_.job->job_id;
   publish_locked();

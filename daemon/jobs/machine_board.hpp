@@ -61,6 +61,7 @@ class MachineBoard final : public MachineView {
     std::function<std::shared_ptr<const NewestSeqs>()> newest_seqs{};
     int fifo_results = 1000;                 ///< more that wait are an overrun
     std::function<bool()> axis_stands = {};  ///< as DeviceHub::seen_standing(); empty = whenever it is measured
+    std::uint64_t jobs_interrupted = 0;      ///< see JobCounts
   };
   MachineBoard(Constants constants, std::optional<JobStatus> latest_job);
 

@@ -41,6 +41,7 @@ struct JobCounts {
   std::uint64_t completed = 0;
   std::uint64_t aborted = 0;
   std::uint64_t failed = 0;
+  std::uint64_t interrupted = 0;  ///< of all starts: they ran when a daemon ended, and have no result
 };
 
 /// Of the file system that holds database and results.

@@ -60,9 +60,13 @@ void add_machine(Page& page, const MachineStatus& machine) {
   page.gauge("fvd_simulated", "1 if a device is simulated", machine.simulated ? 1.0 : 0.0);
   page.gauge("fvd_epoch", "counts the daemon's starts", static_cast<double>(machine.epoch));
   page.gauge("fvd_results_unacknowledged", "results that nobody has acknowledged", machine.results_waiting);
-  page.counters(
-      "fvd_jobs_total", "jobs that ended", "outcome",
-      {{"completed", machine.ended.completed}, {"aborted", machine.ended.aborted}, {"failed", machine.ended.failed}});
+  page.counters("fvd_jobs_total",
+                "jobs that ended since the start; interrupted: of all starts, those that ran when a daemon ended",
+                "outcome",
+                {{"completed", machine.ended.completed},
+                 {"aborted", machine.ended.aborted},
+                 {"failed", machine.ended.failed},
+                 {"interrupted", machine.ended.interrupted}});
   page.gauge("fvd_threads_stalled", "threads that have not ticked for longer than they may",
              static_cast<double>(stalled_threads(HostClock::now()).size()));
 }

@@ -31,6 +31,13 @@ std::vector<JobStatus> ResultTable::without_result() const {
   return jobs;
 }
 
+std::uint64_t ResultTable::count_of_interrupted() const {
+  const MutexLock lock(reader_.mutex);
+  Statement count(reader_.database, "SELECT count(*) FROM jobs WHERE error = ?");
+  count.bind(error_name(ErrorCode::kInterrupted));
+  return count.step() ? static_cast<std::uint64_t>(count.integer(0)) : 0;
+}
+
 bool ResultTable::mark_removed(const std::string& job_id) {
   const MutexLock lock(writer_.mutex);
   Statement(writer_.database,

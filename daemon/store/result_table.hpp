@@ -2,6 +2,7 @@
 
 /// Which jobs have their result on the disk, in the job database.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ class ResultTable {
   [[nodiscard]] std::vector<StoredJob> on_disk() const;
   /// The jobs that ended without a result: interrupted, failed, aborted.
   [[nodiscard]] std::vector<JobStatus> without_result() const;
+  /// How many were interrupted, of all starts.
+  [[nodiscard]] std::uint64_t count_of_interrupted() const;
   /// Notes, durably, that the job's result is removed, and forgets its text. False, and nothing is noted, unless the
   /// job was acknowledged. Throws Error kStorageFull, too.
   bool mark_removed(const std::string& job_id);

@@ -119,6 +119,8 @@ TEST_F(Storage, RefusesTheNumberOfAJobThatARestartInterrupted) {
   open();
   ASSERT_TRUE(await([](const MachineStatus& now) { return now.signals.ready; }));
   EXPECT_FALSE(machine().snapshot()->job->acquired) << "nobody saw the stage stand";
+  EXPECT_EQ(machine().snapshot()->ended.interrupted, 1U);
+  EXPECT_EQ(machine().snapshot()->ended.failed, 0U) << "it ended before this start";
   FVD_EXPECT_ERROR_SAYING(kInterrupted, jobs().start({7, "P-1", "part"}), HasSubstr("new sequence number"));
   EXPECT_EQ(machine().snapshot()->newest_seqs->at("plc"), 7);
 }

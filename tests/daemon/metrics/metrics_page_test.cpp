@@ -26,7 +26,7 @@ MachineStatus a_busy_station() {
   machine.state = ScanState::kExecuting;
   machine.results_waiting = 3;
   machine.epoch = 17;
-  machine.ended = {.completed = 5, .aborted = 1, .failed = 2};
+  machine.ended = {.completed = 5, .aborted = 1, .failed = 2, .interrupted = 4};
   machine.health.camera = {.open = true, .openings = 2};
   machine.health.stage = {.open = true, .openings = 1};
   machine.health.frames = {.frames_complete = 100, .frames_failed = 4, .packets_resent = 7};
@@ -41,9 +41,10 @@ TEST(MetricsPage, TellsStatesCountersAndUnits) {
   for (const char* line :
        {"fvd_state{state=\"executing\"} 1\n", "fvd_state{state=\"ready\"} 0\n", "fvd_error_code 0\n",
         "fvd_jobs_total{outcome=\"completed\"} 5\n", "fvd_jobs_total{outcome=\"failed\"} 2\n",
-        "fvd_results_unacknowledged 3\n", "fvd_device_openings_total{device=\"camera\"} 2\n",
-        "fvd_camera_frames_total{status=\"complete\"} 100\n", "fvd_camera_packets_total{kind=\"resent\"} 7\n",
-        "fvd_stage_request_errors_total{kind=\"retried\"} 6\n", "fvd_stage_latency_seconds{quantile=\"0.5\"} 0.0015",
+        "fvd_jobs_total{outcome=\"interrupted\"} 4\n", "fvd_results_unacknowledged 3\n",
+        "fvd_device_openings_total{device=\"camera\"} 2\n", "fvd_camera_frames_total{status=\"complete\"} 100\n",
+        "fvd_camera_packets_total{kind=\"resent\"} 7\n", "fvd_stage_request_errors_total{kind=\"retried\"} 6\n",
+        "fvd_stage_latency_seconds{quantile=\"0.5\"} 0.0015",
         "fvd_temperature_celsius{device=\"stage\",sensor=\"sensor0\"} 40\n", "fvd_storage_free_bytes 1000000\n",
         "# TYPE fvd_jobs_total counter\n", "# TYPE fvd_state gauge\n"}) {
     EXPECT_THAT(page, HasSubstr(line));
