@@ -58,7 +58,8 @@ int jobs(const JobsArguments& arguments, RpcClient client, const Terminal& termi
   }
   for (const Json& job : found) terminal.out << line_of(job) << "\n";
   terminal.out << std::flush;
-  if (found.empty()) terminal.err << "fvdctl: there is no such job" << std::endl;
+  // Beside the list, which whoever counts its lines takes for jobs.
+  if (found.empty()) terminal.err << (filter_of(arguments).empty() ? "no jobs" : "no such job") << std::endl;
   return kExitOk;
 }
 

@@ -70,6 +70,14 @@ TEST(FvdctlJobs, AsksOnUntilThereAreEnough) {
             json({{"most", 20}, {"part_id", "P"}, {"verdict", "none"}, {"before", "x-500"}}));
 }
 
+TEST(FvdctlJobs, SaysThatThereAreNone) {
+  FakeRpcServer server({{"job.list", FakeRpcServer::result({{"jobs", json::array()}, {"next", ""}})}});
+  const Outcome outcome = jobs(server, {});
+  EXPECT_EQ(outcome.code, kExitOk);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "no jobs\n");
+}
+
 TEST(FvdctlJobs, EndsWhereTheListEnds) {
   FakeRpcServer server({{"job.list", FakeRpcServer::result({{"jobs", json::array()}, {"next", ""}})}});
   const Outcome outcome = jobs(server, {"--from", "2026-11-30T10:00:00Z", "--to", "2026-11-30T11:00:00Z", "--recipe",
