@@ -85,22 +85,22 @@ Incoming known_to_the_incoming(const Database& database) {
   return incoming;
 }
 
-/// Damage that copying does not meet. It is the backup's: the copy is not what somebody has to look after.
-void require_undamaged(const Database& copy, const fs::path& from) {
-  const auto first_damage = [&copy]() -> std::string {
+/// Before it is copied: of a damaged copy SQLite would name the copy, which nobody can look after.
+void require_undamaged(const Database& backup) {
+  const auto first_damage = [&backup]() -> std::string {
     try {
-      Statement check(copy, "PRAGMA quick_check(1)");
+      Statement check(backup, "PRAGMA quick_check(1)");
       std::string found = check.step() ? check.text(0) : "";
       std::replace(found.begin(), found.end(), '\n', ' ');
       if (found != "ok") return found;
+      return schema_version(backup) == 0 ? "it has no tables" : "";
     } catch (const Error&) {
-      return sqlite3_errmsg(copy.handle());
+      return sqlite3_errmsg(backup.handle());
     }
-    return schema_version(copy) == 0 ? "it has no tables" : "";
   };
   const std::string damage = first_damage();
   if (damage.empty()) return;
-  throw Error(ErrorCode::kDatabase, "the backup's database " + from.string() + " is damaged: " + damage +
+  throw Error(ErrorCode::kDatabase, "the backup's database " + backup.file().string() + " is damaged: " + damage +
                                         "; nothing was changed, restore another backup");
 }
 
@@ -115,14 +115,12 @@ Incoming prepare_database(const fs::path& from, const fs::path& copy, const fs::
   for (const char* log : {"-wal", "-shm"}) {  // of a restoration that was cut off
     remove_file(copy.string() + log);
   }
-  copy_database(Database(from), copy);
-  Database database(copy);
-  try {
-    require_undamaged(database, from);
-  } catch (...) {
-    remove_file(copy);
-    throw;
+  {
+    const Database backup(from);
+    require_undamaged(backup);
+    copy_database(backup, copy);
   }
+  Database database(copy);
   const fs::path older = copy.string() + ".v" + std::to_string(schema_version(database));
   migrate(database);
   note_running_jobs(database, last_written_utc(from));  // a backup of an earlier version did not
