@@ -1,5 +1,6 @@
 // Measurements that the assistant offers, each with what it needs to begin.
 import { freeName, getAt, type Path } from "./document.ts";
+import { type StepHeight, kUnknownHeights } from "./region_heights.ts";
 import { type Json, type JsonObject, isObject } from "./schema.ts";
 
 export const kMeasurements = ["step_between", "step_height", "areal", "profile", "cutting_edge"] as const;
@@ -20,12 +21,10 @@ export function regionsMissing(kind: Measurement, document: Json): number {
   return kind === "step_between" ? Math.max(0, 2 - regionsOf(document).length) : 0;
 }
 
-const kUnknown: ReadonlyMap<string, number> = new Map();
-
-// heights_um: of regions, where they are known; of two regions the lower one is the one that lies lower.
-export function newMeasurement(kind: Measurement, document: Json, size_um: { x: number; y: number }, heights_um = kUnknown): { path: Path; value: JsonObject } {
+// Of two regions the lower one is the one that the step is positive from, where heightOf() tells.
+export function newMeasurement(kind: Measurement, document: Json, size_um: { x: number; y: number }, heightOf: StepHeight = kUnknownHeights): { path: Path; value: JsonObject } {
   const [first = "", second = ""] = regionsOf(document);
-  const [lower, upper] = (heights_um.get(first) ?? NaN) > (heights_um.get(second) ?? NaN) ? [second, first] : [first, second];
+  const [lower, upper] = (heightOf(first, second) ?? 0) < 0 ? [second, first] : [first, second];
   const about: Record<Measurement, { name: string; value: JsonObject }> = {
     step_between: { name: "step", value: { kind, lower, upper } },
     step_height: { name: "step", value: { kind, method: "iso5436_a1", across: "x" } },
