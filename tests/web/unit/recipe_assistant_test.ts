@@ -71,7 +71,6 @@ test("a stage without its reference is led to it where the focus is sought", asy
   answers = { "stage.autofocus": new Error("stage_not_homed"), "stage.home": { z_um: 0, homed: true } };
   const page = drawn(html`<${FocusStep} editor=${editor}/>` as VNode);
   assert.equal(button(page, "Find the reference"), undefined);
-  assert.ok(button(page, "STOP"));
   press(page, "Seek the focus");
   await until(() => button(page, "Find the reference") !== undefined, "the button is there");
   assert.doesNotMatch(page.text, /stage\.home/);

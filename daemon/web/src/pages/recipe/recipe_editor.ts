@@ -5,6 +5,7 @@ import { html } from "../../lib/html.ts";
 import { differences } from "../../recipe/difference.ts";
 import { type Draft, dropDraft, keepDraft } from "../../recipe/draft.ts";
 import type { Json } from "../../recipe/schema.ts";
+import { StopButton } from "./assistant/stop_button.ts";
 import { CheckState } from "./check_state.ts";
 import { DifferenceList } from "./difference_list.ts";
 import { useEditor } from "./editor.ts";
@@ -76,5 +77,6 @@ export function RecipeEditor({ id, saved, draft, onSaved, onDiscard }: {
         </section>
         <${RecipeActions} editor=${editor} version=${saved.version} isChanged=${isChanged}/>
       </div>
-    </div>`;
+    </div>
+    <div class="stop-line"><${StopButton}/></div>`;
 }

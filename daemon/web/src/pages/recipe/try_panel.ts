@@ -12,7 +12,6 @@ import { evaluateBy, keepForTrial, pressed, scanBy } from "../../recipe/try_reci
 import { mayAs, session } from "../../rpc/session.ts";
 import { type Value, valuesOf } from "../../results/values.ts";
 import type { Editor } from "./editor.ts";
-import { StopButton } from "./assistant/stop_button.ts";
 import { JobChoice } from "./job_choice.ts";
 import type { Newest } from "./newest_job.ts";
 import { ValuePairs } from "./value_pairs.ts";
@@ -67,7 +66,7 @@ export function TryPanel({ editor, newest }: { editor: Editor; newest: Newest })
       <button type="button" class="main" disabled=${busy !== "" || whyNotEvaluate !== ""} aria-describedby="try-why"
         onClick=${() => void run((recipe) => evaluateBy(newest.job_id, recipe))}>${t("recipe.try_evaluate")}</button>
       <button type="button" disabled=${busy !== "" || whyNotScan !== ""} aria-describedby="try-why"
-        onClick=${() => void run((recipe, press) => scanBy(recipe, "trial", press, (progress) => setBusy(t("recipe.scanning", { percent: Math.round(100 * progress) }))))}>${t("recipe.try_scan")}</button> <${StopButton}/>
+        onClick=${() => void run((recipe, press) => scanBy(recipe, "trial", press, (progress) => setBusy(t("recipe.scanning", { percent: Math.round(100 * progress) }))))}>${t("recipe.try_scan")}</button>
     </p>
     <p id="try-why" class="help">${whyNotEvaluate}${whyNotScan !== whyNotEvaluate ? ` ${whyNotScan}` : ""}</p>
     <p aria-live="polite">${busy}</p>

@@ -16,6 +16,7 @@ import { LimitStep } from "./limit_step.ts";
 import { MeasurementStep } from "./measurement_step.ts";
 import { NameStep } from "./name_step.ts";
 import { PictureStep } from "./picture_step.ts";
+import { StopButton } from "./stop_button.ts";
 import { TrialStep } from "./trial_step.ts";
 
 export interface StepProps {
@@ -75,5 +76,6 @@ export function Assistant({ taken }: { taken: readonly string[] }) {
     </section>
     <${CheckState} editor=${editor} onShow=${() => undefined}/>
     <details class="panel assistant-text"><summary>${t("recipe.text_label")}</summary><${RawJson} editor=${editor} place=${{ pointer: "", count: 0 }}/></details>
+    <div class="stop-line"><${StopButton}/></div>
   </div>`;
 }

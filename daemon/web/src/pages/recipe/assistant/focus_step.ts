@@ -13,7 +13,6 @@ import type { StepProps } from "./assistant.ts";
 import { FocusCurvePicture } from "./focus_curve_picture.ts";
 import { Reference, isReferenceMissing } from "./reference.ts";
 import { useRun } from "./run.ts";
-import { StopButton } from "./stop_button.ts";
 
 export function FocusStep({ editor }: StepProps) {
   const [from, setFrom] = useState("0");
@@ -50,7 +49,6 @@ export function FocusStep({ editor }: StepProps) {
         setHasReference(false);
         run(t("recipe.seeking_focus"), seek);
       }}>${t("recipe.seek_focus")}</button>
-      <${StopButton}/>
     </div>
     <p class="help">${t("recipe.moves_stage")} ${why === "" ? whyNot : ""}</p>
     ${isMissing ? html`<${Reference} seek=${seeking} onFound=${() => setHasReference(true)}/>` : view}

@@ -1,4 +1,4 @@
-// STOP beside what moves the stage.
+// STOP of the pages that try recipes: outside of their steps and views, for a motion goes on when its own is left.
 import { useState } from "preact/hooks";
 import { t } from "../../../i18n/i18n.ts";
 import { html } from "../../../lib/html.ts";

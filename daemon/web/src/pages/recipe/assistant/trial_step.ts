@@ -9,7 +9,6 @@ import { keepForTrial, pressed, scanBy } from "../../../recipe/try_recipe.ts";
 import { session } from "../../../rpc/session.ts";
 import type { StepProps } from "./assistant.ts";
 import { useRun } from "./run.ts";
-import { StopButton } from "./stop_button.ts";
 
 const kWindow = ["reconstruct", "focus", "window_px"] as const;
 
@@ -41,7 +40,7 @@ export function TrialStep({ editor, newest }: StepProps) {
     newest.choose(id);
   };
   return html`
-    <p class="buttons"><button type="button" class="main" disabled=${whyNot !== ""} onClick=${() => run(t("recipe.trying"), scan)}>${t("recipe.trial_scan")}</button> <${StopButton}/></p>
+    <p class="buttons"><button type="button" class="main" disabled=${whyNot !== ""} onClick=${() => run(t("recipe.trying"), scan)}>${t("recipe.trial_scan")}</button></p>
     <p class="help">${t("recipe.moves_stage")} ${why === "" ? whyNot : ""}</p>
     ${view}
     ${newest.job_id && html`<p>${t("recipe.of_job")} <a href=${`/jobs/${encodeURIComponent(newest.job_id)}`}>${newest.job_id}</a></p>`}
