@@ -4,9 +4,7 @@ import { t, tWord, useLanguage } from "../../i18n/i18n.ts";
 import { html } from "../../lib/html.ts";
 import { useStore } from "../../lib/store.ts";
 import { link, resyncs, topics } from "../../live/live.ts";
-import { messageOf } from "../../parts/message_of.ts";
 import { isTryId } from "../../recipe/ids.ts";
-import { look } from "../../rpc/look.ts";
 import { mayAs, session } from "../../rpc/session.ts";
 import { kMostPartId, nextPartId, partIdProblem } from "../../run/part_ids.ts";
 import { offered } from "../../run/recipe_choice.ts";
@@ -16,20 +14,7 @@ import { OneButton } from "./one_button.ts";
 import { countsOn, notice, partId, recipeChoice, recipes, setCountsOn } from "./run_state.ts";
 import { focusIfFree, useKeys } from "./use_keys.ts";
 import { useRecipeId } from "./use_machine.ts";
-
-function useRecipeList(): string {
-  const [problem, setProblem] = useState("");
-  const count = useStore(resyncs);
-  const isLinked = useStore(link).status === "open";
-  useEffect(() => {
-    if (!isLinked) return;
-    look("recipe.list", {}).then((list) => {
-      recipes.set(list.recipes as string[]);
-      setProblem("");
-    }, (error: unknown) => setProblem(messageOf(error)));
-  }, [count, isLinked]);
-  return problem;
-}
+import { useRecipeList } from "./use_recipe_list.ts";
 
 function RecipeChoice() {
   const known = useStore(recipes);
@@ -38,7 +23,7 @@ function RecipeChoice() {
   return html`<label class="field">${t("run.recipe")}
       <select value=${id} onChange=${(event: Event) => recipeChoice.set((event.target as HTMLSelectElement).value)}>
         ${id === "" && html`<option value="" disabled></option>`}
-        ${offered(known ?? []).map((each) => html`<option key=${each} value=${each}>${each}${isTryId(each) && ` – ${t("recipe.kind_try")}`}</option>`)}
+        ${offered(known ?? (id === "" ? [] : [id])).map((each) => html`<option key=${each} value=${each}>${each}${isTryId(each) && ` – ${t("recipe.kind_try")}`}</option>`)}
       </select>
     </label>
     ${known?.length === 0 && html`<p class="help">${t("run.no_recipes")}</p>`}
