@@ -7,10 +7,10 @@ import { asCommand, asPicture } from "../../../daemon/web/src/camera/devices_tur
 import { loadTexts } from "../../../daemon/web/src/i18n/i18n.ts";
 import { html } from "../../../daemon/web/src/lib/html.ts";
 import { link } from "../../../daemon/web/src/live/live.ts";
-import { askNewest, start, stop } from "../../../daemon/web/src/pages/run/commands.ts";
+import { askNewest, home, start, stop } from "../../../daemon/web/src/pages/run/commands.ts";
 import { ControlStrip } from "../../../daemon/web/src/pages/setup/control_strip.ts";
 import { pressed, scanBy } from "../../../daemon/web/src/recipe/try_recipe.ts";
-import { kOffline } from "../../../daemon/web/src/rpc/rpc.ts";
+import { call, kOffline } from "../../../daemon/web/src/rpc/rpc.ts";
 import { type Role, session } from "../../../daemon/web/src/rpc/session.ts";
 import { stopStage } from "../../../daemon/web/src/rpc/stop_stage.ts";
 
@@ -28,6 +28,11 @@ globalThis.fetch = ((_address: unknown, { body, signal }: { body: string; signal
 })) as unknown as typeof fetch;
 
 const of = (method: string): Asked[] => asked.filter((each) => each.method === method);
+// Also where what was sent never comes: then the test fails.
+async function sent(method: string, count = 1): Promise<void> {
+  for (let i = 0; i < 100 && of(method).length < count; ++i) await turns();
+  assert.ok(of(method).length >= count, `${method} was not sent`);
+}
 const kStopped = { stopped: "nothing", standstill: true };
 const kStarted = { job_id: "J2", seq: 2, client: "page", duplicate: false, state: "processing" };
 
@@ -74,6 +79,73 @@ test("nor one that waited for very long, as in a sleep", async () => {
   assert.equal(moves, 0);
 });
 
+// The daemon has the stop before the motion that was sent before it.
+async function overtaken(motion: () => Promise<unknown>, method: string): Promise<void> {
+  stopTimers();
+  asked = [];
+  answers = { "stage.stop": kStopped };
+  const moved = motion().catch(() => undefined);
+  await sent(method);
+  await stopStage();
+  assert.equal(of("stage.stop").length, 1);
+  passTime(1000);
+  await turns();
+  assert.equal(of("stage.stop").length, 2, `${method} may have come after the stop`);
+  answers["stage.stop"] = { ...kStopped, stopped: "command" };
+  passTime(1000);
+  await turns();
+  assert.equal(of("stage.stop").length, 3);
+  of(method)[0]?.answer({ z_um: 0, homed: true });
+  await moved;
+  passTime(60000);
+  await turns();
+  assert.equal(of("stage.stop").length, 3, "what was found needs no further stop");
+}
+
+test("a motion that was overtaken by a stop on its way is stopped again", async () => {
+  await overtaken(() => asCommand(() => call("stage.home", {})), "stage.home");
+  await overtaken(() => asCommand(() => call("stage.autofocus", { from_um: 0, to_um: 9 })), "stage.autofocus");
+  await overtaken(home, "stage.home");
+});
+
+test("nothing is stopped by itself once the motion was answered, nor what is pressed after the stop", async () => {
+  stopTimers();
+  answers = { "stage.stop": kStopped };
+  const first = asCommand(() => call("stage.home", {}));
+  await sent("stage.home");
+  await stopStage();
+  const second = asCommand(() => call("stage.move", { z_um: 5 }));
+  of("stage.home")[0]?.answer({ z_um: 0, homed: true });
+  await first;
+  await sent("stage.move");
+  passTime(60000);
+  await turns();
+  assert.equal(of("stage.stop").length, 1);
+  of("stage.move")[0]?.answer({ z_um: 5 });
+  await second;
+});
+
+test("a stop that is lost is sent again while the motion lasts, and not for ever", async () => {
+  stopTimers();
+  const moved = asCommand(() => call("stage.home", {}));
+  await sent("stage.home");
+  const lost = assert.rejects(stopStage(), { code: kOffline });
+  passTime(5000);
+  await lost;
+  answers = { "stage.stop": kStopped };
+  for (let i = 0; i < 200; ++i) {
+    passTime(1000);
+    await turns();
+  }
+  const all = of("stage.stop").length;
+  assert.ok(all > 2 && all < 100, `${all}`);
+  passTime(60000);
+  await turns();
+  assert.equal(of("stage.stop").length, all);
+  of("stage.home")[0]?.answer({ z_um: 0, homed: true });
+  await moved;
+});
+
 test("a stop that nobody answers ends, and another press does not wait for that", async () => {
   stopTimers();
   const first = stop();
@@ -102,7 +174,7 @@ test("a stop is sent also while it is not known who this tab is, and not by who 
 test("a job whose start was overtaken by a stop is ended", async () => {
   answers = { "stage.stop": kStopped, "job.latest": { newest_seq: 1 }, "job.abort": {} };
   const started = start("p", "r");
-  while (of("job.start").length === 0) await turns();
+  await sent("job.start");
   await stopStage();
   of("job.start")[0]?.answer(kStarted);
   await started;
@@ -112,10 +184,10 @@ test("a job whose start was overtaken by a stop is ended", async () => {
 test("a start that asks for its number is not sent after a stop of the set-up page", async () => {
   answers = { "stage.stop": kStopped };
   askNewest();  // forgets the number, and is not answered
-  while (of("job.latest").length < 1) await turns();
+  await sent("job.latest");
   const started = start("p", "r");
   await stopStage();
-  while (of("job.latest").length < 2) await turns();
+  await sent("job.latest", 2);
   for (const { answer } of of("job.latest")) answer({ newest_seq: 1 });
   await started;
   assert.equal(of("job.start").length, 0);
@@ -136,11 +208,11 @@ test("nor is a trial scan; and one that was under way is ended", async () => {
   await assert.rejects(scanBy("r", "p", press, () => undefined), { error: "aborted" });
   assert.equal(of("job.start").length, 0);
 
-  const sent = assert.rejects(scanBy("r", "p", pressed(), () => undefined));
-  while (of("job.start").length === 0) await turns();
+  const scanned = assert.rejects(scanBy("r", "p", pressed(), () => undefined));
+  await sent("job.start");
   await stopStage();
   of("job.start")[0]?.answer(kStarted);
-  await sent;
+  await scanned;
   assert.deepEqual(of("job.abort").map(({ params }) => params), [{ job_id: "J2" }]);
 });
 

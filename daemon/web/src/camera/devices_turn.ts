@@ -1,7 +1,7 @@
 // The devices do one command at a time. The live picture takes its turn between the commands of this tab, so that
 // a press is not answered with "busy" by the page's own picture.
 import { createStore } from "../lib/store.ts";
-import { sincePress, tooLate } from "../rpc/stop_stage.ts";
+import { asMotion, sincePress, tooLate } from "../rpc/stop_stage.ts";
 
 let last: Promise<unknown> = Promise.resolve();
 
@@ -21,7 +21,7 @@ export async function asCommand<T>(work: () => Promise<T>): Promise<T> {
   try {
     return await inTurn(() => {
       if (!mayBegin()) throw tooLate();
-      return work();
+      return asMotion(work);
     });
   } finally {
     commandsUnderWay.update((count) => count - 1);

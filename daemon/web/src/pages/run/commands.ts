@@ -6,7 +6,7 @@ import { messageOf } from "../../parts/message_of.ts";
 import { look } from "../../rpc/look.ts";
 import { call } from "../../rpc/rpc.ts";
 import { mayTryStop, session } from "../../rpc/session.ts";
-import { stopPresses, stopStage } from "../../rpc/stop_stage.ts";
+import { asMotion, stopPresses, stopStage } from "../../rpc/stop_stage.ts";
 import type { ButtonAction } from "../../run/button_rules.ts";
 import { nextPartId } from "../../run/part_ids.ts";
 import { createStarter, kClient, newSession } from "../../run/start_job.ts";
@@ -69,6 +69,6 @@ export const reset = (): Promise<void> => during("reset", async () => {
 });
 
 export const home = (): Promise<void> => during("home", async () => {
-  await call("stage.home", {});
+  await asMotion(() => call("stage.home", {}));
   notice.set({ kind: "note", text: t("run.homed") });
 });
