@@ -2,9 +2,10 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { askNewest } from "../../lib/newest.ts";
 import { messageOf } from "../../parts/message_of.ts";
-import { type Path, getAt, removeAt, renameAt, setAt } from "../../recipe/document.ts";
+import { type Path, getAt, removeAt, setAt } from "../../recipe/document.ts";
 import { formatJson } from "../../recipe/format_json.ts";
 import { type Problem, problemsOf } from "../../recipe/problems.ts";
+import { renameWithUses } from "../../recipe/rename.ts";
 import { type Json, type JsonObject, isObject } from "../../recipe/schema.ts";
 import { call } from "../../rpc/rpc.ts";
 
@@ -81,7 +82,7 @@ export function useEditor(id: string, initial: string): Editor {
     setText,
     set: (path, value) => change((before) => setAt(before, path, value)),
     remove: (path) => change((before) => removeAt(before, path)),
-    rename: (path, name) => change((before) => renameAt(before, path, name)),
+    rename: (path, name) => change((before) => renameWithUses(before, path, name)),
   };
 }
 
