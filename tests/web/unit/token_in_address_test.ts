@@ -11,7 +11,7 @@ Object.assign(globalThis, {
 });
 
 const { addressFault, tokenIn, takeTokenFromAddress, watchAddress } = await import("../../../daemon/web/src/rpc/token_in_address.ts");
-const { setToken, token } = await import("../../../daemon/web/src/rpc/rpc.ts");
+const { call, setToken, token } = await import("../../../daemon/web/src/rpc/rpc.ts");
 const { session } = await import("../../../daemon/web/src/rpc/session.ts");
 
 const open = (hash: string, opened: () => void = takeTokenFromAddress): string[] => {
@@ -67,6 +67,17 @@ test("put into an open page it is taken out at once, and logs in unless it is re
   answers.shift()?.(good("token old"));
   await settled();
   assert.equal(token.get(), null);
+
+  // A call of who the tab was is refused meanwhile: that is no word of a person, and the pasted one stays asked for.
+  setToken("fvd-old");
+  const late = call("system.state", {}).catch(() => undefined);
+  paste("#token=fvd-new");
+  answers.shift()?.(refused());
+  await late;
+  assert.equal(token.get(), null);
+  answers.shift()?.(good("token new"));
+  await settled();
+  assert.deepEqual([token.get(), session.get().who], ["fvd-new", "token new"]);
 
   assert.deepEqual(paste("#elsewhere"), []);
   assert.equal(answers.length, 0);

@@ -25,17 +25,25 @@ export const token = createStore<string | null>(sessionStorage.getItem(kTokenKey
 // The token that this tab had is nobody's, or nobody's any more; until another one is given, or nobody wants one.
 export const tokenWasRefused = createStore(false);
 
-export function setToken(text: string | null): void {
+// How often somebody has said who this tab is; a refusal is nobody's word.
+export const tokenChoices = createStore(0);
+
+function keep(text: string | null): void {
   if (text === null) sessionStorage.removeItem(kTokenKey);
   else sessionStorage.setItem(kTokenKey, text);
   tokenWasRefused.set(false);
   token.set(text);
 }
 
+export function setToken(text: string | null): void {
+  keep(text);
+  tokenChoices.update((count) => count + 1);
+}
+
 // Each further call with it would be refused too, and later each time.
 export function refuseToken(given: string | null): void {
   if (given === null || given !== token.get()) return;
-  setToken(null);
+  keep(null);
   tokenWasRefused.set(true);
 }
 

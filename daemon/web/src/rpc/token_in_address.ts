@@ -2,7 +2,7 @@
 import { place } from "../lib/router.ts";
 import { createStore } from "../lib/store.ts";
 import { leaveControl } from "./held_control.ts";
-import { setToken, token } from "./rpc.ts";
+import { setToken, token, tokenChoices } from "./rpc.ts";
 import { logIn } from "./session.ts";
 
 // Null: there is none.
@@ -43,12 +43,12 @@ export function watchAddress(): () => void {
       if (!mine.signal.aborted) addressFault.set(error);
     });
   };
-  // Who logs in or out meanwhile has the last word.
+  // Who logs in or out meanwhile has the last word; a late refusal of who the tab was has none.
   const changed = (): void => {
     asking?.abort();
     addressFault.set(null);
   };
-  const ends = [token.watch(changed), place.watch(() => addressFault.set(null))];
+  const ends = [tokenChoices.watch(changed), place.watch(() => addressFault.set(null))];
   addEventListener("hashchange", look);
   return () => {
     asking?.abort();
