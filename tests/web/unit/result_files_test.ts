@@ -9,14 +9,16 @@ import { Downloads } from "../../../daemon/web/src/pages/result/downloads.ts";
 import type { ResultFile, ResultJson } from "../../../daemon/web/src/result/result_json.ts";
 
 const kDraw_ms = 100;  // after which Preact looks after effects, where there is no screen
-let answers: (ResultFile[] | "offline")[] = [];
+let answers: (ResultFile[] | "offline" | "removed" | null)[] = [];
 let asked = 0;
 
 globalThis.fetch = (async (_address: unknown, { body }: { body: string }) => {
   ++asked;
   const files = answers.shift();
   if (files === "offline" || files === undefined) throw new TypeError("the cable was pulled");
-  return new Response(JSON.stringify({ jsonrpc: "2.0", id: (JSON.parse(body) as { id: number }).id, result: { result: { files } } }), { status: 200 });
+  const said = files === "removed" ? { error: { code: 1018, message: "the result was removed", data: { error: "result_removed" } } }
+    : { result: { result: files === null ? null : { files } } };
+  return new Response(JSON.stringify({ jsonrpc: "2.0", id: (JSON.parse(body) as { id: number }).id, ...said }), { status: 200 });
 }) as unknown as typeof fetch;
 
 const kHeights: ResultFile = { name: "height.tiff", state: "written", size_bytes: 2048 };
@@ -49,6 +51,20 @@ test("a file that is being made has no link, and gets one when it is there", asy
   await pass(600000);
   assert.equal(asked, 3, "then nothing is asked any more");
 });
+
+for (const answer of ["removed", null] as const) {
+  test(`a result that is no longer there (${answer}) leaves what is shown, and nothing more is asked`, async () => {
+    const all = drawn(html`<${Downloads} result=${resultWith([kHeights, report("pending")])}/>`);
+    answers = [[kHeights, report("pending")], answer];
+    await pass(kDraw_ms);
+    for (const wait_ms of [1000, 2000, kDraw_ms]) await pass(wait_ms);
+    assert.equal(asked, 2);
+    assert.match(all.text, /report\.pdf.*is being made/);
+    assert.deepEqual(all.all("a").map((each) => each.text), ["height.tiff", "result.json"]);
+    await pass(600000);
+    assert.equal(asked, 2);
+  });
+}
 
 test("nothing is asked for a result whose files are all there, or will never be", async () => {
   drawn(html`<${Downloads} result=${resultWith([kHeights, report("not_made")])}/>`);

@@ -2,10 +2,13 @@
 import { useEffect, useState } from "preact/hooks";
 import { pause } from "../../lib/patience.ts";
 import type { ResultFile, ResultJson } from "../../result/result_json.ts";
-import { call } from "../../rpc/rpc.ts";
+import { RpcError, call } from "../../rpc/rpc.ts";
 
 const kFirst_ms = 1000;
 const kLongest_ms = 30000;  // a disk that is full keeps a file waiting for days
+
+// No later answer would be another one.
+const kGone: ReadonlySet<string> = new Set(["result_removed", "unknown_job"]);
 
 const isWaiting = (files: readonly ResultFile[]): boolean => files.some(({ state }) => state === "pending");
 
@@ -15,11 +18,12 @@ async function follow(job_id: string, signal: AbortSignal, tell: (files: readonl
     if (signal.aborted) return;
     try {
       const { result } = await call("result.get", { job_id, format: "complete" }, { signal });
-      const files = (result as ResultJson | null | undefined)?.files ?? [];
-      if (signal.aborted) return;
+      if (signal.aborted || !result) return;  // what was shown stays
+      const files = (result as ResultJson).files ?? [];
       tell(files);
       if (!isWaiting(files)) return;
-    } catch {
+    } catch (error) {
+      if (error instanceof RpcError && kGone.has(error.error)) return;
       // Whether fvd answers is told on top of every page; the next look may see more.
     }
   }
