@@ -42,29 +42,34 @@ const kHeights = {
 const kLayer = { heights: kHeights, colours: kHeights };
 const view = (): SmallElement => drawn(html`<${View3dCanvas} coarse=${kLayer} fine=${kLayer} map=${{ width: 2, height: 2, pitch_x: 1, pitch_y: 1 }} range=${{ low: 0, high: 3e-6 }}
   heights_um=${{ low: 0, high: 3 }} byTexture=${false} exaggeration=${1} look=${kFirstLook} moving=${false} canvas=${{ width: 10, height: 10 }} onMode=${() => undefined}/>`);
-async function until(holds: () => boolean): Promise<void> {
-  while (!holds()) await new Promise((done) => setImmediate(done));
+// Turns of the loop, for they are what it waits for: a drawing that never comes fails the test.
+async function until(holds: () => boolean, what: string): Promise<void> {
+  for (let i = 0; i < 10000; ++i) {
+    if (holds()) return;
+    await new Promise((done) => setImmediate(done));
+  }
+  assert.fail(what);
 }
 
 test("a view that is left gives its context back, once, and not while it is shown", async () => {
   for (let views = 1; views <= 20; ++views) {
     const body = view();
     const before = draws;
-    await until(() => draws > before);
+    await until(() => draws > before, "it is drawn");
     assert.deepEqual([contexts, givenBack], [views, views - 1]);
     render(null, body as unknown as Element);
-    await until(() => givenBack === views);
+    await until(() => givenBack === views, "its context is given back");
   }
 });
 
 test("a context that came back after a loss is used again, and not given away", async () => {
   const body = view();
   const before = [givenBack, draws];
-  await until(() => draws > (before[1] ?? 0));
+  await until(() => draws > (before[1] ?? 0), "it is drawn");
   const drawnOnce = draws;
   body.all("canvas")[0]?.listeners.get("webglcontextrestored")?.({});
-  await until(() => draws > drawnOnce);
+  await until(() => draws > drawnOnce, "it is drawn again");
   assert.equal(givenBack, before[0]);
   render(null, body as unknown as Element);
-  await until(() => givenBack === (before[0] ?? 0) + 1);
+  await until(() => givenBack === (before[0] ?? 0) + 1, "its context is given back");
 });
