@@ -19,7 +19,7 @@ const Page = () => html`<p>${useRecipeList()}</p>`;
 const leave = (page: SmallElement): void => render(null, page as unknown as Element);
 // Effects come after a timer where there is no screen.
 async function until(holds: () => boolean, what: string): Promise<void> {
-  for (let i = 0; i < 500; ++i) {
+  for (let i = 0; i < 5000; ++i) {
     if (holds()) return;
     await new Promise((done) => setTimeout(done, 1));
   }

@@ -30,7 +30,7 @@ globalThis.fetch = ((_address: unknown, { body, signal }: { body: string; signal
 const of = (method: string): Asked[] => asked.filter((each) => each.method === method);
 // Also where what was sent never comes: then the test fails.
 async function sent(method: string, count = 1): Promise<void> {
-  for (let i = 0; i < 100 && of(method).length < count; ++i) await turns();
+  for (let i = 0; i < 20000 && of(method).length < count; ++i) await turns();
   assert.ok(of(method).length >= count, `${method} was not sent`);
 }
 const kStopped = { stopped: "nothing", standstill: true };

@@ -42,11 +42,11 @@ const kHeights = {
 const kLayer = { heights: kHeights, colours: kHeights };
 const view = (): SmallElement => drawn(html`<${View3dCanvas} coarse=${kLayer} fine=${kLayer} map=${{ width: 2, height: 2, pitch_x: 1, pitch_y: 1 }} range=${{ low: 0, high: 3e-6 }}
   heights_um=${{ low: 0, high: 3 }} byTexture=${false} exaggeration=${1} look=${kFirstLook} moving=${false} canvas=${{ width: 10, height: 10 }} onMode=${() => undefined}/>`);
-// Turns of the loop, for they are what it waits for: a drawing that never comes fails the test.
+// Some of what it waits for comes with timers of Preact's; what never comes fails the test, after five seconds or more.
 async function until(holds: () => boolean, what: string): Promise<void> {
-  for (let i = 0; i < 10000; ++i) {
+  for (let i = 0; i < 5000; ++i) {
     if (holds()) return;
-    await new Promise((done) => setImmediate(done));
+    await new Promise((done) => setTimeout(done, 1));
   }
   assert.fail(what);
 }
