@@ -34,7 +34,7 @@ export function StudiesView() {
   };
   const open = (id: string): void => void call("study.get", { id }).then((told) => show(told as StudyReply), tell);
 
-  return html`<div class="pairs">
+  return html`<div class="pairs roomy">
     <div class="panels">
       <section class="panel" aria-labelledby="study-title">
         <h2 id="study-title">${t("setup.study.title")}</h2>

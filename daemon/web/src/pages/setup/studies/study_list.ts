@@ -14,7 +14,7 @@ export function StudyList({ studies, broken, open }: Props) {
   useLanguage();
   return html`<section class="panel" aria-labelledby="studies-title">
     <h2 id="studies-title">${t("setup.studies.title")}</h2>
-    ${studies.length === 0 ? html`<p class="help">${t("setup.studies.none")}</p>` : html`<div class="scroll tall" tabindex="0" role="group" aria-labelledby="studies-title"><table>
+    ${studies.length === 0 ? html`<p class="help">${t("setup.studies.none")}</p>` : html`<div class="scroll tall studies" tabindex="0" role="group" aria-labelledby="studies-title"><table>
       <tr><th scope="col">${t("setup.studies.id")}</th><th scope="col">${t("setup.studies.kind")}</th><th scope="col">${t("setup.journal.time")}</th><th scope="col">${t("setup.studies.person")}</th><th scope="col">${t("setup.studies.state")}</th></tr>
       ${studies.map((study) => html`<tr key=${study.id}>
         <td><button type="button" onClick=${() => open(study.id)} aria-label=${t("setup.studies.open", { id: study.id })}>${study.id}</button></td>
