@@ -34,15 +34,23 @@ void set_bold(PangoLayout* layout, std::size_t bytes) {
   pango_attr_list_unref(list);
 }
 
+struct ObjectUnref {
+  void operator()(gpointer object) const noexcept { g_object_unref(object); }
+};
+
+/// Kept from one picture to the next: a map of its own finds each font anew, in threads of Pango's.
+PangoFontMap* fonts_of_thread() {
+  thread_local const std::unique_ptr<PangoFontMap, ObjectUnref> fonts(
+      pango_cairo_font_map_new_for_font_type(CAIRO_FONT_TYPE_FT));
+  if (!fonts) throw Error(ErrorCode::kInternal, "pango has no fonts of FreeType");
+  return fonts.get();
+}
+
 double in_points(int pango_units) { return static_cast<double>(pango_units) / PANGO_SCALE; }
 
 }  // namespace
 
-Canvas::Canvas(cairo_t* cairo)
-    : cairo_(cairo),
-      fonts_(pango_cairo_font_map_new_for_font_type(CAIRO_FONT_TYPE_FT)),
-      context_(fonts_ ? pango_font_map_create_context(fonts_.get()) : nullptr) {
-  if (!context_) throw Error(ErrorCode::kInternal, "pango has no fonts of FreeType");
+Canvas::Canvas(cairo_t* cairo) : cairo_(cairo), context_(pango_font_map_create_context(fonts_of_thread())) {
   // Not fitted to a screen's pixels: a line is as long in a PDF as in a picture.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

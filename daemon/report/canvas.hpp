@@ -82,7 +82,6 @@ class Canvas {
   void path(std::span<const PagePoint> points);
 
   cairo_t* cairo_;
-  std::unique_ptr<PangoFontMap, Unref> fonts_;
   std::unique_ptr<PangoContext, Unref> context_;
 };
 
