@@ -62,7 +62,13 @@ std::optional<DeviceFailure> DeviceHub::failure() {
 std::optional<DeviceFailure> DeviceHub::alarm() const {
   if (!axis_.connected()) return std::nullopt;
   const std::optional<StageStatus> seen = axis_.get().last_seen();
-  if (!seen || (!seen->alarm && seen->state != AxisState::kAlarm)) return std::nullopt;
+  if (!seen) return std::nullopt;
+  if (seen->lost_torque && !seen->alarm && seen->state != AxisState::kAlarm) {
+    return DeviceFailure{ErrorCode::kStageAlarm,
+                         "the drive was disabled, and not by fvd: an emergency stop, an alarm or a power cut? See to "
+                         "it, then stage.home"};
+  }
+  if (!seen->alarm && seen->state != AxisState::kAlarm) return std::nullopt;
   if (!seen->alarm) {
     return DeviceFailure{ErrorCode::kStageAlarm,
                          "the drive's emergency stop is on; release it, then error.reset and stage.home"};

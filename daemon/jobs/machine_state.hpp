@@ -123,10 +123,10 @@ enum class Refusal {
 ///   job offered          | job offered | -           | -
 ///   results not kept     | storage     | -           | -
 ///   a command looks      | -           | task runs   | -
+///   the drive's alarm, devices up | alarm | -: it is reset, and the axis homed | -
 ///   a command moves      | taken: a job ends it | task runs | taken
 ///   devices not opened   | opening for all
 ///   devices down         | device missing for all
-///   the drive's alarm    | alarm       | -: it is reset, and the axis homed | -
 ///   else                 | taken
 [[nodiscard]] constexpr Refusal refusal(const MachineState& machine, Command command) noexcept {
   if (machine.halted) return Refusal::kShuttingDown;
@@ -134,10 +134,10 @@ enum class Refusal {
   if (machine.job == JobStage::kOffered && command == Command::kStartJob) return Refusal::kJobOffered;
   if (!machine.storable && command == Command::kStartJob) return Refusal::kStorage;
   if (machine.task != TaskState::kNone && command == Command::kRunTask) return Refusal::kTaskRuns;
+  if (machine.alarmed && machine.devices == DevicesState::kUp && command == Command::kStartJob) return Refusal::kAlarm;
   if (machine.task == TaskState::kMoves) return Refusal::kNone;
   if (machine.devices == DevicesState::kUnknown) return Refusal::kOpening;
   if (machine.devices == DevicesState::kDown) return Refusal::kDeviceMissing;
-  if (machine.alarmed && command == Command::kStartJob) return Refusal::kAlarm;
   return Refusal::kNone;
 }
 

@@ -57,8 +57,9 @@ bool MachineThread::look_after_devices() {
   const std::optional<DeviceFailure> failure = hub_.open();
   const std::optional<DeviceFailure> alarm = hub_.alarm();
   const MachineRecord known = board_.read();
-  if (alarm && alarm != known.alarm) spdlog::error("no job is taken: {}: {}", error_name(alarm->code), alarm->message);
-  if (!alarm && known.alarm && !failure) spdlog::info("the drive's alarm has ended");
+  if (alarm && alarm != told_alarm_) spdlog::error("no job is taken: {}: {}", error_name(alarm->code), alarm->message);
+  if (!alarm && told_alarm_ && !failure) spdlog::info("the drive's alarm has ended");
+  if (alarm || !failure) told_alarm_ = alarm;
   if (failure && failure != known.failure) spdlog::warn("{}: {}", error_name(failure->code), failure->message);
   const DevicesState now = failure ? DevicesState::kDown : DevicesState::kUp;
   const bool reopened = std::exchange(known_openings_, hub_.openings()) != hub_.openings();

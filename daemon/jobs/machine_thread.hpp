@@ -3,6 +3,7 @@
 /// The one thread that touches the devices: does the work that was posted, and looks after the devices in between.
 
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
@@ -42,8 +43,9 @@ class MachineThread {
   WorkQueue& work_;
   ThreadTicks& ticks_;
   const std::function<void()> in_between_;
-  int known_openings_ = 0;  // of the devices that the board knows
-  std::jthread thread_;     // last: ends before anything it uses
+  int known_openings_ = 0;                   // of the devices that the board knows
+  std::optional<DeviceFailure> told_alarm_;  // in the log; the board may have it from the end of a job or command
+  std::jthread thread_;                      // last: ends before anything it uses
 };
 
 }  // namespace fvd

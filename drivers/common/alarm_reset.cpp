@@ -8,10 +8,9 @@ namespace fvd {
 
 void end_alarm(AxisPort& port, AxisPoller& poller, const std::stop_token& stop) {
   constexpr std::chrono::seconds kLongest{2};
-  if (!poller.sample_after(HostClock::now(), stop).alarm) return;
   CommandResult sent;
   poller.pause([&] { sent = port.reset_alarm(stop); });
-  const bool was_told = sent.outcome == CommandOutcome::kDone;
+  const bool was_told = sent.outcome != CommandOutcome::kRefused;  // or may have been: its answer was lost
   const HostTime told = HostClock::now();
   for (HostTime last = told;;) {
     const AxisSample sample = poller.sample_after(last, stop);

@@ -23,9 +23,6 @@ using std::chrono::milliseconds;
 
 /// Maximum age of a sample that is treated as current while the axis rests.
 constexpr milliseconds kSampleAge{50};
-/// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
-constexpr Micrometers kSweepWindow{5.0};
-constexpr milliseconds kSweepGrace{3000};
 /// How often a motion is asked for of a drive that says "later"; each time it is looked at first.
 constexpr int kBusyAttempts = 6;
 
@@ -61,13 +58,17 @@ class AxisController final : public Axis {
     return stats;
   }
 
-  void reset_alarm(std::stop_token stop) override { end_alarm(*port_, poller_, stop); }
+  void reset_alarm(std::stop_token stop) override {
+    if (!poller_.sample_after(HostClock::now(), stop).alarm) return;
+    require_sole_master_since_start(stop);
+    require_profile(stop);
+    end_alarm(*port_, poller_, stop);
+  }
 
   void home(std::stop_token stop) override {
     const AxisSample before = poller_.sample_after(HostClock::now(), stop);
     require_homing_possible(*port_, before);
-    if (const auto seen = poller_.foreign_write(true, stop); seen && seen->is_restart) poller_.forget_foreign_write();
-    require_sole_master(false);
+    require_sole_master_since_start(stop);
     prepared_ = false;  // the drive may have been restarted
     make_ready(before, stop);
     require_wanted(stop);
@@ -89,11 +90,7 @@ class AxisController final : public Axis {
   MoveRecord sweep_to(Micrometers target, double speed_um_per_s, std::stop_token stop) override {
     require_sweep_speed(settings_, speed_um_per_s);
     const AxisSample here = current_sample(stop);
-    const double seconds =
-        abs(target - here.position).value / speed_um_per_s + speed_um_per_s / settings_.limits.acceleration_um_per_s2;
-    const SettleCriterion rest{kSweepWindow, 1, milliseconds(0),
-                               kSweepGrace + milliseconds(static_cast<std::int64_t>(seconds * 1000.0))};
-    return move_at(speed_um_per_s, target, rest, stop);
+    return move_at(speed_um_per_s, target, end_of_sweep(settings_, target - here.position, speed_um_per_s), stop);
   }
 
   [[nodiscard]] PositionMean mean_position(HostTime from, HostTime to) override {
@@ -127,12 +124,16 @@ class AxisController final : public Axis {
                                                "; stop it by its emergency stop");
   }
 
-  /// Settings once, and torque where there is none; a drive that has to be enabled may have forgotten its settings.
   /// Nothing is written to a drive that is not what fvd takes it for.
-  void make_ready(const AxisSample& sample, const std::stop_token& stop) {
-    if (prepared_ && sample.enabled) return;
+  void require_profile(const std::stop_token& stop) {
     if (!checked_) require_agreement(*port_, stop);
     checked_ = true;
+  }
+
+  /// Settings once, and torque where there is none; a drive that has to be enabled may have forgotten its settings.
+  void make_ready(const AxisSample& sample, const std::stop_token& stop) {
+    if (prepared_ && sample.enabled) return;
+    require_profile(stop);
     const CommandResult prepared = port_->prepare(settings_.limits, stop);
     require_wanted(stop);
     require_done(traits_, prepared, "prepare");
@@ -154,12 +155,16 @@ class AxisController final : public Axis {
     throw_foreign(traits_, *foreign);
   }
 
+  /// A drive that was restarted has lost what was written to it, and nobody else did it.
+  void require_sole_master_since_start(const std::stop_token& stop) {
+    if (const auto seen = poller_.foreign_write(true, stop); seen && seen->is_restart) poller_.forget_foreign_write();
+    require_sole_master(false);
+  }
+
   void require_enabled(const AxisSample& sample) {
     if (!disabled_.somebody_else_disabled(sample)) return;
     poller_.remember_homed(false);
-    throw Error(ErrorCode::kStageAlarm,
-                "the drive at " + traits_.address +
-                    " was disabled, and not by fvd: an emergency stop or a power cut? See to it, then home again");
+    throw_disabled(traits_);
   }
 
   /// Drives that do not say whether they are homed forget their last target in a restart.
@@ -182,6 +187,8 @@ class AxisController final : public Axis {
 
   [[nodiscard]] StageStatus status_of(const AxisSample& sample) const {
     StageStatus status = stage_status(*port_, sample, poller_.temperatures());
+    status.lost_torque = sample.begun >= changed_.load() && disabled_.somebody_else_disabled(sample);
+    if (status.lost_torque) status.homed = false;
     status.state = poller_.connected() ? axis_state(sample, state_) : AxisState::kCommLost;
     return status;
   }
@@ -252,9 +259,7 @@ class AxisController final : public Axis {
         return;
       }
       if (sample.time - started > traits_.home_timeout) {
-        throw Error(ErrorCode::kTimeout, "homing of " + traits_.address + " did not end within " +
-                                             std::to_string(traits_.home_timeout.count()) +
-                                             " ms; the axis was told to stop: check the home sensor and the timing");
+        throw_not_homed_in_time(traits_);
       }
     }
   }
@@ -385,11 +390,6 @@ class AxisController final : public Axis {
 };
 
 }  // namespace
-
-AxisSettings axis_settings(const StageConfig& config) {
-  return {
-      config.min, config.max, config.take_up, {config.speed_um_per_s, config.acceleration_um_per_s2}, config.simulated};
-}
 
 std::unique_ptr<Axis> make_axis(std::unique_ptr<AxisPort> port, const AxisSettings& settings) {
   return std::make_unique<AxisController>(std::move(port), settings);

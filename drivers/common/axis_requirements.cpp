@@ -13,6 +13,9 @@ namespace {
 
 /// A position is not waited for any longer.
 constexpr std::chrono::milliseconds kLongestLookAhead{2000};
+/// A sweep has ended when the axis rests this close to its target, at the latest this long after its due time.
+constexpr Micrometers kSweepWindow{5.0};
+constexpr std::chrono::milliseconds kSweepGrace{3000};
 
 void require_no_emergency_stop(const AxisPort& port, const AxisSample& sample) {
   if (!sample.emergency_stop) return;
@@ -67,6 +70,12 @@ bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& b
            const SettleCriterion& criterion) {
   return sample.moving || abs(sample.position - move.target_quantised) <= criterion.window ||
          abs(sample.position - before.position) > criterion.window;
+}
+
+SettleCriterion end_of_sweep(const AxisSettings& settings, Micrometers distance, double speed_um_per_s) {
+  const double seconds = abs(distance).value / speed_um_per_s + speed_um_per_s / settings.limits.acceleration_um_per_s2;
+  return {kSweepWindow, 1, std::chrono::milliseconds(0),
+          kSweepGrace + std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000.0))};
 }
 
 std::string not_settled_text(const MoveRecord& move, const AxisSample& sample, const SettleCriterion& criterion) {
@@ -126,6 +135,18 @@ void throw_not_begun(const AxisTraits& traits, Micrometers target) {
   throw Error(ErrorCode::kStagePosition, "the drive at " + traits.address + " took the move to " +
                                              std::to_string(target.value) +
                                              " um without a word and does not move: is it ready and enabled?");
+}
+
+void throw_disabled(const AxisTraits& traits) {
+  throw Error(ErrorCode::kStageAlarm,
+              "the drive at " + traits.address +
+                  " was disabled, and not by fvd: an emergency stop or a power cut? See to it, then home again");
+}
+
+void throw_not_homed_in_time(const AxisTraits& traits) {
+  throw Error(ErrorCode::kTimeout, "homing of " + traits.address + " did not end within " +
+                                       std::to_string(traits.home_timeout.count()) +
+                                       " ms; the axis was told to stop: check the home sensor and the timing");
 }
 
 void require_near(const AxisTraits& traits, HostTime time) {

@@ -27,6 +27,8 @@ struct AxisSettings {
 /// The axis moves, or stands where the move leads, or no longer where it stood before it.
 [[nodiscard]] bool obeys(const AxisSample& sample, const MoveRecord& move, const AxisSample& before,
                          const SettleCriterion& criterion);
+/// When a sweep over such a distance has ended.
+[[nodiscard]] SettleCriterion end_of_sweep(const AxisSettings& settings, Micrometers distance, double speed_um_per_s);
 /// Why a move whose time is over did not end: where the axis stands, and what is missing if that is where it should.
 [[nodiscard]] std::string not_settled_text(const MoveRecord& move, const AxisSample& sample,
                                            const SettleCriterion& criterion);
@@ -44,6 +46,10 @@ void require_agreement(AxisPort& port, const std::stop_token& stop);
 [[nodiscard]] bool may_be_anothers_doing(ErrorCode code);
 /// Throws Error kStagePosition: the controller said yes to the move, and nothing came of it.
 [[noreturn]] void throw_not_begun(const AxisTraits& traits, Micrometers target);
+/// Throws Error kStageAlarm: its torque is gone, and fvd did not take it.
+[[noreturn]] void throw_disabled(const AxisTraits& traits);
+/// Throws Error kTimeout.
+[[noreturn]] void throw_not_homed_in_time(const AxisTraits& traits);
 /// Throws Error kCameraFramesLost for a time more than two seconds ahead: times of exposures are told by the camera's
 /// clock, and nobody can end a wait for them.
 void require_near(const AxisTraits& traits, HostTime time);

@@ -76,12 +76,12 @@ const std::vector<RefusalRow> kRefusalRows{
     {[](const MachineState& m) { return m.job == JobStage::kOffered; }, Refusal::kJobOffered, kGoOn, kGoOn},
     {[](const MachineState& m) { return !m.storable; }, Refusal::kStorage, kGoOn, kGoOn},
     {[](const MachineState& m) { return m.task == TaskState::kLooks; }, kGoOn, Refusal::kTaskRuns, kGoOn},
+    {[](const MachineState& m) { return m.alarmed && m.devices == DevicesState::kUp; }, Refusal::kAlarm, kGoOn, kGoOn},
     {moves, Refusal::kNone, Refusal::kTaskRuns, Refusal::kNone},
     {[](const MachineState& m) { return m.devices == DevicesState::kUnknown; }, Refusal::kOpening, Refusal::kOpening,
      Refusal::kOpening},
     {[](const MachineState& m) { return m.devices == DevicesState::kDown; }, Refusal::kDeviceMissing,
      Refusal::kDeviceMissing, Refusal::kDeviceMissing},
-    {[](const MachineState& m) { return m.alarmed; }, Refusal::kAlarm, Refusal::kNone, Refusal::kNone},
     {[](const MachineState&) { return true; }, Refusal::kNone, Refusal::kNone, Refusal::kNone},
 };
 

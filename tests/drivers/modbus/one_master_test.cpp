@@ -72,6 +72,17 @@ TEST_P(OneMaster, LeavesASecondOneOutWhileTheAxisMoves) {
   EXPECT_NEAR(stage->move_to(Micrometers{300.0}, test::kCriterion, {}).position.value, 300.0, 0.5);
 }
 
+TEST_P(OneMaster, EndsNoAlarmOfADriveThatAnotherOneHas) {
+  const auto stage = open_modbus_stage(counted());
+  stage->home({});
+  stage->move_to(Micrometers{10.0}, test::kCriterion, {});
+  ASSERT_TRUE(plant_.write_target_as_another_master(4321));
+  plant_.drive().raise_alarm(1);
+  const int before = counter_.writes();
+  expect_error(ErrorCode::kStageTaken, {"another master"}, [&] { stage->reset_alarm({}); });
+  EXPECT_EQ(counter_.writes(), before) << "it may be waiting for that";
+}
+
 TEST_P(OneMaster, NoticesAnotherOnesTarget) {
   const auto stage = plant_.open_homed();
   stage->move_to(Micrometers{10.0}, test::kCriterion, {});

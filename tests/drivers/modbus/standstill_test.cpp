@@ -197,14 +197,38 @@ TEST(ADriveThatSomebodyElseDisabled, IsNotEnabledAgainBeforeItIsHomed) {
   const SettleCriterion criterion;
   stage->move_to(Micrometers{10}, criterion, {});
   plant.drive().emergency_stop();
+  StageStatus seen = stage->status();
+  EXPECT_TRUE(seen.lost_torque);
+  EXPECT_FALSE(seen.homed);
   const int moves = plant.drive().moves();
   expect_error(ErrorCode::kStageAlarm, {"home again"}, [&] { stage->move_to(Micrometers{20}, criterion, {}); });
   stage->stop();
   expect_error(ErrorCode::kStageAlarm, {"home again"}, [&] { stage->move_to(Micrometers{20}, criterion, {}); });
   EXPECT_EQ(plant.drive().moves(), moves);
   stage->home({});
+  seen = stage->status();
+  EXPECT_FALSE(seen.lost_torque);
+  EXPECT_TRUE(seen.homed);
   EXPECT_NEAR(stage->move_to(Micrometers{20}, criterion, {}).position.value, 20.0, 0.5);
 }
+
+class AnAlarmThatWasEnded : public testing::TestWithParam<test::DriveCase> {};
+
+TEST_P(AnAlarmThatWasEnded, LeavesAnAxisHomedOnlyIfItMovesThen) {
+  constexpr int kAlarm = 1;
+  test::SimulatedDrive plant(GetParam(), Transport::kTcp);
+  const auto stage = plant.open_homed();
+  plant.drive().raise_alarm(kAlarm);
+  EXPECT_TRUE(stage->status().alarm);
+  stage->reset_alarm({});
+  const StageStatus ended = stage->status();
+  EXPECT_FALSE(ended.alarm) << ended.alarm_text;
+  if (!ended.homed) stage->home({});
+  EXPECT_NEAR(stage->move_to(Micrometers{20}, {}, {}).position.value, 20.0, 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, AnAlarmThatWasEnded, testing::ValuesIn(test::kDriveCases),
+                         [](const auto& on) { return testing::PrintToString(on.param); });
 
 }  // namespace
 }  // namespace fvd
