@@ -84,7 +84,8 @@ void require_place(const fs::path& backup, const fs::path& state_dir) {
 }  // namespace
 
 std::vector<std::string> make_backup(const InstrumentPaths& instrument, const fs::path& folder, bool with_results) {
-  const fs::path final_dir = fs::absolute(folder).lexically_normal();
+  fs::path final_dir = fs::absolute(folder).lexically_normal();
+  if (!final_dir.has_filename()) final_dir = final_dir.parent_path();  // "DIR/"
   std::error_code error;
   if (fs::exists(final_dir, error)) {
     throw Error(ErrorCode::kBadInput, final_dir.string() + " exists already: give another name, or move it away");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <sys/stat.h>
 
 #include "core/base/error.hpp"
 #include "daemon/backup/backup.hpp"
@@ -43,8 +44,20 @@ InstrumentPaths paths_of(const fs::path& config, const fs::path& instead) {
           .token_file = read.rpc.access.token_file};
 }
 
+bool on_one_disk(const fs::path& one, const fs::path& other) {
+  struct stat of_one {};
+  struct stat of_other {};
+  return ::stat(one.c_str(), &of_one) == 0 && ::stat(other.c_str(), &of_other) == 0 && of_one.st_dev == of_other.st_dev;
+}
+
 int backup(const BackupArguments& arguments, const Terminal& terminal) {
-  const auto missing = make_backup(paths_of(arguments.config, {}), arguments.folder, arguments.results);
+  const InstrumentPaths instrument = paths_of(arguments.config, {});
+  const auto missing = make_backup(instrument, arguments.folder, arguments.results);
+  if (on_one_disk(arguments.folder, instrument.state_dir)) {
+    terminal.err << "fvdctl: warning: " << arguments.folder
+                 << " is on the disk of the state folder, and is lost with it; is the disk for backups not mounted?"
+                 << std::endl;
+  }
   terminal.out << arguments.folder << " holds a backup" << (arguments.results ? " with results" : "") << std::endl;
   for (const std::string& name : missing) {
     terminal.err << "fvdctl: result " << name << " is known to the database, but its folder is not there" << std::endl;
