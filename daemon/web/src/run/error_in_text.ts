@@ -13,8 +13,9 @@ const kCodes: Record<string, number> = {
 export const saidOnce = (text: string): string => text.replace(/(^| )([a-z_]+): \2: /, "$1$2: ");
 
 // What somebody wanted is no fault, though the log has it beside those.
-// An end that was not only wanted, as of a stage that did not come to rest, is an error by its level.
-export const isWanted = ({ level, text }: { level: string; text: string }): boolean => level === "warning" && errorCodeIn(text) === kCodes["aborted"];
+// An end that was not only wanted is an error by its level, or says that the stage was not seen to rest after its stop.
+export const isWanted = ({ level, text }: { level: string; text: string }): boolean =>
+  level === "warning" && errorCodeIn(text) === kCodes["aborted"] && !text.includes("standstill was not confirmed");
 
 // 0 = none of them.
 export function errorCodeIn(text: string): number {

@@ -50,8 +50,9 @@ export function TryPanel({ editor, newest }: { editor: Editor; newest: Newest })
     setBusy(t("recipe.trying"));
     setProblem("");
     try {
-      const before = trial && trial.job_id === newest.job_id ? trial.before : await old();
       const { id, result } = await what(await keepForTrial(editor.id, text, who), press);
+      // After it: what was pressed shall not wait for it.
+      const before = trial && trial.job_id === newest.job_id ? trial.before : await old();
       const verdict = (result as { verdict?: unknown } | null)?.verdict;
       setTrial({ id, job_id: newest.job_id, text, before, values: valuesOf(result), verdict: typeof verdict === "string" ? verdict : null });
     } catch (error) {

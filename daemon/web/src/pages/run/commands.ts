@@ -10,7 +10,7 @@ import { asMotion, stopPresses, stopStage } from "../../rpc/stop_stage.ts";
 import type { ButtonAction } from "../../run/button_rules.ts";
 import { nextPartId } from "../../run/part_ids.ts";
 import { createStarter, kClient, newSession } from "../../run/start_job.ts";
-import { awaited, countsOn, notice, partId } from "./run_state.ts";
+import { awaited, countsOn, lacksReference, notice, partId } from "./run_state.ts";
 
 const starter = createStarter({
   start: (params, signal) => call("job.start", params, { signal }),
@@ -65,10 +65,12 @@ export const stop = (): Promise<void> => during("stop", async () => {
 
 export const reset = (): Promise<void> => during("reset", async () => {
   const { homed } = await call("error.reset", {});
+  lacksReference.set(!homed);
   notice.set({ kind: "note", text: t(homed ? "run.reset_done" : "run.reset_not_homed") });
 });
 
 export const home = (): Promise<void> => during("home", async () => {
   await asMotion(() => call("stage.home", {}));
+  lacksReference.set(false);
   notice.set({ kind: "note", text: t("run.homed") });
 });

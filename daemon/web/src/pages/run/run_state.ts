@@ -17,6 +17,9 @@ export function setCountsOn(wanted: boolean): void {
 // The command whose answer is awaited.
 export const awaited = createStore<ButtonAction | "home" | null>(null);
 
+// The last reset told of a stage without its reference, and nobody has found it since.
+export const lacksReference = createStore(false);
+
 export interface Notice {
   kind: "problem" | "note";
   text: string;

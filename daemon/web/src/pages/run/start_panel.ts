@@ -11,7 +11,7 @@ import { offered } from "../../run/recipe_choice.ts";
 import { kClient } from "../../run/start_job.ts";
 import { askNewest, home } from "./commands.ts";
 import { OneButton } from "./one_button.ts";
-import { countsOn, notice, partId, recipeChoice, recipes, setCountsOn } from "./run_state.ts";
+import { countsOn, lacksReference, notice, partId, recipeChoice, recipes, setCountsOn } from "./run_state.ts";
 import { focusIfFree, useKeys } from "./use_keys.ts";
 import { useRecipeId } from "./use_machine.ts";
 import { useRecipeList } from "./use_recipe_list.ts";
@@ -84,6 +84,7 @@ export function StartPanel() {
   useLanguage();
   const { state, job } = useStore(topics);
   const { role } = useStore(session);
+  const lacks = useStore(lacksReference);
   const count = useStore(resyncs);
   const isLinked = useStore(link).status === "open";
   const ours = job?.client === kClient ? job.seq : 0;
@@ -96,7 +97,7 @@ export function StartPanel() {
     <${RecipeChoice}/>
     <${OneButton}/>
     <${Told}/>
-    ${state?.state === "error" && kHomeHelps.includes(state.error_code) && mayAs(role, "operate") &&
+    ${((state?.state === "error" && kHomeHelps.includes(state.error_code)) || lacks) && mayAs(role, "operate") &&
       html`<p class="buttons"><button type="button" onClick=${() => void home()}>${t("run.home")}</button></p>`}
   </section>`;
 }
