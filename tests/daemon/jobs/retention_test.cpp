@@ -141,7 +141,7 @@ int never_free_gib(const fs::path& folder) {
 }
 
 TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
-  const int gib = never_free_gib(results_);
+  const int gib = never_free_gib(results_.parent_path());
   if (gib == 0) GTEST_SKIP() << "the disk is empty, or smaller than 1 GiB";
   const std::string old = add(1, true, kLongAgo);
   const std::string waiting = add(2, false, kLongAgo);
@@ -154,7 +154,7 @@ TEST_F(ARetention, RemovesAllThatMayGoWhereTheDiskIsNeverFreeEnough) {
 }
 
 TEST_F(ARetention, SaysOnceThatTheDiskIsNotFreeEnoughThoughAllIsRemoved) {
-  const int gib = never_free_gib(results_);
+  const int gib = never_free_gib(results_.parent_path());
   if (gib == 0) GTEST_SKIP() << "the disk is empty, or smaller than 1 GiB";
   add(1, true, kLongAgo);
   const test::CapturedLog log;
