@@ -79,8 +79,8 @@ struct StageStatus {
   int alarm_code = 0;
   std::string alarm_text;
   bool lost_torque = false;  ///< disabled, and not by fvd: it may have been moved since, and is not homed
-  Micrometers position;  ///< measured
-  HostTime sampled{};    ///< when; of an axis that is sampled all the time
+  Micrometers position;      ///< measured
+  HostTime sampled{};        ///< when; of an axis that is sampled all the time
   std::vector<StageTemperature> temperatures;
 };
 
