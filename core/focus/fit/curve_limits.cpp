@@ -24,15 +24,15 @@ constexpr double kShoulderWithoutMedian = 0.1;
 constexpr double kNeighboursWithoutMedian = 1.0;  // three samples above half
 
 /// Curvature of G per sample distance squared, as fit_five finds it.
-std::optional<double> bend(const CurveTuple& tuple, const HeightEntry& at) {
+std::optional<double> bend(const CurveTuple& tuple, const HeightEntry& at, bool logarithm) {
   const std::array u{at.u_left2, at.u_left, 0.0F, at.u_right, at.u_right2};
-  std::array<double, 5> s{};  // sums over the samples of w u^n, w = r^4
-  std::array<double, 3> t{};  // and of w u^n r^-1/2
+  std::array<double, 5> s{};  // sums over the samples of w u^n, w = r^4 or, with the logarithm, r^2
+  std::array<double, 3> t{};  // and of w u^n g
   for (std::size_t i = 0; i < u.size(); ++i) {
     if (i != 2 && u[i] == 0.0F) continue;
     const double r = std::max(static_cast<double>(tuple.share[i]), static_cast<double>(kSmallestShare));
-    double w = r * r * r * r;
-    const double g = 1.0 / std::sqrt(r);
+    double w = logarithm ? r * r : r * r * r * r;
+    const double g = logarithm ? -std::log(r) : 1.0 / std::sqrt(r);
     for (std::size_t n = 0; n < s.size(); ++n, w *= static_cast<double>(u[i])) {
       s[n] += w;
       if (n < t.size()) t[n] += w * g;
@@ -62,13 +62,14 @@ double median(std::vector<double>& values) {
 }  // namespace
 
 double CurveLimits::neighbours(double scale_um) const noexcept {
-  const double root = 1.0 + most_bend_per_um2 * scale_um * scale_um;  // of 1 / F at the neighbours
-  return std::max(least_neighbours, 2.0 / (root * root));
+  const double rise = most_bend_per_um2 * scale_um * scale_um;  // of G at the neighbours
+  return std::max(least_neighbours, logarithm ? 2.0 * std::exp(-rise) : 2.0 / ((1.0 + rise) * (1.0 + rise)));
 }
 
 CurveLimits curve_limits(std::span<const CurveTuple> tuples, std::size_t looked_at, const std::vector<double>& z_um,
-                         const PointTests& tests) {
+                         const PointTests& tests, bool logarithm) {
   CurveLimits limits;
+  limits.logarithm = logarithm;
   if (looked_at < kLeastLookedAt) return limits;
   const std::vector<HeightEntry> heights = height_table(z_um);
   std::vector<double> bends_per_um2;
@@ -79,7 +80,7 @@ CurveLimits curve_limits(std::span<const CurveTuple> tuples, std::size_t looked_
     const HeightEntry& at = heights[static_cast<std::size_t>(tuple.index)];
     if (at.mask != 0) continue;
     const auto scale_um = static_cast<double>(at.scale_um);
-    if (const auto found = bend(tuple, at)) bends_per_um2.push_back(*found / (scale_um * scale_um));
+    if (const auto found = bend(tuple, at, logarithm)) bends_per_um2.push_back(*found / (scale_um * scale_um));
     if (const auto found = shoulder(tuple, at)) shoulders.push_back(*found);
   }
   const bool known = std::min(bends_per_um2.size(), shoulders.size()) >= kLeastCurves;

@@ -29,14 +29,16 @@ struct CurveLimits {
   /// (both neighbours' shares less those of the samples two away) over (2 less both neighbours' shares): of a spike
   /// near 0, of a curve 0.2 and more, the more samples it has.
   double least_shoulder = kNoShoulder;
+  bool logarithm = false;  ///< G is that of curves without heavy tails, see five_sample_fit.hpp
 
   /// What the neighbours of a peak must have together where samples lie scale_um apart.
   [[nodiscard]] double neighbours(double scale_um) const noexcept;
 };
 
 /// tuples: from `looked_at` points spread over the image, their indices within z_um. Fewer than 500 points tell
-/// nothing: no limits then. context: pure.
+/// nothing: no limits then. logarithm: of the fit that they are for. context: pure.
 [[nodiscard]] CurveLimits curve_limits(std::span<const CurveTuple> tuples, std::size_t looked_at,
-                                       const std::vector<double>& z_um, const PointTests& tests);
+                                       const std::vector<double>& z_um, const PointTests& tests,
+                                       bool logarithm = false);
 
 }  // namespace fvd

@@ -49,7 +49,7 @@ std::optional<Skew> skew(const CurveTuple& tuple, const HeightEntry& at, double 
   }
   const Eigen::LLT<Eigen::Matrix3d> factor(normal);
   const Eigen::Vector3d fit = factor.solve(sums);
-  if (factor.info() != Eigen::Success || !(fit(2) > 0.0)) return std::nullopt;
+  if (factor.info() != Eigen::Success || !(p * fit(2) > 0.0)) return std::nullopt;
   const double vertex = -fit(1) / (2.0 * fit(2));
   const auto cubic = [&](std::size_t i) { return std::pow(static_cast<double>(u[i]) - vertex, 3); };
   Eigen::Vector3d cubic_sums = Eigen::Vector3d::Zero();

@@ -20,6 +20,11 @@ constexpr double kFitExponent = 2.0;      // of the five-sample fit
 constexpr double kSecondExponent = 1.5;   // the excess is taken to be linear in p between these two and beyond
 constexpr double kMinExponent = 1.25;     // of curves that the scenes of RESULTS.md show
 constexpr double kMaxExponent = 2.2;
+// Of curves that are fitted by their logarithm, exact for p without end; the excess is taken to be linear in 1/p.
+// Below 0 tails end: sinc^2 is near to (1 - b u^2)^5.
+constexpr double kEndingExponent = -4.0;
+constexpr double kMostInverse = 0.5;
+constexpr double kLeastInverse = -0.3;
 constexpr double kMinNeighbourShare = 0.02;  // share of the peak: a smaller one tells more of noise than of the curve
 
 /// G = F^(-1/p) as a parabola through the peak, where it is 1 and u is 0, and both its neighbours.
@@ -28,12 +33,14 @@ struct Parabola {
   double bend = 0.0;  // coefficient of u^2
   double p = kFitExponent;
 
-  /// F at u; for the two exponents above.
+  /// F at u; for the exponents above.
   [[nodiscard]] double at(double u) const {
     const double g = 1.0 + (slope + bend * u) * u;
+    if (p == kEndingExponent) return g > 0.0 ? g * g * g * g : 0.0;
+    if (p == kGaussianExponent) return std::pow(g, -p);
     return p == kFitExponent ? 1.0 / (g * g) : 1.0 / (g * std::sqrt(g));
   }
-  /// At the vertex.
+  /// At the vertex; the highest where p is negative.
   [[nodiscard]] double lowest() const { return 1.0 - slope * slope / (4.0 * bend); }
 };
 
@@ -54,7 +61,7 @@ std::optional<Parabola> parabola(const CurveTuple& tuple, const HeightEntry& at,
   result.p = p;
   result.bend = (rise_right - rise_left) / (u_right - u_left);
   result.slope = rise_left - result.bend * u_left;
-  if (!(result.bend > 0.0) || !(result.lowest() > 0.0)) return std::nullopt;
+  if (!(p * result.bend > 0.0) || !(result.lowest() > 0.0)) return std::nullopt;
   return result;
 }
 
@@ -83,7 +90,7 @@ std::vector<double> joined(const Pieces& pieces) {
 
 /// What the fit makes of curves (1 + bend u^2)^-p: of two, the vertex a fifth of a step from the peak's sample and
 /// almost half a step.
-VertexBias bias_of_fit(double bend, double p) {
+VertexBias bias_of_fit(double bend, double p, bool logarithm) {
   constexpr std::array kVertices_steps{0.2, 0.45};
   constexpr int kCurves = static_cast<int>(kVertices_steps.size());
   constexpr double kPeakCode = 60000.0;
@@ -107,6 +114,7 @@ VertexBias bias_of_fit(double bend, double p) {
   // Without noise, and with a shape error of 1, the variance is the square of what the bias is divided by.
   FitParameters parameters{};
   parameters.shape_error = 1.0F;
+  parameters.logarithm = logarithm;
   parameters.code_unit = static_cast<float>(SharpnessCode::kUnit);
   std::array<float, kCurves> height_m{};
   std::array<float, kCurves> variance_m2{};
@@ -154,9 +162,22 @@ class Curves {
   std::size_t count_;
 };
 
+/// From the excesses at two exponents to that at which they vanish.
+double heavy_exponent(double at_fit, double at_second) {
+  const double slope = (at_fit - at_second) / (kFitExponent - kSecondExponent);
+  return std::clamp(kFitExponent - at_fit / slope, kMinExponent, kMaxExponent);
+}
+double light_exponent(double at_ending, double at_gaussian) {
+  const double inverse = -at_gaussian / (at_ending - at_gaussian) / kEndingExponent;
+  const double nearest = std::clamp(inverse, kLeastInverse, kMostInverse);
+  return std::abs(nearest) < 1.0 / kGaussianExponent ? kGaussianExponent : 1.0 / nearest;
+}
+
 /// The exponent at which the excess vanishes in the mean; nothing where too few curves tell, or their mean tells of
 /// none.
-std::optional<double> exponent_of(const Curves& curves, WorkerPool& pool) {
+std::optional<double> exponent_of(const Curves& curves, WorkerPool& pool, bool logarithm) {
+  const double first = logarithm ? kEndingExponent : kFitExponent;  // of lighter tails than the second
+  const double second = logarithm ? kGaussianExponent : kSecondExponent;
   struct Excess {
     double at_fit = 0.0;
     double at_other = 0.0;
@@ -166,8 +187,8 @@ std::optional<double> exponent_of(const Curves& curves, WorkerPool& pool) {
   pool.run(Curves::kPieces, [&](int piece) {
     Excess sum;  // not in the array: its pieces share cache lines
     curves.each(piece, [&](const CurveTuple& tuple, const HeightEntry& at) {
-      const auto at_fit = excess(tuple, at, kFitExponent);
-      const auto at_other = excess(tuple, at, kSecondExponent);
+      const auto at_fit = excess(tuple, at, first);
+      const auto at_other = excess(tuple, at, second);
       if (!at_fit || !at_other) return;
       sum.at_fit += *at_fit;
       sum.at_other += *at_other;
@@ -181,18 +202,19 @@ std::optional<double> exponent_of(const Curves& curves, WorkerPool& pool) {
     total.at_other += piece.at_other;
     total.curves += piece.curves;
   }
-  if (total.curves < kMinCurves || !(total.at_other < total.at_fit)) return std::nullopt;
-  const double slope = (total.at_fit - total.at_other) / (kFitExponent - kSecondExponent);
-  return std::clamp(kFitExponent - total.at_fit / slope, kMinExponent, kMaxExponent);
+  if (total.curves < kMinCurves) return std::nullopt;
+  if (!(total.at_other < total.at_fit)) return std::nullopt;
+  return logarithm ? light_exponent(total.at_fit, total.at_other) : heavy_exponent(total.at_fit, total.at_other);
 }
 
 }  // namespace
 
-CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, WorkerPool& pool) {
+CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um, WorkerPool& pool,
+                       bool logarithm) {
   const Curves curves(tuples, z_um);
-  const std::optional<double> exponent = exponent_of(curves, pool);
+  const std::optional<double> exponent = exponent_of(curves, pool, logarithm);
   CurveShape shape;
-  shape.exponent = exponent.value_or(kFitExponent);
+  shape.exponent = exponent.value_or(logarithm ? kGaussianExponent : kFitExponent);
 
   std::array<std::vector<double>, Curves::kPieces> bends;  // of G over its lowest value
   std::array<std::vector<double>, Curves::kPieces> widths_um;
@@ -212,7 +234,7 @@ CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<dou
   if (all_widths_um.empty()) return shape;
   shape.width_um = median(all_widths_um);
   auto all_bends = joined(bends);
-  if (exponent) shape.bias = bias_of_fit(median(all_bends), *exponent);
+  if (exponent) shape.bias = bias_of_fit(median(all_bends), *exponent, logarithm);
   return shape;
 }
 

@@ -6,6 +6,9 @@
 /// grain to 2.2 where noise fills the tails. The fit's vertex then lies too near to the peak's sample or too far from
 /// it, by an amount that depends on the fraction of a step: slopes get a ripple ("pixel locking" in z).
 ///
+/// Curves without heavy tails are fitted by their logarithm, exact for a Gaussian, which is p without end. Their p may
+/// be anything up to that, for which kGaussianExponent stands, and negative: (1 - |b| u^2)^|p| has tails that end.
+///
 /// p is estimated from the scan: with the right p, the peak and its neighbours predict the samples two steps away, in
 /// the mean over some thousand curves. The fit's error for a curve of that p is computed and subtracted from every
 /// vertex.
@@ -20,8 +23,11 @@
 
 namespace fvd {
 
+/// (1 + b u^2 / p)^-p is then within 0.001 of exp(-b u^2).
+inline constexpr double kGaussianExponent = 1000.0;
+
 struct CurveShape {
-  double exponent = 2.0;  ///< p; 2 if there are too few curves to estimate it
+  double exponent = 2.0;  ///< p; that of the fit if there are too few curves to estimate it
   double width_um = 0.0;  ///< full width at half maximum, median; 0 unknown
   VertexBias bias;        ///< of the five-sample fit
 };
@@ -46,8 +52,8 @@ class ScanCurve {
 };
 
 /// tuples: spread over the image, their indices within z_um. z_um: measured z of each sample. context: computes on the
-/// caller's thread and on the pool.
+/// caller's thread and on the pool. logarithm: of the fit.
 [[nodiscard]] CurveShape curve_shape(std::span<const CurveTuple> tuples, const std::vector<double>& z_um,
-                                     WorkerPool& pool);
+                                     WorkerPool& pool, bool logarithm = false);
 
 }  // namespace fvd

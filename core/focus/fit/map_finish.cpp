@@ -340,11 +340,13 @@ void finish_map(const CurveSource& curves, const std::vector<double>& z_um, cons
   } else {
     map.stage.reason = "not asked for";
   }
-  const CurveShape shape = curve_shape(spots.tuples, corrected, pool);
+  const bool logarithm = method == PeakMethod::kFiveSample && has_light_tails(settings.focus_operator);
+  const CurveShape shape = curve_shape(spots.tuples, corrected, pool, logarithm);
   ScanCurves curves_in_common{shape.bias, kVertexShare * curve_misfit(spots.tuples, corrected, shape.exponent), {}};
   if (settings.bin_slices > 1) curves_in_common.misfit *= kBinsShare;
-  curves_in_common.limits = curve_limits(spots.tuples, spots.looked_at, corrected, settings.tests);
-  const CurveShape of_fit = method == PeakMethod::kFiveSample ? shape : CurveShape{};
+  curves_in_common.limits = curve_limits(spots.tuples, spots.looked_at, corrected, settings.tests, logarithm);
+  // Of a logarithm nothing is taken off beside a gap: it is a parabola wherever the samples lie.
+  const CurveShape of_fit = method == PeakMethod::kFiveSample && !logarithm ? shape : CurveShape{};
   finish.fit(RowFit(corrected, settings, map.texture_format, method, curves_in_common), GapBias(corrected, of_fit),
              GapFit(spots.tuples, corrected, of_fit, curves_in_common.limits),
              jump_samples(settings, corrected, shape.width_um));

@@ -20,6 +20,11 @@ namespace {
 constexpr double kLaplacianNoise = 4.0;
 constexpr double kDiagonalNoise = 15.0;
 
+float shape_error(const FocusSettings& settings) {
+  if (has_light_tails(settings.focus_operator)) return 0.0F;
+  return settings.bin_slices > 1 ? kBinnedShapeError : kShapeError;
+}
+
 }  // namespace
 
 double sample_noise(const FocusSettings& settings, double noise_grey, double sharpness) noexcept {
@@ -83,14 +88,15 @@ void RowFit::fit(const CurveRow& row, const float* noise, const float* least_amp
   if (method_ == PeakMethod::kFiveSample) {
     const FitParameters parameters{static_cast<float>(settings_.min_prominence),
                                    static_cast<float>(settings_.min_significance),
-                                   settings_.bin_slices > 1 ? kBinnedShapeError : kShapeError,
+                                   shape_error(settings_),
                                    static_cast<float>(curves_.misfit),
                                    static_cast<float>(SharpnessCode::kUnit),
                                    code_.root,
                                    curves_.bias,
                                    static_cast<float>(curves_.limits.least_bend_per_um2),
                                    static_cast<float>(curves_.limits.least_shoulder),
-                                   CurveLimits::kMostNeighbours};
+                                   CurveLimits::kMostNeighbours,
+                                   has_light_tails(settings_.focus_operator)};
     focus_kernels().fit_five(row, heights_, noise, least_amplitude, width, parameters, out);
   } else {
     fit_triples(row, noise, least_amplitude, width, out);

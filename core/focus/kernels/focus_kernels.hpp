@@ -120,6 +120,7 @@ struct FitParameters {
   float least_bend_per_um2 = 0.0F;  ///< curvature of G, see five_sample_fit.hpp, below which a curve is too broad
   float least_shoulder = -1e30F;    ///< see curve_limits.hpp; below it a curve is too narrow
   float most_neighbours = 0.0F;     ///< where both neighbours' shares add up to less than this
+  bool logarithm = false;           ///< the other form of the fit, see five_sample_fit.hpp
 };
 
 /// Output of the fits: rows of planes without padding; NaN in height and variance exactly where mask is not 0.

@@ -186,6 +186,39 @@ struct FitSums {
   float t2 = 0.0F;
 };
 
+/// By the series of the inverse hyperbolic tangent, ln m = 2 artanh((m - 1) / (m + 1)), of which five terms are a
+/// float's last digit between 2/3 and 4/3; not the C library's, which may differ between processors. value > 0, no
+/// denormal.
+inline __attribute__((always_inline)) float natural_logarithm(float value) {
+  constexpr std::int32_t kTwoThirds = 0x3F2AAAAB;
+  const auto bits = __builtin_bit_cast(std::int32_t, value);
+  const std::int32_t exponent = (bits - kTwoThirds) >> 23;
+  const auto m = __builtin_bit_cast(float, bits - exponent * (1 << 23));
+  const float t = (m - 1.0F) / (m + 1.0F);
+  const float t2 = t * t;
+  const float series = 1.0F + t2 * (1.0F / 3.0F + t2 * (1.0F / 5.0F + t2 * (1.0F / 7.0F + t2 * (1.0F / 9.0F))));
+  return 2.0F * t * series + 0.693147181F * static_cast<float>(exponent);
+}
+
+/// Of the fit of a curve without heavy tails: w = r^2 and -ln r. Returns r^2.
+inline __attribute__((always_inline)) float add_logarithm(FitSums& sums, float r, float u) {
+  const float w = r * r;  // 0 of a sample that is not there
+  const float v = -w * natural_logarithm(r > kSmallestShare ? r : kSmallestShare);
+  const float wu = w * u;
+  const float wu2 = wu * u;
+  const float wu3 = wu2 * u;
+  const float vu = v * u;
+  sums.s0 += w;
+  sums.s1 += wu;
+  sums.s2 += wu2;
+  sums.s3 += wu3;
+  sums.s4 += wu3 * u;
+  sums.t0 += v;
+  sums.t1 += vu;
+  sums.t2 += vu * u;
+  return w;
+}
+
 /// Returns r^5.
 inline __attribute__((always_inline)) float add_sample(FitSums& sums, float r, float u) {
   const float r2 = r * r;
@@ -206,14 +239,21 @@ inline __attribute__((always_inline)) float add_sample(FitSums& sums, float r, f
   return w * r;
 }
 
+template <bool kLogarithm>
+inline __attribute__((always_inline)) float add(FitSums& sums, float r, float u) {
+  return kLogarithm ? add_logarithm(sums, r, u) : add_sample(sums, r, u);
+}
+
+template <bool kLogarithm>
 inline void add_samples(int count, FitPixels& at) {
   FVD_NO_ALIASING
   for (int x = 0; x < count; ++x) {
     FitSums sums;
-    at.r.left2[x] = add_sample(sums, at.r.left2[x], at.u.left2[x]);
-    at.r.left[x] = add_sample(sums, at.r.left[x], at.u.left[x]);
-    at.r.right[x] = add_sample(sums, at.r.right[x], at.u.right[x]);
-    at.r.right2[x] = add_sample(sums, at.r.right2[x], at.u.right2[x]);
+    if (kLogarithm) sums.t0 = 0.0F;  // the peak's own, ln 1
+    at.r.left2[x] = add<kLogarithm>(sums, at.r.left2[x], at.u.left2[x]);
+    at.r.left[x] = add<kLogarithm>(sums, at.r.left[x], at.u.left[x]);
+    at.r.right[x] = add<kLogarithm>(sums, at.r.right[x], at.u.right[x]);
+    at.r.right2[x] = add<kLogarithm>(sums, at.r.right2[x], at.u.right2[x]);
     at.s0[x] = sums.s0;
     at.s1[x] = sums.s1;
     at.s2[x] = sums.s2;
@@ -264,7 +304,8 @@ inline float share_unit(const FitParameters& parameters) {
   return parameters.root_code ? parameters.code_unit * parameters.code_unit : parameters.code_unit;
 }
 
-/// The share of the variance of a sample of weight r^4 that reaches the vertex, times 4: dg = r^-3/2 dr / 2.
+/// The share of the variance of a sample of weight r^4 that reaches the vertex, times 4: dg = r^-3/2 dr / 2. With
+/// logarithms, of weight r^2 and not times 4: dg = dr / r, and r^2 in the place of r^5.
 inline __attribute__((always_inline)) float gain(float r5, float u, float l0, float l1, float l2) {
   const float lever = l0 + (l1 + l2 * u) * u;
   return r5 * lever * lever;
@@ -307,8 +348,9 @@ inline void find_heights(int count, const float* noise, const FitParameters& par
                          float* height_m, float* variance_m2) {
   const float shape_error = parameters.shape_error;
   const VertexBias bias = parameters.bias;
-  const float misfit = 0.25F * parameters.misfit * parameters.misfit;  // of G, near the peak
-  const float half_per_unit = 0.5F / share_unit(parameters);
+  const float derivative = parameters.logarithm ? 1.0F : 0.5F;  // of G by a share, near the peak
+  const float misfit = derivative * derivative * parameters.misfit * parameters.misfit;
+  const float g_per_unit = derivative / share_unit(parameters);
   FVD_NO_ALIASING
   for (int x = 0; x < count; ++x) {
     const float l0 = at.l0[x];
@@ -317,7 +359,7 @@ inline void find_heights(int count, const float* noise, const FitParameters& par
     const float variance =
         l0 * l0 + gain(at.r.left[x], at.u.left[x], l0, l1, l2) + gain(at.r.left2[x], at.u.left2[x], l0, l1, l2) +
         gain(at.r.right[x], at.u.right[x], l0, l1, l2) + gain(at.r.right2[x], at.u.right2[x], l0, l1, l2);
-    const float relative_noise = noise[x] * half_per_unit * at.inverse[x];
+    const float relative_noise = noise[x] * g_per_unit * at.inverse[x];
     const float bend = at.bend[x];
     const float shape = shape_error * bend;
     const float scale_m = at.scale_um[x] * 1e-6F;
@@ -385,7 +427,11 @@ void fit_five(const CurveRow& row, HeightTable table, const float* noise, const 
     look_up(row.peak_index + first, table, count, at);
     const bool clipped = mark_clipped(row.clipped + first, count, at);
     find_shares(count, parameters, at);
-    add_samples(count, at);
+    if (parameters.logarithm) {
+      add_samples<true>(count, at);
+    } else {
+      add_samples<false>(count, at);
+    }
     solve(count, at);
     judge(count, noise + first, least_amplitude + first, parameters, at, out.prominence + first);
     find_heights(count, noise + first, parameters, at, out.height_m + first, out.variance_m2 + first);

@@ -76,6 +76,9 @@ struct PointTests {
   bool operator==(const PointTests&) const = default;
 };
 
+/// Whether the five-sample fit takes the logarithm of its curves, see five_sample_fit.hpp.
+[[nodiscard]] constexpr bool has_light_tails(FocusOperator op) noexcept { return op == FocusOperator::kIntensity; }
+
 struct FocusSettings {
   FocusOperator focus_operator = FocusOperator::kDiagonalLaplacian;
   FocusWindow window = FocusWindow::kDoubleBox;
