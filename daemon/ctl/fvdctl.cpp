@@ -29,6 +29,7 @@
 #include "daemon/ctl/stage_command.hpp"
 #include "daemon/ctl/study_commands.hpp"
 #include "daemon/ctl/suggest_command.hpp"
+#include "daemon/ctl/suggest_confocal.hpp"
 #include "daemon/ctl/wrong_words.hpp"
 
 namespace fvd::ctl {
@@ -56,6 +57,7 @@ struct Arguments {
   ReportArguments report;
   std::string suggest_source;
   StackChoice suggest_choice;
+  ConfocalOptics suggest_optics;
   StageArguments stage;
   DevicesArguments devices;
   SetupArguments setup;
@@ -316,13 +318,16 @@ void add_commands(CLI::App& app, Arguments& a, const Terminal& terminal, Command
 
   add_command_groups(app, a, terminal, chosen);
 
-  sub = command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface",
-                [&] { return run_suggest(a.suggest_source, a.suggest_choice, terminal); });
-  sub->add_option("source", a.suggest_source,
-                  "folder of slices, multi-page TIFF, or one image (PNG, TIFF, JPEG, PGM, BMP) where most of the "
-                  "surface is in focus")
-      ->required();
+  sub =
+      command("suggest", "suggest a recipe's focus settings from recorded slices or one sharp image of a surface", [&] {
+        return a.suggest_source.empty() ? run_suggest_confocal(a.suggest_optics, terminal)
+                                        : run_suggest(a.suggest_source, a.suggest_choice, terminal);
+      });
+  CLI::Option* source = sub->add_option("source", a.suggest_source,
+                                        "folder of slices, multi-page TIFF, or one image (PNG, TIFF, JPEG, PGM, BMP) "
+                                        "where most of the surface is in focus");
   add_choice_options(*sub, a.suggest_choice);
+  add_confocal_options(*sub, *source, a.suggest_optics);
 }
 
 int run(std::vector<std::string> arguments, const Terminal& terminal) {

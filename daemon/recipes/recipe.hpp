@@ -76,7 +76,7 @@ struct Recipe {
   return recipe.bin_slices == 0 && recipe.curve_width_um == 0.0;
 }
 
-/// The focus settings of a scan: recipe.focus with its bins chosen, and no window for the intensity.
+/// The focus settings of a scan: recipe.focus with its bins chosen.
 [[nodiscard]] inline FocusSettings focus_settings(const Recipe& recipe) {
   FocusSettings settings = recipe.focus;
   const double learnt_um = recipe.learnt_width ? recipe.learnt_width->width_um : 0.0;
@@ -86,7 +86,6 @@ struct Recipe {
   if (learns_bins(recipe) && recipe.learnt_width) {
     settings.bin_slices = std::min(settings.bin_slices, recipe.learnt_width->most_bin_slices);
   }
-  if (settings.focus_operator == FocusOperator::kIntensity) settings.window_px = 1;
   return settings;
 }
 

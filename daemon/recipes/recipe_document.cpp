@@ -82,6 +82,12 @@ void check_together(const Recipe& recipe, const Places& places, Problems& proble
   if (judged({window}) && recipe.focus.window_px % 2 == 0) {
     refuse(window, recipe.focus.window_px, "is even; expected an odd number so that a pixel is its centre");
   }
+  const std::string focus_operator = places.focus + "/operator";
+  if (judged({window, focus_operator}) && recipe.focus.window_px == 1 &&
+      !has_point_window(recipe.focus.focus_operator)) {
+    refuse(window, recipe.focus.window_px,
+           "is for the intensity; expected 3..63 for a sharpness, which needs a window");
+  }
   const std::string second_peak = "/reconstruct/holes/second_peak";
   const double second_peak_limit = recipe.focus.tests.second_peak;
   if (judged({second_peak}) && second_peak_limit > 0.0 && second_peak_limit < kLeastSecondPeak) {

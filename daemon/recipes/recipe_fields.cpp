@@ -106,8 +106,10 @@ void describe_focus(Recipe& recipe, Fields& fields) {
   fields.choice("window", window, windows,
                 "weights of the window: box = all alike, double_box = falling to the rim, two boxes over each other");
   recipe.focus.window = focus_window_from_name(window).value_or(recipe.focus.window);
-  fields.integer("window_px", recipe.focus.window_px, {kMinWindowPx, kMaxWindowPx},
-                 "side of the square window, odd; of a double box the box that spreads as far; the intensity has none");
+  if (has_point_window(recipe.focus.focus_operator)) recipe.focus.window_px = 1;
+  fields.integer("window_px", recipe.focus.window_px, {1, kMaxWindowPx},
+                 "side of the square window, odd, 3 and more; of a double box the box that spreads as far; of the "
+                 "intensity 1 by default");
   fields.integer("distance_px", recipe.focus.distance_px, {1, kMaxDistancePx},
                  "from a pixel to the neighbours that its operator looks at");
   fields.number("curve_width_um", recipe.curve_width_um, {0.0, 1e5},

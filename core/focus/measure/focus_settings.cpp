@@ -132,7 +132,7 @@ void check_point_tests(const PointTests& tests) {
 }  // namespace
 
 void check_focus_settings(const FocusSettings& settings) {
-  const bool point = settings.focus_operator == FocusOperator::kIntensity && settings.window_px == 1;
+  const bool point = has_point_window(settings.focus_operator) && settings.window_px == 1;
   if (!point &&
       (settings.window_px < kMinWindowPx || settings.window_px > kMaxWindowPx || settings.window_px % 2 == 0)) {
     throw Error(ErrorCode::kBadInput, "window of " + std::to_string(settings.window_px) +

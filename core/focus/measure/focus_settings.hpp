@@ -76,6 +76,9 @@ struct PointTests {
   bool operator==(const PointTests&) const = default;
 };
 
+/// Whether a single pixel has a value of its own: then a window may be one.
+[[nodiscard]] constexpr bool has_point_window(FocusOperator op) noexcept { return op == FocusOperator::kIntensity; }
+
 /// Whether the five-sample fit takes the logarithm of its curves, see five_sample_fit.hpp.
 [[nodiscard]] constexpr bool has_light_tails(FocusOperator op) noexcept { return op == FocusOperator::kIntensity; }
 

@@ -56,6 +56,18 @@ TEST(Suggest, LooksAtAWholeStack) {
   EXPECT_THAT(out.str(), HasSubstr("slices wide at half its height"));
 }
 
+TEST(Suggest, TellsTheKeysOfAConfocalMicroscopeByItsOptics) {
+  const Outcome good = test::run_command({"suggest", "--na", "0.95", "--wavelength-nm", "405"});
+  EXPECT_EQ(good.code, kExitOk) << good.err;
+  EXPECT_THAT(good.out, HasSubstr("\"step_um\": 0.086"));
+  EXPECT_THAT(good.out, HasSubstr("\"operator\": \"intensity\", \"window_px\": 1, \"curve_width_um\": 0.261"));
+  const Outcome none = test::run_command({"suggest", "--na", "1.2", "--wavelength-nm", "405"});
+  EXPECT_EQ(none.code, kExitBadData);
+  EXPECT_THAT(none.err, HasSubstr("below the refractive index"));
+  EXPECT_NE(test::run_command({"suggest", "--na", "0.8"}).code, kExitOk) << "of which light?";
+  EXPECT_NE(test::run_command({"suggest"}).code, kExitOk);
+}
+
 TEST(Suggest, ChoosesTheSlicesAsProcessDoes) {
   const ScratchDir scratch;
   fs::create_directories(scratch / "in");
