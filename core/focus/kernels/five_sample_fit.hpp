@@ -7,10 +7,10 @@
 /// weight of least variance; F^4 gives less weight to the tails, where real curves depart from the shape. kFloorShare
 /// of the curve's minimum, which is mostly the focus measure's response to noise, is subtracted from every sample.
 ///
-/// Curves without heavy tails, a confocal microscope's intensity, have a logarithm that is nearly a parabola (exactly so
-/// for a Gaussian): G = -ln F, whose variance is F^-2, with the weights F^2 of least variance. They are alike all over a
-/// surface: what they have beside the shape is taken off, and no error of the shape is left. Of sinc^2 at 0.05 to 0.5
-/// widths the fit comes within 1.13 of the Cramer-Rao bound, the form above within 1.3 to 4.
+/// Curves without heavy tails, a confocal microscope's intensity, have a logarithm that is nearly a parabola (exactly
+/// so for a Gaussian): G = -ln F, whose variance is F^-2, with the weights F^2 of least variance. They are alike all
+/// over a surface: what they have beside the shape is taken off, and no error of the shape is left. Of sinc^2 at 0.05
+/// to 0.5 widths the fit comes within 1.13 of the Cramer-Rao bound, the form above within 1.3 to 4.
 ///
 /// The common departure of the scan's curves from that shape is subtracted from the vertex, see curve_shape.hpp.
 ///
@@ -31,6 +31,6 @@ inline constexpr float kUnevenShoulder = 0.4F;
 inline constexpr float kUneven = 0.3F;
 inline constexpr float kSmallestShare = 1e-3F;  ///< share of the peak that a sample at or below the floor counts as
 inline constexpr float kShapeError = 0.028F;    ///< standard deviation over b / (1 + 0.9 b), in sample distances
-inline constexpr float kBinnedShapeError = 0.0175F;    ///< the same where samples are bins
+inline constexpr float kBinnedShapeError = 0.0175F;  ///< the same where samples are bins
 
 }  // namespace fvd
