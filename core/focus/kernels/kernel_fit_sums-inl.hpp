@@ -18,6 +18,22 @@ struct FitSums {
   float t2 = 0.0F;
 };
 
+/// v: w times the sample's G.
+inline __attribute__((always_inline)) void add_terms(FitSums& sums, float w, float v, float u) {
+  const float wu = w * u;
+  const float wu2 = wu * u;
+  const float wu3 = wu2 * u;
+  const float vu = v * u;
+  sums.s0 += w;
+  sums.s1 += wu;
+  sums.s2 += wu2;
+  sums.s3 += wu3;
+  sums.s4 += wu3 * u;
+  sums.t0 += v;
+  sums.t1 += vu;
+  sums.t2 += vu * u;
+}
+
 /// By the series of the inverse hyperbolic tangent, ln m = 2 artanh((m - 1) / (m + 1)), of which five terms are a
 /// float's last digit between 2/3 and 4/3; not the C library's, which may differ between processors. value > 0, no
 /// denormal.
@@ -36,18 +52,7 @@ inline __attribute__((always_inline)) float natural_logarithm(float value) {
 inline __attribute__((always_inline)) float add_logarithm(FitSums& sums, float r, float u) {
   const float w = r * r;  // 0 of a sample that is not there
   const float v = -w * natural_logarithm(r > kSmallestShare ? r : kSmallestShare);
-  const float wu = w * u;
-  const float wu2 = wu * u;
-  const float wu3 = wu2 * u;
-  const float vu = v * u;
-  sums.s0 += w;
-  sums.s1 += wu;
-  sums.s2 += wu2;
-  sums.s3 += wu3;
-  sums.s4 += wu3 * u;
-  sums.t0 += v;
-  sums.t1 += vu;
-  sums.t2 += vu * u;
+  add_terms(sums, w, v, u);
   return w;
 }
 
@@ -56,18 +61,7 @@ inline __attribute__((always_inline)) float add_sample(FitSums& sums, float r, f
   const float r2 = r * r;
   const float w = r2 * r2;
   const float v = r2 * r * std::sqrt(r);  // w r^-1/2 without its division
-  const float wu = w * u;
-  const float wu2 = wu * u;
-  const float wu3 = wu2 * u;
-  const float vu = v * u;
-  sums.s0 += w;
-  sums.s1 += wu;
-  sums.s2 += wu2;
-  sums.s3 += wu3;
-  sums.s4 += wu3 * u;
-  sums.t0 += v;
-  sums.t1 += vu;
-  sums.t2 += vu * u;
+  add_terms(sums, w, v, u);
   return w * r;
 }
 
