@@ -60,7 +60,8 @@ class AxisController final : public Axis {
 
   void reset_alarm(std::stop_token stop) override {
     if (!poller_.sample_after(HostClock::now(), stop).alarm) return;
-    require_sole_master_since_start(stop);
+    // A restart stays noted: the next move is refused for it until the axis is homed.
+    if (const auto seen = poller_.foreign_write(true, stop); seen && !seen->is_restart) throw_foreign(traits_, *seen);
     require_profile(stop);
     end_alarm(*port_, poller_, stop);
   }
